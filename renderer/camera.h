@@ -1,0 +1,35 @@
+// A pinhole camera with the OpenCV lens model, as the renderer traces it.
+//
+// Frames: OpenCV camera axes (+z forward, +x right, +y down); the centre of the first pixel is at (0, 0).
+// Units: millimetres for poses, pixels for intrinsics.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+
+namespace renderer {
+
+struct Camera {
+  int width = 600;
+  int height = 400;
+  double fx = 600.0, fy = 600.0;             // focal lengths, pixels
+  double cx = 299.5, cy = 199.5;             // principal point, pixels
+  std::array<double, 5> distortion{};        // k1 k2 p1 p2 k3 (OpenCV order); zeros = ideal pinhole
+  Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
+};
+
+struct CameraRay {
+  Eigen::Vector3d origin;     // mm, world
+  Eigen::Vector3d direction;  // unit, world
+};
+
+// Ray through the continuous pixel position (column, row); (0, 0) is the centre of the first pixel.
+CameraRay ray_through(const Camera& camera, double column, double row);
+
+// Pixel position of a world point in front of the camera, distortion included.
+Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point_world);
+
+// A camera at `eye` looking at `target`; `up` shows upwards in the picture. Intrinsics are left at their defaults.
+Camera look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Eigen::Vector3d& up);
+
+}  // namespace renderer

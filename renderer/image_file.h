@@ -1,0 +1,31 @@
+// Pictures on disk through OpenImageIO: EXR (linear, float or half), PNG (8 bit) and TIFF. The only place that knows it.
+//
+// In memory a colour picture is cv::Mat3f, rows x columns x RGB (not BGR), linear.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <opencv2/core.hpp>
+#include <string>
+
+namespace renderer {
+
+using ImageHeader = std::map<std::string, std::string>;  // text attributes stored in the file
+
+// Errors of all functions: std::runtime_error naming the file, what was found and what to do.
+
+// Linear EXR, 3 x float; written to a temporary name, flushed and renamed.
+void write_exr(const std::filesystem::path& file, const cv::Mat3f& linear, const ImageHeader& header = {});
+cv::Mat3f read_exr(const std::filesystem::path& file, ImageHeader* header = nullptr);
+
+// 8-bit PNG: a mask (grey) or display colours (RGB, already encoded).
+void write_png(const std::filesystem::path& file, const cv::Mat1b& grey);
+void write_png(const std::filesystem::path& file, const cv::Mat3b& rgb);
+cv::Mat1b read_png_grey(const std::filesystem::path& file);
+// A PNG file's bytes, for embedding in a page.
+std::string encode_png(const cv::Mat3b& rgb);
+
+// linear * scale, through a 3 x 3 matrix, clipped and sRGB-encoded for display.
+cv::Mat3b encode_srgb(const cv::Mat3f& linear, double scale, const cv::Matx33f& linear_srgb_from_camera = cv::Matx33f::eye());
+
+}  // namespace renderer

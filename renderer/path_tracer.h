@@ -1,0 +1,43 @@
+// Unbiased path tracing of a Scene: Embree for intersection, light sampling and scattering sampling combined by
+// multiple importance sampling, Russian roulette. The picture depends on the seed only, never on the thread count.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <opencv2/core.hpp>
+
+#include "renderer/camera.h"
+#include "renderer/scene.h"
+
+namespace renderer {
+
+struct RenderOptions {
+  int samples_per_pixel = 16;
+  std::uint64_t seed = 1;
+  int max_vertices = 0;  // scattering vertices allowed (1 = direct light only); 0 = no limit, Russian roulette ends paths
+  int threads = 0;       // 0 = all cores
+  // Called now and then from one thread with the finished fraction; returning false stops the rendering.
+  std::function<bool(double)> progress;
+};
+
+// A scene committed to Embree, rendered as often as wanted.
+class PathTracer {
+ public:
+  explicit PathTracer(Scene scene);
+  ~PathTracer();
+  PathTracer(PathTracer&&) noexcept;
+  PathTracer& operator=(PathTracer&&) noexcept;
+
+  // Mean radiance per pixel (RGB, box filter), height x width. Throws std::runtime_error when stopped by `progress`.
+  cv::Mat3f render(const Camera& camera, const RenderOptions& options) const;
+
+  // 255 where a camera ray through the pixel (centre, or any of samples_per_pixel sub-positions) meets a curve first.
+  cv::Mat1b curve_coverage(const Camera& camera, int samples_per_pixel) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace renderer

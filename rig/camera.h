@@ -1,0 +1,41 @@
+// A tethered camera: asked for settings, read back, and triggered; pictures come as the file the camera made.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace rig {
+
+struct ExposureSettings {
+  double exposure_s = 0.25;   // shutter time
+  int iso = 100;
+  double f_number = 8.0;
+};
+
+struct CameraIdentity {
+  std::string make, model, serial;
+  int width_px = 0, height_px = 0;
+};
+
+struct Picture {
+  std::vector<std::byte> bytes;  // the file as the camera delivered it
+  std::string extension;         // "arw"
+  ExposureSettings settings;     // read back from the camera when it was taken
+  std::string utc;               // when the exposure began
+};
+
+// Errors: std::runtime_error whose message says what was asked, what came back and what the person can do.
+class Camera {
+ public:
+  virtual ~Camera() = default;
+  virtual CameraIdentity identity() = 0;
+  virtual std::vector<double> shutter_times_s() = 0;                      // ascending, the times the camera offers
+  virtual ExposureSettings configure(const ExposureSettings& wanted) = 0;  // returns what was read back
+  virtual Picture capture() = 0;
+};
+
+// The offered shutter time nearest to `wanted_s` in stops.
+double nearest_shutter_s(const std::vector<double>& offered_s, double wanted_s);
+
+}  // namespace rig

@@ -1,0 +1,37 @@
+// The part of a session that a person does: what stands on the bench, where the flashlight is, the room's light.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+
+namespace rig {
+
+enum class BenchObject { nothing, board, spectralon, holder };
+enum class Mounting { horizontal, vertical };  // direction of the threads on the holder
+enum class Lamp { off, front, back };
+
+// The whole arrangement that is wanted; a person (or a motor) makes the differences.
+struct Arrangement {
+  BenchObject object = BenchObject::nothing;
+  Mounting mounting = Mounting::horizontal;  // holder only
+  bool on_platform = false;                  // true: turns with the platform
+  // Where the object should stand: platform_from_object (platform frame at angle 0 = world) when on_platform,
+  // world_from_object otherwise. A hand places it only roughly so.
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  Lamp lamp = Lamp::off;
+  bool room_light = false;
+};
+
+bool same_arrangement(const Arrangement& a, const Arrangement& b);
+
+// One sentence per thing to do, for a person: from what stands now to what is wanted.
+std::string instruction(const Arrangement& from, const Arrangement& to);
+
+class Operator {
+ public:
+  virtual ~Operator() = default;
+  // Returns when the bench is in the wanted arrangement; throws std::runtime_error when the person declines.
+  virtual void arrange(const Arrangement& wanted) = 0;
+};
+
+}  // namespace rig

@@ -1,0 +1,62 @@
+// Strict reading of threadstation's JSON documents: every key is asked for, an unknown one is an error that names it.
+//
+// Errors: std::runtime_error, one line: the file, the key (as a path such as "camera.width_px"), what was found and what
+// is expected.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <filesystem>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace station {
+
+// Reads a file and parses it; says line and column where it is not JSON.
+nlohmann::json read_json_file(const std::filesystem::path& file);
+
+// Writes to a temporary name, flushes and renames; one line on failure.
+void write_json_file(const std::filesystem::path& file, const nlohmann::json& document);
+void write_text_file(const std::filesystem::path& file, const std::string& text);
+
+// One object of a document. Ask for its keys, then call finish(), which refuses keys nobody asked for.
+class ObjectReader {
+ public:
+  // The whole document: checks "format" = "threadstation/<kind>" and "version" = version.
+  ObjectReader(const nlohmann::json& document, const std::string& source, const std::string& kind, int version);
+
+  bool has(const std::string& key) const;
+  ObjectReader object(const std::string& key);
+  std::vector<ObjectReader> objects(const std::string& key);  // an array of objects
+
+  std::string text(const std::string& key);
+  std::string choice(const std::string& key, std::initializer_list<const char*> allowed);
+  bool flag(const std::string& key);
+  int integer(const std::string& key, int low, int high);
+  double number(const std::string& key, double low, double high);
+  std::vector<double> numbers(const std::string& key);                   // any length, finite
+  std::vector<double> numbers(const std::string& key, std::size_t count);
+  Eigen::Vector3d vector3(const std::string& key);
+  Eigen::Isometry3d transform(const std::string& key);                   // 4 x 4 row-major, rotation checked
+  const nlohmann::json& raw(const std::string& key);
+
+  void finish() const;
+  [[noreturn]] void refuse(const std::string& key, const std::string& found_and_expected) const;
+  const std::string& source() const { return source_; }
+
+ private:
+  ObjectReader(const nlohmann::json& object, std::string source, std::string path);
+  const nlohmann::json& value(const std::string& key);
+  std::string full_name(const std::string& key) const;
+
+  const nlohmann::json* object_;
+  std::string source_, path_;
+  std::vector<std::string> asked_;
+};
+
+nlohmann::json to_json(const Eigen::Vector3d& v);
+nlohmann::json to_json(const Eigen::Isometry3d& t);  // 4 x 4 row-major
+
+}  // namespace station
