@@ -8,7 +8,7 @@
 namespace rig {
 
 struct ExposureSettings {
-  double exposure_s = 0.25;   // shutter time
+  double exposure_s = 0.25;  // shutter time
   int iso = 100;
   double f_number = 8.0;
 };
@@ -30,7 +30,7 @@ class Camera {
  public:
   virtual ~Camera() = default;
   virtual CameraIdentity identity() = 0;
-  virtual std::vector<double> shutter_times_s() = 0;                      // ascending, the times the camera offers
+  virtual std::vector<double> shutter_times_s() = 0;                       // ascending, the times the camera offers
   virtual ExposureSettings configure(const ExposureSettings& wanted) = 0;  // returns what was read back
   virtual Picture capture() = 0;
 };

@@ -8,8 +8,8 @@ namespace rig {
 class Clock {
  public:
   virtual ~Clock() = default;
-  virtual double monotonic_s() = 0;     // seconds since an arbitrary start
-  virtual std::string utc() = 0;        // ISO 8601 with milliseconds, "2026-11-21T10:20:30.123Z"
+  virtual double monotonic_s() = 0;  // seconds since an arbitrary start
+  virtual std::string utc() = 0;     // ISO 8601 with milliseconds, "2026-11-21T10:20:30.123Z"
   virtual void sleep_s(double duration_s) = 0;
 };
 

@@ -20,27 +20,28 @@ namespace rig {
 struct TrueLens {
   int width_px = 600, height_px = 400;
   double fx_px = 2400, fy_px = 2400, cx_px = 299.5, cy_px = 199.5;
-  std::array<double, 5> distortion{};               // OpenCV k1 k2 p1 p2 k3
-  std::array<double, 2> vignetting{};               // gain = 1 + v0 r^2 + v1 r^4, r = distance to the image centre / half diagonal
+  std::array<double, 5> distortion{};  // OpenCV k1 k2 p1 p2 k3
+  std::array<double, 2> vignetting{};  // gain = 1 + v0 r^2 + v1 r^4, r = distance to the image centre / half diagonal
   Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();  // OpenCV axes, mm
 };
 
 struct TrueSensor {
   double black_level_dn = 512, white_level_dn = 16383;  // 14 bits
-  double full_well_e = 50000;    // electrons from black to white level at base ISO
+  double full_well_e = 50000;                           // electrons from black to white level at base ISO
   double read_noise_e = 5;
-  double dark_current_e_s = 2;   // electrons per second
+  double dark_current_e_s = 2;  // electrons per second
 };
 
 struct TrueTurntable {
-  double scale = 1.0;            // true angle / reading
-  double step_rad = 0.0;         // quantisation
+  double scale = 1.0;     // true angle / reading
+  double step_rad = 0.0;  // quantisation
   double speed_rad_s = 0.5;
 };
 
 struct TrueLamp {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // world, mm: where the operator put it
-  Eigen::Vector3d intensity = Eigen::Vector3d::Ones(); // RGB, radiance unit x mm^2 (irradiance at distance d facing: I / d^2)
+  Eigen::Vector3d intensity =
+      Eigen::Vector3d::Ones();  // RGB, radiance unit x mm^2 (irradiance at distance d facing: I / d^2)
   double radius_mm = 4;
 };
 
@@ -49,8 +50,9 @@ struct BenchTruth {
   TrueSensor sensor;
   TrueTurntable turntable;
   TrueLamp front, back;
-  Eigen::Vector3d room_radiance = Eigen::Vector3d::Constant(0.3);  // of a white diffuser under the room light, roughly
-  double placement_mm = 1.0;     // a hand places an object this well (standard deviation per axis)
+  Eigen::Vector3d room_radiance =
+      Eigen::Vector3d::Constant(0.3);  // of a white diffuser under the room light, roughly
+  double placement_mm = 1.0;           // a hand places an object this well (standard deviation per axis)
   double placement_rad = 0.01;
   std::uint64_t seed = 1;
 };
@@ -58,15 +60,16 @@ struct BenchTruth {
 // Everything that the radiance reaching the lens depends on, at one instant.
 struct BenchState {
   TrueLens lens;
-  Arrangement arrangement;                      // as asked
+  Arrangement arrangement;                                              // as asked
   Eigen::Isometry3d world_from_object = Eigen::Isometry3d::Identity();  // as it truly stands now
-  double platform_angle_rad = 0.0;              // true
+  double platform_angle_rad = 0.0;                                      // true
   std::optional<TrueLamp> lamp;
   Eigen::Vector3d room_radiance = Eigen::Vector3d::Zero();
 };
 
-// Radiance (RGB, radiance unit = full scale per second at the image centre) that falls on each pixel of the sensor, lens distortion included;
-// height x width. Vignetting, exposure, noise, mosaic and quantisation are the simulated camera's.
+// Radiance (RGB, radiance unit = full scale per second at the image centre) that falls on each pixel of the sensor,
+// lens distortion included; height x width. Vignetting, exposure, noise, mosaic and quantisation are the simulated
+// camera's.
 using DrawPicture = std::function<cv::Mat3f(const BenchState&)>;
 
 class SimulatedBench {
@@ -74,10 +77,11 @@ class SimulatedBench {
   SimulatedBench(BenchTruth truth, DrawPicture draw);
 
   const BenchTruth& truth() const { return truth_; }
-  BenchState state() const;                     // what is true now
+  BenchState state() const;  // what is true now
   cv::Mat3f draw() const { return draw_(state()); }
 
-  void place(const Arrangement& arrangement);   // with the placement error of a hand; deterministic for the truth's seed and the arrangement
+  void place(const Arrangement& arrangement);  // with the placement error of a hand; deterministic for the truth's
+                                               // seed and the arrangement
   void turn_platform(double true_angle_rad) { platform_angle_rad_ = true_angle_rad; }
 
  private:

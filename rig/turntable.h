@@ -9,10 +9,10 @@ enum class TurntableState { unknown_position, idle, moving, stopped };
 class Turntable {
  public:
   virtual ~Turntable() = default;
-  virtual void home() = 0;                        // makes the position known; angle 0 afterwards
-  virtual void move_to(double angle_rad) = 0;     // returns when the platform stands still at the nearest step
-  virtual void stop() = 0;                        // at once, from any thread or signal handler's follow-up
-  virtual double angle_rad() = 0;                 // as the device reads it
+  virtual void home() = 0;                     // makes the position known; angle 0 afterwards
+  virtual void move_to(double angle_rad) = 0;  // returns when the platform stands still at the nearest step
+  virtual void stop() = 0;                     // at once, from any thread or signal handler's follow-up
+  virtual double angle_rad() = 0;              // as the device reads it
   virtual TurntableState state() = 0;
 };
 

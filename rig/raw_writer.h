@@ -1,0 +1,32 @@
+// The file that the simulated camera delivers: an uncompressed TIFF-based Sony raw file, 14 bits in 16, that raw
+// readers take for one of an ILCE-7M2. The mosaic and the levels come back from a reader exactly as they are here.
+//
+// Layout: little endian; directory 0 names the camera and points to a sub-directory with the colour filter array and
+// Sony's own levels (0x7310 black, 0x7313 white balance, 0x787f white) and to an EXIF directory with the exposure. A
+// genuine camera writes compressed rows, masked margins and a maker note as well; none of these is imitated.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "rig/camera.h"
+
+namespace rig {
+
+struct RawFrame {
+  cv::Mat1w mosaic;  // rows x columns, DN; RGGB: (0, 0) red, (0, 1) and (1, 0) green, (1, 1) blue
+  std::uint16_t black_level_dn = 512;
+  std::uint16_t white_level_dn = 16383;
+  ExposureSettings settings;
+  std::string utc;     // as Clock::utc() gives it; EXIF dates have no zone, the file says UTC
+  std::string serial;  // of the body
+};
+
+// The bytes of the file. Throws std::runtime_error when there are no pixels, `utc` is not ISO 8601, or the settings
+// are not positive numbers.
+std::vector<std::byte> encode_raw(const RawFrame& frame);
+
+}  // namespace rig
