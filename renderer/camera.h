@@ -12,9 +12,9 @@ namespace renderer {
 struct Camera {
   int width = 600;
   int height = 400;
-  double fx = 600.0, fy = 600.0;             // focal lengths, pixels
-  double cx = 299.5, cy = 199.5;             // principal point, pixels
-  std::array<double, 5> distortion{};        // k1 k2 p1 p2 k3 (OpenCV order); zeros = ideal pinhole
+  double fx = 600.0, fy = 600.0;       // focal lengths, pixels
+  double cx = 299.5, cy = 199.5;       // principal point, pixels
+  std::array<double, 5> distortion{};  // k1 k2 p1 p2 k3 (OpenCV order); zeros = ideal pinhole
   Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
 };
 

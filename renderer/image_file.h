@@ -1,4 +1,5 @@
-// Pictures on disk through OpenImageIO: EXR (linear, float or half), PNG (8 bit) and TIFF. The only place that knows it.
+// Pictures on disk through OpenImageIO: EXR (linear, float or half), PNG (8 bit) and TIFF. The only place that knows
+// it.
 //
 // In memory a colour picture is cv::Mat3f, rows x columns x RGB (not BGR), linear.
 #pragma once
@@ -26,6 +27,7 @@ cv::Mat1b read_png_grey(const std::filesystem::path& file);
 std::string encode_png(const cv::Mat3b& rgb);
 
 // linear * scale, through a 3 x 3 matrix, clipped and sRGB-encoded for display.
-cv::Mat3b encode_srgb(const cv::Mat3f& linear, double scale, const cv::Matx33f& linear_srgb_from_camera = cv::Matx33f::eye());
+cv::Mat3b encode_srgb(const cv::Mat3f& linear, double scale,
+                      const cv::Matx33f& linear_srgb_from_camera = cv::Matx33f::eye());
 
 }  // namespace renderer

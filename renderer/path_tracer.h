@@ -15,10 +15,11 @@ namespace renderer {
 struct RenderOptions {
   int samples_per_pixel = 16;
   std::uint64_t seed = 1;
-  int max_vertices = 0;  // scattering vertices allowed (1 = direct light only); 0 = no limit, Russian roulette ends paths
-  int threads = 0;       // 0 = all cores
+  int max_vertices =
+      0;            // scattering vertices allowed (1 = direct light only); 0 = no limit, Russian roulette ends paths
+  int threads = 0;  // 0 = all cores
   // Called now and then from one thread with the finished fraction; returning false stops the rendering.
-  std::function<bool(double)> progress;
+  std::function<bool(double)> progress{};
 };
 
 // A scene committed to Embree, rendered as often as wanted.

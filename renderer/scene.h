@@ -12,24 +12,26 @@
 
 namespace renderer {
 
-// Closed set: how a curve scatters. Every alternative is a plain struct with free evaluate / sample / density functions.
+// Closed set: how a curve scatters. Every alternative is a plain struct with free evaluate / sample / density
+// functions.
 using ScatteringModel = std::variant<FiberParameters>;
 
 // Round uniform cubic B-spline curves that share one scattering model.
 struct CurveSet {
-  std::vector<Eigen::Vector4f> control_points;  // x, y, z, radius (mm)
-  std::vector<std::uint32_t> segments;          // index of the first of each segment's four control points
+  std::vector<Eigen::Vector4f> control_points{};  // x, y, z, radius (mm)
+  std::vector<std::uint32_t> segments{};          // index of the first of each segment's four control points
   ScatteringModel scattering = FiberParameters{};
 
-  // Appends one curve; its end points are repeated so that it reaches (clamped B-spline) its first and last point.
+  // Appends one curve of at least two points. Its end points are mirrored outwards, so that the B-spline starts at
+  // the first point and ends at the last with a tangent that is not zero; n points make n - 1 segments.
   void add_clamped_curve(const std::vector<Eigen::Vector4f>& points);
 };
 
 // Triangles with a Lambertian, optionally textured, two-sided surface.
 struct TriangleMesh {
-  std::vector<Eigen::Vector3f> vertices;                   // mm
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<Eigen::Vector2f> texture_coordinates;        // per vertex, (0, 0) = top left of the texture; may be empty
+  std::vector<Eigen::Vector3f> vertices{};  // mm
+  std::vector<std::array<std::uint32_t, 3>> triangles{};
+  std::vector<Eigen::Vector2f> texture_coordinates{};  // per vertex, (0, 0) = top left of the texture; may be empty
   cv::Mat3f albedo = cv::Mat3f(1, 1, cv::Vec3f(0, 0, 0));  // looked up at the nearest texel (crisp tags)
 };
 
@@ -42,9 +44,9 @@ struct SphereLight {
 };
 
 struct Scene {
-  std::vector<CurveSet> curves;
-  std::vector<TriangleMesh> meshes;
-  std::vector<SphereLight> lights;
+  std::vector<CurveSet> curves{};
+  std::vector<TriangleMesh> meshes{};
+  std::vector<SphereLight> lights{};
 };
 
 }  // namespace renderer

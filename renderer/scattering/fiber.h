@@ -1,17 +1,107 @@
-// Scattering of one dielectric fiber (Chiang et al. 2015): lobes R, TT, TRT and the remainder.
-// [the owner of this file completes the documentation; see models.md 1.1-1.6]
+// Scattering of one dielectric fiber (Chiang et al. 2015): lobes R, TT, TRT and the remainder of all longer paths.
+//
+//   parameter | unit              | default | differentiable
+//   eta       | -                 | 1.55    | yes   relative index of refraction
+//   sigma_a   | 1 / fiber radius  | 0       | yes   absorption, RGB
+//   beta_m    | 0.02 .. 1         | 0.3     | yes   longitudinal roughness (perceptual)
+//   beta_n    | 0.02 .. 1         | 0.3     | yes   azimuthal roughness (perceptual)
+//   tilt_rad  | rad               | 0       | yes   cuticle tilt; textile fibers have none
+//
+// f_cos includes the cosine (lobes.h). theta, h and the attenuations belong to the known direction o; the model is
+// not exactly reciprocal. Without absorption the attenuations sum to 1 for every h and theta. Tilt turns theta_o by
+// -2, +1, +4 tilts for R, TT, TRT. Deviations from pbrt-v4's implementation of the same model: an accurate Bessel
+// function and a sampling of the lobes that does not cut their tails.
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+
+#include "renderer/scattering/lobes.h"
 
 namespace renderer {
 
-struct FiberParameters {
-  double eta = 1.55;                                      // relative index of refraction
-  Eigen::Vector3d sigma_a = Eigen::Vector3d::Zero();      // absorption per fiber radius, RGB
-  double beta_m = 0.3;                                    // longitudinal roughness, 0.02..1
-  double beta_n = 0.3;                                    // azimuthal roughness, 0.02..1
-  double tilt_rad = 0.0;                                  // cuticle tilt
+template <class S>
+struct BasicFiberParameters {
+  S eta = S(1.55);                                         // relative index of refraction
+  Eigen::Matrix<S, 3, 1> sigma_a{S(0.0), S(0.0), S(0.0)};  // absorption per fiber radius, RGB
+  S beta_m = S(0.3);                                       // longitudinal roughness, 0.02..1
+  S beta_n = S(0.3);                                       // azimuthal roughness, 0.02..1
+  S tilt_rad = S(0.0);                                     // cuticle tilt
+};
+using FiberParameters = BasicFiberParameters<double>;
+
+// A_p of the four lobes (rows R, TT, TRT, remainder) from Fresnel reflectance f and transmittance t along one inner
+// chord.
+template <class S>
+Eigen::Array<S, 4, 3> fiber_attenuation(const S& f, const Rgb<S>& t) {
+  Eigen::Array<S, 4, 3> a;
+  for (int c = 0; c < 3; ++c) {
+    const S tf = t[c] * f;
+    const S through = (S(1.0) - f) * (S(1.0) - f) * t[c];
+    const S left = (S(1.0) - f) + f * (S(1.0) - t[c]);  // 1 - tf without cancellation; zero only where `through` is
+    a(0, c) = f;
+    a(1, c) = through;
+    a(2, c) = through * tf;
+    a(3, c) = left > S(1e-30) ? S(through * tf * tf / left) : S(0.0);
+  }
+  return a;
+}
+
+// Parameters with everything computed that does not depend on directions.
+template <class S>
+class FiberModel {
+ public:
+  explicit FiberModel(const BasicFiberParameters<S>& parameters)
+      : eta_(parameters.eta), sigma_a_(parameters.sigma_a.array()) {
+    using std::cos, std::sin;
+    const S v = longitudinal_variance(parameters.beta_m), s = azimuthal_scale(parameters.beta_n);
+    widths_.set(0, v, s);
+    widths_.set(1, S(0.25) * v, s);
+    widths_.set(2, S(4.0) * v, s);
+    widths_.set_uniform_azimuth(3, S(4.0) * v);
+    const S turns[4] = {S(-2.0) * parameters.tilt_rad, parameters.tilt_rad, S(4.0) * parameters.tilt_rad, S(0.0)};
+    for (int p = 0; p < 4; ++p) {
+      cos_turn_[p] = cos(turns[p]);
+      sin_turn_[p] = sin(turns[p]);
+    }
+  }
+
+  // The lobes seen from unit direction wo (local frame) at offset h = sin(gamma_o) in [-1, 1].
+  CurveLobes<S> lobes_at(const S& h, const Vec3<S>& wo) const {
+    using std::abs, std::asin, std::exp, std::sqrt;
+    const S sin_o = wo.x(), cos_o = sqrt(wo.y() * wo.y() + wo.z() * wo.z());
+    CurveLobes<S> lobes;
+    lobes.widths = &widths_;
+    if (cos_o > S(0.0)) {
+      lobes.azimuth_o = {wo.y() / cos_o, wo.z() / cos_o};
+    } else {
+      lobes.azimuth_o = {S(0.0), S(1.0)};
+    }
+    lobes.sin_theta_o = cos_turn_ * sin_o + sin_turn_ * cos_o;
+    lobes.cos_theta_o = (cos_turn_ * cos_o - sin_turn_ * sin_o).abs();
+
+    const S sin_gamma_t = h * cos_o / sqrt(eta_ * eta_ - sin_o * sin_o);  // Bravais: h / eta'
+    const S gamma_o = asin(h), gamma_t = asin(sin_gamma_t);
+    for (int p = 0; p < 3; ++p) lobes.center[p] = lobe_center(p, gamma_o, gamma_t);
+    lobes.center[3] = S(0.0);
+
+    const S cos_theta_t = sqrt(S(1.0) - sin_o * sin_o / (eta_ * eta_));
+    const S chord = S(2.0) * sqrt(S(1.0) - sin_gamma_t * sin_gamma_t) / cos_theta_t;  // in radii
+    const S cos_gamma_o = sqrt(S(1.0) - h * h);
+    lobes.attenuation =
+        fiber_attenuation(fresnel_dielectric<S>(cos_o * cos_gamma_o, eta_), Rgb<S>((sigma_a_ * -chord).exp()));
+    const Lanes<S> energy = lobes.attenuation.rowwise().sum();
+    lobes.probability = energy / energy.sum();
+    return lobes;
+  }
+
+  const LobeWidths<S>& widths() const { return widths_; }
+
+ private:
+  S eta_;
+  Rgb<S> sigma_a_;
+  LobeWidths<S> widths_;
+  Lanes<S> cos_turn_, sin_turn_;
 };
 
 }  // namespace renderer

@@ -1,0 +1,37 @@
+#include "renderer/fiber_bundle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <utility>
+
+namespace renderer {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+// In [0, 1); the standard distributions differ between libraries, the engine does not.
+double uniform(std::mt19937_64& engine) {
+  return static_cast<double>(engine() >> 11) * 0x1p-53;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector2d> pack_fibers(double thread_radius_mm, double fiber_radius_mm, double min_gap_mm,
+                                         int max_attempts, int max_fibers, std::uint64_t seed) {
+  std::vector<Eigen::Vector2d> centers;
+  const double reach = thread_radius_mm - fiber_radius_mm;
+  if (reach < 0) return centers;
+  const double apart = 2 * fiber_radius_mm + min_gap_mm;
+  std::mt19937_64 engine(seed);
+  for (int attempt = 0; attempt < max_attempts && std::cmp_less(centers.size(), max_fibers); ++attempt) {
+    const double radius = reach * std::sqrt(uniform(engine)), angle = 2 * kPi * uniform(engine);
+    const Eigen::Vector2d center(radius * std::cos(angle), radius * std::sin(angle));
+    const bool free = std::none_of(centers.begin(), centers.end(),
+                                   [&](const Eigen::Vector2d& other) { return (other - center).norm() < apart; });
+    if (free) centers.push_back(center);
+  }
+  return centers;
+}
+
+}  // namespace renderer

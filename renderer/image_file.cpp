@@ -1,0 +1,177 @@
+#include "renderer/image_file.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <vector>
+
+namespace renderer {
+namespace {
+
+namespace fs = std::filesystem;
+using Bytes = std::vector<unsigned char>;
+
+[[noreturn]] void fail(const std::string& asked, const std::string& found, const std::string& remedy) {
+  std::string line = asked + ": " + found + "; " + remedy;
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  throw std::runtime_error(line);
+}
+
+// A file that disappears again unless it is kept.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(fs::path path) : path_(std::move(path)) {
+    descriptor_ = ::open(path_.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0666);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!kept_) ::unlink(path_.c_str());
+  }
+
+  bool is_open() const { return descriptor_ >= 0; }
+  bool write_and_flush(const Bytes& bytes) {
+    for (std::size_t done = 0; done < bytes.size();) {
+      const ssize_t n = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
+      if (n < 0 && errno != EINTR) return false;
+      if (n > 0) done += static_cast<std::size_t>(n);
+    }
+    return ::fsync(descriptor_) == 0;
+  }
+  bool rename_to(const fs::path& target) {
+    kept_ = ::rename(path_.c_str(), target.c_str()) == 0;
+    return kept_;
+  }
+
+ private:
+  fs::path path_;
+  int descriptor_ = -1;
+  bool kept_ = false;
+};
+
+void flush_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+void write_atomically(const fs::path& file, const Bytes& bytes) {
+  const std::string asked = "writing picture " + file.string();
+  const std::string remedy = "check that the folder exists, is writable and has space";
+  TemporaryFile temporary(file.string() + "." + std::to_string(::getpid()) + ".partial");
+  if (!temporary.is_open() || !temporary.write_and_flush(bytes) || !temporary.rename_to(file)) {
+    fail(asked, std::strerror(errno), remedy);
+  }
+  flush_folder(file.parent_path());
+}
+
+// The bytes of a picture file, made in memory so that every failure of the disk is seen by write_atomically.
+Bytes encode(const std::string& format, const OIIO::ImageSpec& spec, const void* pixels, std::size_t row_stride) {
+  const auto output = OIIO::ImageOutput::create(format);
+  if (!output) fail("encoding a " + format + " picture", OIIO::geterror(), "reinstall OpenImageIO with that format");
+  Bytes bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  if (!output->set_ioproxy(&memory) || !output->open("memory." + format, spec) ||
+      !output->write_image(spec.format, pixels, OIIO::AutoStride, static_cast<OIIO::stride_t>(row_stride)) ||
+      !output->close()) {
+    fail("encoding a " + format + " picture", output->geterror(), "check its size");
+  }
+  return bytes;
+}
+
+template <class Pixel>
+Bytes encode_png_pixels(const cv::Mat_<Pixel>& image) {
+  OIIO::ImageSpec spec(image.cols, image.rows, image.channels(), OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  return encode("png", spec, image.data, image.step);
+}
+
+std::unique_ptr<OIIO::ImageInput> open_picture(const fs::path& file) {
+  const std::string asked = "reading picture " + file.string();
+  std::error_code error;
+  if (!fs::exists(file, error)) fail(asked, "there is no such file", "check the name");
+  auto input = OIIO::ImageInput::open(file.string());
+  if (!input) fail(asked, OIIO::geterror(), "it is damaged, cut short or not a picture: make it again");
+  return input;
+}
+
+template <class Pixel>
+cv::Mat_<Pixel> read_pixels(OIIO::ImageInput& input, const fs::path& file, OIIO::TypeDesc type) {
+  const OIIO::ImageSpec& spec = input.spec();
+  cv::Mat_<Pixel> image(spec.height, spec.width);
+  const int channels = image.channels();
+  if (spec.nchannels < channels) {
+    fail("reading picture " + file.string(),
+         "it has " + std::to_string(spec.nchannels) + " channels, not " + std::to_string(channels),
+         "give another file");
+  }
+  if (!input.read_image(0, 0, 0, channels, type, image.data)) {
+    fail("reading picture " + file.string(), input.geterror(), "it is damaged or cut short: make it again");
+  }
+  return image;
+}
+
+float srgb_encoded(float linear) {
+  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+}
+
+}  // namespace
+
+void write_exr(const fs::path& file, const cv::Mat3f& linear, const ImageHeader& header) {
+  OIIO::ImageSpec spec(linear.cols, linear.rows, 3, OIIO::TypeDesc::FLOAT);
+  spec.attribute("compression", "zip");
+  for (const auto& [name, text] : header) spec.attribute(name, text);
+  write_atomically(file, encode("exr", spec, linear.data, linear.step));
+}
+
+cv::Mat3f read_exr(const fs::path& file, ImageHeader* header) {
+  const auto input = open_picture(file);
+  cv::Mat3f image = read_pixels<cv::Vec3f>(*input, file, OIIO::TypeDesc::FLOAT);
+  if (header) {
+    header->clear();
+    for (const auto& attribute : input->spec().extra_attribs) {
+      if (attribute.type() == OIIO::TypeDesc::STRING) (*header)[attribute.name().string()] = attribute.get_string();
+    }
+  }
+  return image;
+}
+
+void write_png(const fs::path& file, const cv::Mat1b& grey) {
+  write_atomically(file, encode_png_pixels(grey));
+}
+void write_png(const fs::path& file, const cv::Mat3b& rgb) {
+  write_atomically(file, encode_png_pixels(rgb));
+}
+
+cv::Mat1b read_png_grey(const fs::path& file) {
+  return read_pixels<uchar>(*open_picture(file), file, OIIO::TypeDesc::UINT8);
+}
+
+std::string encode_png(const cv::Mat3b& rgb) {
+  const Bytes bytes = encode_png_pixels(rgb);
+  return {bytes.begin(), bytes.end()};
+}
+
+cv::Mat3b encode_srgb(const cv::Mat3f& linear, double scale, const cv::Matx33f& linear_srgb_from_camera) {
+  cv::Mat3b encoded(linear.size());
+  const cv::Matx33f matrix = linear_srgb_from_camera * static_cast<float>(scale);
+  encoded.forEach([&](cv::Vec3b& pixel, const int* position) {
+    const cv::Vec3f value = matrix * linear(position[0], position[1]);
+    for (int c = 0; c < 3; ++c) {
+      const float clipped = std::isnan(value[c]) ? 0.0f : std::clamp(value[c], 0.0f, 1.0f);
+      pixel[c] = static_cast<uchar>(std::lround(255 * srgb_encoded(clipped)));
+    }
+  });
+  return encoded;
+}
+
+}  // namespace renderer

@@ -1,0 +1,78 @@
+#include "renderer/path_vertex.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace renderer {
+namespace {
+
+using Eigen::Matrix3f;
+using Eigen::Vector3f;
+constexpr float kInvPi = static_cast<float>(1 / kPi);
+
+Matrix3f frame_rows(const Vector3f& x, const Vector3f& y, const Vector3f& z) {
+  Matrix3f rows;
+  rows.row(0) = x, rows.row(1) = y, rows.row(2) = z;
+  return rows;
+}
+
+// Offset of the viewing ray: the angle from the surface normal (local z) to wo in the normal plane is gamma_o.
+float offset(const Vector3f& wo) {
+  const float radial = std::hypot(wo.y(), wo.z());
+  return radial > 0 ? std::clamp(-wo.y() / radial, -1.0f, 1.0f) : 0.0f;
+}
+
+FiberModel<float> prepare(const FiberParameters& p) {
+  return FiberModel<float>({static_cast<float>(p.eta), p.sigma_a.cast<float>(), static_cast<float>(p.beta_m),
+                            static_cast<float>(p.beta_n), static_cast<float>(p.tilt_rad)});
+}
+
+}  // namespace
+
+std::vector<CurveModel> prepare_curve_models(const std::vector<CurveSet>& curves) {
+  std::vector<CurveModel> models;
+  for (const CurveSet& set : curves) {
+    models.push_back(
+        std::visit([](const auto& parameters) { return CurveModel(prepare(parameters)); }, set.scattering));
+  }
+  return models;
+}
+
+PathVertex::PathVertex(const SurfaceHit& hit, const Vector3f& wo, const std::vector<CurveModel>& models) {
+  if (const auto* curve = std::get_if<CurvePoint>(&hit.point)) {
+    is_curve_ = true;
+    position_ = curve->position;
+    local_from_world_ = frame_rows(curve->tangent, curve->normal.cross(curve->tangent), curve->normal);
+    const Vector3f local = local_from_world_ * wo;
+    const float h = offset(local);
+    lobes_ = std::visit([&](const auto& model) { return model.lobes_at(h, local); }, models[curve->curve_set]);
+  } else {
+    const auto& mesh = std::get<MeshPoint>(hit.point);
+    is_curve_ = false;
+    position_ = mesh.position;
+    albedo_ = mesh.albedo;
+    const Vector3f side = mesh.normal.unitOrthogonal();
+    local_from_world_ = frame_rows(side, mesh.normal.cross(side), mesh.normal);
+  }
+}
+
+ScatteringValue<float> PathVertex::evaluate(const Vector3f& wi) const {
+  if (is_curve_) return lobes_.evaluate(local_from_world_ * wi);
+  const float cosine = std::max(0.0f, local_from_world_.row(2).dot(wi)) * kInvPi;
+  return {albedo_ * cosine, cosine};
+}
+
+Vector3f PathVertex::sample(Sampler& sampler) const {
+  const Eigen::Vector2f u = sampler.next_2d();
+  Vector3f local;
+  if (is_curve_) {
+    const Eigen::Vector2f u_angles = sampler.next_2d();
+    local = lobes_.sample(u.x(), u.y(), u_angles.x(), u_angles.y());
+  } else {
+    const float radius = std::sqrt(u.x()), phi = static_cast<float>(2 * kPi) * u.y();
+    local = {radius * std::cos(phi), radius * std::sin(phi), std::sqrt(1 - u.x())};
+  }
+  return (local_from_world_.transpose() * local).normalized();
+}
+
+}  // namespace renderer

@@ -1,0 +1,35 @@
+// One scattering event of a path: a curve or a diffuse surface, hit by a ray, ready to be evaluated and sampled in
+// world directions. Made once per hit; light sampling and scattering sampling share its state.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "renderer/ray_scene.h"
+#include "renderer/sampler.h"
+#include "renderer/scattering/fiber.h"
+
+namespace renderer {
+
+// The scattering models of a scene's curve sets, in float and with everything precomputed.
+using CurveModel = std::variant<FiberModel<float>>;
+std::vector<CurveModel> prepare_curve_models(const std::vector<CurveSet>& curves);
+
+class PathVertex {
+ public:
+  // `wo`: unit direction back along the ray. The models must outlive the vertex.
+  PathVertex(const SurfaceHit& hit, const Eigen::Vector3f& wo, const std::vector<CurveModel>& models);
+
+  ScatteringValue<float> evaluate(const Eigen::Vector3f& wi) const;
+  Eigen::Vector3f sample(Sampler& sampler) const;
+  const Eigen::Vector3f& position() const { return position_; }  // where scattered rays start
+
+ private:
+  Eigen::Vector3f position_;
+  Eigen::Matrix3f local_from_world_;  // curve: tangent, side, normal; surface: z = normal
+  Eigen::Array3f albedo_;             // diffuse surfaces
+  bool is_curve_;
+  CurveLobes<float> lobes_;  // curves
+};
+
+}  // namespace renderer

@@ -1,0 +1,27 @@
+#include "renderer/pixel_rays.h"
+
+namespace renderer {
+
+PixelRays::PixelRays(const Camera& camera, int column, int row, int width, int height)
+    : column_(column), row_(row), width_(width), origin_(camera.world_from_camera.translation()) {
+  const Eigen::Vector3d forward = camera.world_from_camera.linear().col(2);
+  corners_.reserve(static_cast<std::size_t>(width + 1) * static_cast<std::size_t>(height + 1));
+  for (int y = 0; y <= height; ++y) {
+    for (int x = 0; x <= width; ++x) {
+      const Eigen::Vector3d direction = ray_through(camera, column + x - 0.5, row + y - 0.5).direction;
+      corners_.push_back(direction / direction.dot(forward));
+    }
+  }
+}
+
+CameraRay PixelRays::at(int column, int row, const Eigen::Vector2f& u) const {
+  const auto stride = static_cast<std::size_t>(width_ + 1);
+  const Eigen::Vector3d* corner =
+      &corners_[static_cast<std::size_t>(row - row_) * stride + static_cast<std::size_t>(column - column_)];
+  const double x = static_cast<double>(u.x()), y = static_cast<double>(u.y());
+  const Eigen::Vector3d top = corner[0] + x * (corner[1] - corner[0]);
+  const Eigen::Vector3d bottom = corner[stride] + x * (corner[stride + 1] - corner[stride]);
+  return {origin_, (top + y * (bottom - top)).normalized()};
+}
+
+}  // namespace renderer

@@ -1,0 +1,24 @@
+// Directions of camera rays over one tile of a picture: the lens is inverted at pixel corners only and interpolated
+// inside pixels, where its curvature is below 1e-4 pixel.
+#pragma once
+
+#include <vector>
+
+#include "renderer/camera.h"
+
+namespace renderer {
+
+class PixelRays {
+ public:
+  // Pixels [column, column + width) x [row, row + height).
+  PixelRays(const Camera& camera, int column, int row, int width, int height);
+  // Ray through pixel (column, row) at offset u in [0, 1)^2 inside it; (0.5, 0.5) is its centre.
+  CameraRay at(int column, int row, const Eigen::Vector2f& u) const;
+
+ private:
+  int column_, row_, width_;
+  Eigen::Vector3d origin_;
+  std::vector<Eigen::Vector3d> corners_;  // directions scaled to camera z = 1, row-major, (height + 1) x (width + 1)
+};
+
+}  // namespace renderer

@@ -1,0 +1,69 @@
+// A Scene inside Embree: nearest hits and occlusion, with the surface frame at a hit.
+//
+// Curves are seen from outside only: a ray that is inside a curve leaves it without a hit, because the scattering
+// models describe everything that happens between entering and leaving a fiber.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "renderer/scene.h"
+
+struct RTCDeviceTy;
+struct RTCSceneTy;
+
+namespace renderer {
+
+struct Ray {
+  Eigen::Vector3f origin;
+  Eigen::Vector3f direction;  // unit
+};
+
+struct CurvePoint {
+  std::uint32_t curve_set;
+  Eigen::Vector3f
+      position;  // just below the surface, where scattered rays start: they cannot meet the same spot again
+  Eigen::Vector3f tangent, normal;  // unit, perpendicular to each other; normal points outwards
+};
+
+struct MeshPoint {
+  std::uint32_t mesh;
+  Eigen::Vector3f position;
+  Eigen::Vector3f normal;  // unit, towards the ray's origin
+  Eigen::Array3f albedo;
+};
+
+struct SurfaceHit {
+  float distance;  // mm
+  std::variant<CurvePoint, MeshPoint> point;
+};
+
+class RayScene {
+ public:
+  explicit RayScene(Scene scene);
+
+  std::optional<SurfaceHit> intersect(const Ray& ray) const;
+  // True when anything lies within `distance` along the ray.
+  bool occluded(const Ray& ray, float distance) const;
+  // True when the first hit is on a curve.
+  bool meets_curve_first(const Ray& ray) const;
+
+  const Eigen::AlignedBox3d& bounds() const { return bounds_; }
+  const Scene& scene() const { return scene_; }
+
+ private:
+  void add_curves(const CurveSet& curves);
+  void add_mesh(const TriangleMesh& mesh);
+  CurvePoint curve_point(std::uint32_t set, std::uint32_t segment, float u, const Eigen::Vector3f& hit_normal) const;
+  MeshPoint mesh_point(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Ray& ray) const;
+
+  Scene scene_;
+  std::shared_ptr<RTCDeviceTy> device_;
+  std::shared_ptr<RTCSceneTy> embree_;
+  Eigen::AlignedBox3d bounds_;  // empty for a scene without surfaces
+};
+
+}  // namespace renderer

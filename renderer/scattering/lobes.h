@@ -1,0 +1,197 @@
+// Lobes shared by all curve scattering models: longitudinal M_p, azimuthal N_p, Fresnel, roughness maps.
+//
+// Local frame of a curve: x along the tangent, (y, z) the normal plane; theta is measured from the normal plane
+// (sin theta = w.x), phi = atan2(w.z, w.y). Directions are unit and point away from the curve. `o` is the direction
+// for which the offset h is known (while tracing: towards the viewer), `i` the other one. gamma_o = asin(h).
+//
+// Value convention: f_cos = sum_p M_p(theta_i, theta_o) N_p(phi) A_p, which contains the cosine and integrates to
+// sum_p A_p over the sphere of directions i. Multiply radiance by f_cos / pdf, with no further cosine.
+//
+// Sources: d'Eon et al. 2011 (M_p), Chiang et al. 2015 (N_p, roughness maps). Everything is templated on the scalar
+// S: float for rendering, double, or dual numbers for derivatives with respect to parameters.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "renderer/scattering/bessel.h"
+
+namespace renderer {
+
+inline constexpr double kPi = 3.14159265358979323846;
+
+template <class S>
+using Lanes = Eigen::Array<S, 4, 1>;  // one value per lobe; models with fewer lobes leave the last ones at zero
+template <class S>
+using Rgb = Eigen::Array<S, 3, 1>;
+template <class S>
+using Vec3 = Eigen::Matrix<S, 3, 1>;
+
+template <class S>
+S power(const S& base, int exponent) {  // exponent >= 0, by squaring
+  if (exponent == 0) return S(1.0);
+  const S half = power<S>(base, exponent / 2);
+  return exponent % 2 ? half * half * base : half * half;
+}
+
+// Variance v of the longitudinal lobe from perceptual roughness in 0..1.
+template <class S>
+S longitudinal_variance(const S& beta_m) {
+  const S root = S(0.726) * beta_m + S(0.812) * beta_m * beta_m + S(3.7) * power(beta_m, 20);
+  return root * root;
+}
+
+// Scale s of the azimuthal logistic lobe from perceptual roughness in 0..1.
+template <class S>
+S azimuthal_scale(const S& beta_n) {
+  return S(std::sqrt(kPi / 8)) * (S(0.265) * beta_n + S(1.194) * beta_n * beta_n + S(5.372) * power(beta_n, 22));
+}
+
+// Unpolarised reflectance of a smooth dielectric seen from outside; cos_i in 0..1.
+template <class S>
+S fresnel_dielectric(const S& cos_i, const S& eta) {
+  using std::sqrt;
+  const S sin2_t = (S(1.0) - cos_i * cos_i) / (eta * eta);
+  if (!(sin2_t < S(1.0))) return S(1.0);
+  const S cos_t = sqrt(S(1.0) - sin2_t);
+  const S parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+  const S perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+  return S(0.5) * (parallel * parallel + perpendicular * perpendicular);
+}
+
+// Azimuth of the centre of lobe p relative to phi_o, within [-pi, pi].
+template <class S>
+S lobe_center(int p, const S& gamma_o, const S& gamma_t) {
+  using std::floor;
+  const S center = S(2.0 * p) * gamma_t - S(2.0) * gamma_o + S(p * kPi);
+  return center - S(2 * kPi) * floor((center + S(kPi)) * S(0.5 / kPi));
+}
+
+// Everything about the lobes' widths, which does not depend on directions.
+template <class S>
+struct LobeWidths {
+  Lanes<S> v, s;  // longitudinal variance, azimuthal scale
+  Lanes<S> inv_v, inv_s;
+  Lanes<S> m_span;          // 1 - exp(-2 / v)
+  Lanes<S> m_norm, n_norm;  // 1 / (v m_span); 1 / (s tanh(pi / 2s))
+  Lanes<S> n_span;          // tanh(pi / 2s)
+
+  void set(int p, const S& variance, const S& scale) {
+    using std::expm1, std::tanh;
+    v[p] = variance;
+    inv_v[p] = S(1.0) / variance;
+    m_span[p] = -expm1(S(-2.0) * inv_v[p]);
+    m_norm[p] = inv_v[p] / m_span[p];
+    s[p] = scale;
+    inv_s[p] = S(1.0) / scale;
+    n_span[p] = tanh(S(kPi / 2) * inv_s[p]);
+    n_norm[p] = inv_s[p] / n_span[p];
+  }
+  // Uniform in azimuth: the logistic's limit for large s, in the form that needs no limit.
+  void set_uniform_azimuth(int p, const S& variance) {
+    set(p, variance, S(1.0));
+    inv_s[p] = S(0.0);
+    n_norm[p] = S(2.0 / kPi);
+  }
+  template <class T>
+  LobeWidths<T> cast() const {
+    return {v.template cast<T>(),      s.template cast<T>(),      inv_v.template cast<T>(),
+            inv_s.template cast<T>(),  m_span.template cast<T>(), m_norm.template cast<T>(),
+            n_norm.template cast<T>(), n_span.template cast<T>()};
+  }
+};
+
+template <class S>
+struct ScatteringValue {
+  Rgb<S> f_cos;  // includes the cosine
+  S pdf;         // of sampling this direction, per solid angle
+};
+
+// The lobes as seen from one direction o with offset h; made by a model (fiber.h) once per hit, then evaluated and
+// sampled as often as wanted. Refers to the model's widths: must not outlive it.
+template <class S>
+struct CurveLobes {
+  const LobeWidths<S>* widths = nullptr;
+  Eigen::Matrix<S, 2, 1> azimuth_o;   // unit (y, z) of direction o
+  Lanes<S> sin_theta_o, cos_theta_o;  // after the cuticle tilt
+  Lanes<S> center;                    // Phi_p, within [-pi, pi]
+  Eigen::Array<S, 4, 3> attenuation;  // A_p, RGB
+  Lanes<S> probability;               // of choosing lobe p when sampling; sums to 1
+
+  ScatteringValue<S> evaluate(const Vec3<S>& wi) const {
+    const Lanes<S> density = lobe_densities(wi);
+    ScatteringValue<S> value;
+    for (int c = 0; c < 3; ++c) value.f_cos[c] = (density * attenuation.col(c)).sum();
+    value.pdf = (density * probability).sum();
+    return value;
+  }
+
+  // M_p N_p of each lobe: its density over solid angle.
+  Lanes<S> lobe_densities(const Vec3<S>& wi) const {
+    using std::atan2, std::sqrt;
+    const S cos_theta_i = sqrt(wi.y() * wi.y() + wi.z() * wi.z());
+    const S phi = cos_theta_i > S(0.0) ? S(atan2(azimuth_o.x() * wi.z() - azimuth_o.y() * wi.y(),
+                                                 azimuth_o.x() * wi.y() + azimuth_o.y() * wi.z()))
+                                       : S(0.0);
+    return longitudinal(wi.x(), cos_theta_i) * azimuthal(phi);
+  }
+
+  // M = exp(-b) I0(a) / (2 v sinh(1/v)) with a = cos cos / v, b = sin sin / v. The exponentials are merged into the
+  // squared distance of the two directions across the specular cone, which stays exact in float for small v.
+  Lanes<S> longitudinal(const S& sin_theta_i, const S& cos_theta_i) const {
+    const Lanes<S> distance2 = (cos_theta_o - cos_theta_i).square() + (sin_theta_o + sin_theta_i).square();
+    const Lanes<S> a = cos_theta_o * widths->inv_v * cos_theta_i;
+    return widths->m_norm * (distance2 * widths->inv_v * S(-0.5)).exp() * bessel_i0e(a);
+  }
+
+  // Logistic trimmed to [-pi, pi] around each centre.
+  Lanes<S> azimuthal(const S& phi) const {
+    const Lanes<S> straight = (center - phi).abs();
+    const Lanes<S> x = straight.min(Lanes<S>(S(2 * kPi) - straight));
+    const Lanes<S> e = (-x * widths->inv_s).exp();
+    return widths->n_norm * e / (e + S(1.0)).square();
+  }
+
+  // A direction i with density evaluate(i).pdf; u in [0, 1).
+  Vec3<S> sample(const S& u_lobe, const S& u_theta, const S& u_ring, const S& u_phi) const {
+    using std::cos, std::sin, std::sqrt;
+    const int p = choose_lobe(u_lobe);
+    const S sin_theta_i = sample_longitudinal(p, u_theta, u_ring);
+    const S cos_theta_i = sqrt(S(1.0) - sin_theta_i * sin_theta_i);
+    const S phi = center[p] + sample_azimuthal(p, u_phi);
+    const S c = cos(phi) * cos_theta_i, s = sin(phi) * cos_theta_i;
+    return {sin_theta_i, azimuth_o.x() * c - azimuth_o.y() * s, azimuth_o.x() * s + azimuth_o.y() * c};
+  }
+
+  int choose_lobe(S u) const {
+    for (int p = 0; p < 3; ++p) {
+      if (u < probability[p]) return p;
+      u -= probability[p];
+    }
+    return probability[3] > S(0.0) ? 3 : 0;  // rounding can leave a little u over for models of three lobes
+  }
+
+  // d'Eon 2013: a cone angle around the specular cone and a position on it.
+  S sample_longitudinal(int p, const S& u_theta, const S& u_ring) const {
+    using std::cos, std::log1p, std::sqrt;
+    S one_minus_cos = -widths->v[p] * log1p(-(S(1.0) - u_theta) * widths->m_span[p]);
+    if (!(one_minus_cos < S(2.0))) one_minus_cos = S(2.0);
+    const S sine = sqrt(one_minus_cos * (S(2.0) - one_minus_cos));
+    const S sin_theta_i =
+        (one_minus_cos - S(1.0)) * sin_theta_o[p] + sine * cos(S(2 * kPi) * u_ring) * cos_theta_o[p];
+    if (sin_theta_i > S(1.0)) return S(1.0);
+    return sin_theta_i < S(-1.0) ? S(-1.0) : sin_theta_i;
+  }
+
+  S sample_azimuthal(int p, const S& u) const {
+    using std::log;
+    const S centered = S(2.0) * u - S(1.0);
+    if (widths->inv_s[p] == S(0.0)) return S(kPi) * centered;
+    const S t = centered * widths->n_span[p];
+    const S x = widths->s[p] * log((S(1.0) + t) / (S(1.0) - t));
+    if (x > S(kPi)) return S(kPi);
+    return x < S(-kPi) ? S(-kPi) : x;
+  }
+};
+
+}  // namespace renderer

@@ -1,0 +1,26 @@
+#include "renderer/scene.h"
+
+#include <cassert>
+
+namespace renderer {
+namespace {
+
+// The point that makes a uniform cubic B-spline start at `end`, in the direction of `neighbour`.
+Eigen::Vector4f mirrored(const Eigen::Vector4f& end, const Eigen::Vector4f& neighbour) {
+  Eigen::Vector4f point = 2 * end - neighbour;
+  point.w() = std::max(point.w(), 0.0f);
+  return point;
+}
+
+}  // namespace
+
+void CurveSet::add_clamped_curve(const std::vector<Eigen::Vector4f>& points) {
+  assert(points.size() >= 2);
+  const auto first = static_cast<std::uint32_t>(control_points.size());
+  control_points.push_back(mirrored(points[0], points[1]));
+  control_points.insert(control_points.end(), points.begin(), points.end());
+  control_points.push_back(mirrored(points.back(), points[points.size() - 2]));
+  for (std::uint32_t i = 0; i + 1 < points.size(); ++i) segments.push_back(first + i);
+}
+
+}  // namespace renderer

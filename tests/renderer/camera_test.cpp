@@ -1,0 +1,54 @@
+#include "renderer/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/calib3d.hpp>
+
+namespace renderer {
+namespace {
+
+Camera distorted_camera() {
+  Camera camera = look_at({500, 40, 120}, {0, 0, 60}, {0, 0, 1});
+  camera.fx = 1010, camera.fy = 1005, camera.cx = 310, camera.cy = 190;
+  camera.distortion = {-0.12, 0.05, 1e-3, -8e-4, 0.01};
+  return camera;
+}
+
+TEST(CameraTest, RayThroughAPixelProjectsBackToThatPixel) {
+  const Camera camera = distorted_camera();
+  for (double row : {-0.5, 0.0, 120.3, 399.5}) {
+    for (double column : {-0.5, 10.0, 333.3, 599.5}) {
+      const CameraRay ray = ray_through(camera, column, row);
+      EXPECT_NEAR(ray.direction.norm(), 1, 1e-12);
+      const Eigen::Vector2d pixel = project(camera, ray.origin + 321 * ray.direction);
+      EXPECT_NEAR(pixel.x(), column, 1e-9);  // the lens is inverted to rounding
+      EXPECT_NEAR(pixel.y(), row, 1e-9);
+    }
+  }
+}
+
+TEST(CameraTest, ProjectionIsOpenCvsProjection) {
+  const Camera camera = distorted_camera();
+  const Eigen::Vector3d point(12, -30, 70);
+  const Eigen::Isometry3d camera_from_world = camera.world_from_camera.inverse();
+  const Eigen::Vector3d in_camera = camera_from_world * point;
+  std::vector<cv::Point2d> expected;
+  const cv::Matx33d intrinsics(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
+  cv::projectPoints(std::vector<cv::Point3d>{{in_camera.x(), in_camera.y(), in_camera.z()}}, cv::Vec3d(), cv::Vec3d(),
+                    intrinsics, std::vector<double>(camera.distortion.begin(), camera.distortion.end()), expected);
+  const Eigen::Vector2d pixel = project(camera, point);
+  EXPECT_NEAR(pixel.x(), expected[0].x, 1e-9);
+  EXPECT_NEAR(pixel.y(), expected[0].y, 1e-9);
+}
+
+TEST(CameraTest, LookAtCentresTheTargetWithUpUpwards) {
+  Camera camera = look_at({500, 40, 120}, {0, 0, 60}, {0, 0, 1});
+  const Eigen::Vector2d target = project(camera, {0, 0, 60});
+  EXPECT_NEAR(target.x(), camera.cx, 1e-9);
+  EXPECT_NEAR(target.y(), camera.cy, 1e-9);
+  EXPECT_LT(project(camera, {0, 0, 70}).y(), target.y());  // rows grow downwards
+  EXPECT_NEAR(camera.world_from_camera.linear().determinant(), 1, 1e-12);
+}
+
+}  // namespace
+}  // namespace renderer

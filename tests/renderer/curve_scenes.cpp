@@ -1,0 +1,59 @@
+#include "curve_scenes.h"
+
+#include <cmath>
+
+namespace renderer {
+namespace {
+
+Camera camera_with_frame_width(double width_mm) {
+  Camera camera = look_at({0, 0, 400}, {0, 0, 0}, {0, 1, 0});
+  camera.width = 512, camera.height = 384;
+  camera.fx = camera.fy = 512 * 400 / width_mm;
+  camera.cx = 255.5, camera.cy = 191.5;
+  return camera;
+}
+
+SphereLight light() {
+  const double radiance = 10 * 400 * 400 / (kPi * 25);
+  return {.center = 400 * Eigen::Vector3d(0, std::sin(kPi / 6), std::cos(kPi / 6)),
+          .radius_mm = 5,
+          .radiance = Eigen::Vector3d::Constant(radiance)};
+}
+
+FiberParameters material() {
+  return {.sigma_a = {0.1, 0.3, 0.8}};
+}
+
+}  // namespace
+
+CurveScene parallel_threads_scene() {
+  CurveSet threads{.scattering = material()};
+  for (int i = 0; i < 50; ++i) {
+    const float y = static_cast<float>((i - 24.5) * 0.3);
+    threads.add_clamped_curve({{-30, y, 0, 0.15f}, {30, y, 0, 0.15f}});
+  }
+  return {{.curves = {threads}, .lights = {light()}}, camera_with_frame_width(20)};
+}
+
+CurveScene plain_weave_scene() {
+  constexpr int kYarns = 200, kSegments = 4;  // segments per crossing
+  // A uniform cubic B-spline through samples of a cosine: its control points are the samples, amplified.
+  const double amplitude = 0.15 * 6 / (4 + 2 * std::cos(kPi / kSegments));
+  CurveSet yarns{.scattering = material()};
+  for (const bool warp : {false, true}) {
+    for (int i = 0; i < kYarns; ++i) {
+      const double across = (i - 99.5) * 0.45;
+      const auto first = static_cast<std::uint32_t>(yarns.control_points.size());
+      for (int k = -1; k <= kYarns * kSegments + 1; ++k) {
+        const double t = static_cast<double>(k) / kSegments, along = -45 + 0.45 * t;
+        const double z = (warp ? -1 : 1) * amplitude * std::cos(kPi * (t - 0.5) + kPi * i);
+        const Eigen::Vector3d point = warp ? Eigen::Vector3d(across, along, z) : Eigen::Vector3d(along, across, z);
+        yarns.control_points.emplace_back(point.x(), point.y(), point.z(), 0.15);
+        if (k + 2 <= kYarns * kSegments) yarns.segments.push_back(first + static_cast<std::uint32_t>(k + 1));
+      }
+    }
+  }
+  return {{.curves = {yarns}, .lights = {light()}}, camera_with_frame_width(90)};
+}
+
+}  // namespace renderer

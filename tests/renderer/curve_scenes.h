@@ -1,0 +1,17 @@
+// The two scenes of fixtures/reference/README.md.
+#pragma once
+
+#include "renderer/camera.h"
+#include "renderer/scene.h"
+
+namespace renderer {
+
+struct CurveScene {
+  Scene scene;
+  Camera camera;
+};
+
+CurveScene parallel_threads_scene();  // scene a: 50 touching straight threads
+CurveScene plain_weave_scene();       // scene b: 200 x 200 woven yarns
+
+}  // namespace renderer
