@@ -1,4 +1,7 @@
 // The part of a session that a person does: what stands on the bench, where the flashlight is, the room's light.
+//
+// World frame: +z up along the platform's axis, +x towards the camera, so +y is to the right as the camera sees it.
+// Frame of the board and the Spectralon target: +z out of the face, +x right and +y up for who looks at the face.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -22,10 +25,16 @@ struct Arrangement {
   bool room_light = false;
 };
 
+// True when a person has nothing to do between the two: a pose counts to a millionth, the mounting only for the
+// holder, and neither when nothing stands there.
 bool same_arrangement(const Arrangement& a, const Arrangement& b);
 
-// One sentence per thing to do, for a person: from what stands now to what is wanted.
+// One sentence per thing to do, for a person: from what stands now to what is wanted; empty when nothing is to be
+// done.
 std::string instruction(const Arrangement& from, const Arrangement& to);
+
+// The same when it is not known what stands now: every part of the arrangement is said.
+std::string full_instruction(const Arrangement& to);
 
 class Operator {
  public:

@@ -25,8 +25,9 @@ using Directory = std::vector<Field>;
 
 template <typename T>
 void append(std::vector<std::byte>& bytes, T value) {
-  const auto raw = std::bit_cast<std::array<std::byte, sizeof(T)>>(value);
-  bytes.insert(bytes.end(), raw.begin(), raw.end());
+  for (const std::byte byte : std::bit_cast<std::array<std::byte, sizeof(T)>>(value)) {
+    bytes.push_back(byte);
+  }
 }
 
 template <typename T>

@@ -21,10 +21,14 @@ struct TrueLens {
   int width_px = 600, height_px = 400;
   double fx_px = 2400, fy_px = 2400, cx_px = 299.5, cy_px = 199.5;
   std::array<double, 5> distortion{};  // OpenCV k1 k2 p1 p2 k3
-  std::array<double, 2> vignetting{};  // gain = 1 + v0 r^2 + v1 r^4, r = distance to the image centre / half diagonal
+  // gain = 1 + v0 r^2 + v1 r^4, r = distance to the image centre ((w - 1) / 2, (h - 1) / 2) / half diagonal hypot(w,
+  // h) / 2
+  std::array<double, 2> vignetting{};
   Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();  // OpenCV axes, mm
 };
 
+// A pixel's value = black level + (Poisson(photo + dark electrons) + normal(0, read noise)) * gain, rounded and kept
+// within 0 and the white level; gain = ISO / 100 * (white - black) / full well [DN per electron].
 struct TrueSensor {
   double black_level_dn = 512, white_level_dn = 16383;  // 14 bits
   double full_well_e = 50000;                           // electrons from black to white level at base ISO
@@ -67,9 +71,13 @@ struct BenchState {
   Eigen::Vector3d room_radiance = Eigen::Vector3d::Zero();
 };
 
-// Radiance (RGB, radiance unit = full scale per second at the image centre) that falls on each pixel of the sensor,
-// lens distortion included; height x width. Vignetting, exposure, noise, mosaic and quantisation are the simulated
-// camera's.
+// True when a drawing of `a` is a drawing of `b`; the lens is left out, a bench has only one.
+bool same_state(const BenchState& a, const BenchState& b);
+
+// Radiance (RGB, radiance unit = full scale per second at the image centre, base ISO and f/8) that falls on each
+// pixel of the sensor, lens distortion included; height x width. Vignetting, exposure, noise, mosaic and quantisation
+// are the simulated camera's; values below zero count as no light. What it throws reaches whoever asked for the
+// picture.
 using DrawPicture = std::function<cv::Mat3f(const BenchState&)>;
 
 class SimulatedBench {
@@ -80,8 +88,9 @@ class SimulatedBench {
   BenchState state() const;  // what is true now
   cv::Mat3f draw() const { return draw_(state()); }
 
-  void place(const Arrangement& arrangement);  // with the placement error of a hand; deterministic for the truth's
-                                               // seed and the arrangement
+  // With the placement error of a hand, which depends only on the truth's seed and on the object, its mounting and
+  // pose (not on the lights): asked again for the same, the hand places it the same.
+  void place(const Arrangement& arrangement);
   void turn_platform(double true_angle_rad) { platform_angle_rad_ = true_angle_rad; }
 
  private:
@@ -93,6 +102,9 @@ class SimulatedBench {
 };
 
 // Devices that share one bench and one clock (both must outlive them).
+// Camera: draws only when the bench has changed since its last picture; the noise is fresh each time. It offers
+// thirds of stops; light gathered goes with (8 / f)^2. Files: rig/raw_writer.h. Turntable: the position is unknown
+// until it is homed; angles within +-360 deg, on the truth's steps.
 std::unique_ptr<Camera> make_simulated_camera(SimulatedBench& bench, Clock& clock);
 std::unique_ptr<Turntable> make_simulated_turntable(SimulatedBench& bench, Clock& clock);
 std::unique_ptr<Operator> make_simulated_operator(SimulatedBench& bench);

@@ -1,4 +1,8 @@
 // A motorised platform. Angles in radians, positive counter-clockwise seen from above.
+//
+// A move that stop() ends throws, and the platform stands where it is: its position stays known, and it may be moved
+// again. stop() and state() may be called from any thread while another one waits in home() or move_to(). Angles that
+// are not finite or out of the device's range are refused before anything moves; so is a move before home().
 #pragma once
 
 namespace rig {

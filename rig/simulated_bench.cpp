@@ -1,0 +1,91 @@
+#include "rig/simulated_bench.h"
+
+#include <cmath>
+#include <utility>
+
+#include "rig/noise.h"
+
+namespace rig {
+namespace {
+
+// One number for what a hand placed where. Millionths, so that a pose that went through a file is the same pose.
+std::uint64_t placement_key(const Arrangement& arrangement) {
+  std::uint64_t key = mixed(static_cast<std::uint64_t>(arrangement.object) + 1);
+  const auto take = [&key](std::uint64_t value) { key = mixed(key ^ mixed(value + 1)); };
+  take(arrangement.object == BenchObject::holder ? static_cast<std::uint64_t>(arrangement.mounting) : 0);
+  take(arrangement.on_platform ? 1 : 0);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      take(static_cast<std::uint64_t>(std::llround(arrangement.pose(row, column) * 1e6)));
+    }
+  }
+  return key;
+}
+
+bool same_lamp(const std::optional<TrueLamp>& a, const std::optional<TrueLamp>& b) {
+  return a.has_value() == b.has_value() &&
+         (!a || (a->position == b->position && a->intensity == b->intensity && a->radius_mm == b->radius_mm));
+}
+
+class SimulatedOperator final : public Operator {
+ public:
+  explicit SimulatedOperator(SimulatedBench& bench) : bench_(bench) {}
+  void arrange(const Arrangement& wanted) override { bench_.place(wanted); }
+
+ private:
+  SimulatedBench& bench_;
+};
+
+}  // namespace
+
+SimulatedBench::SimulatedBench(BenchTruth truth, DrawPicture draw)
+    : truth_(std::move(truth)), draw_(std::move(draw)) {}
+
+BenchState SimulatedBench::state() const {
+  BenchState now{.lens = truth_.lens,
+                 .arrangement = arrangement_,
+                 .world_from_object = placed_pose_,
+                 .platform_angle_rad = platform_angle_rad_,
+                 .lamp = std::nullopt};
+  if (arrangement_.on_platform) {
+    now.world_from_object = Eigen::AngleAxisd(platform_angle_rad_, Eigen::Vector3d::UnitZ()) * placed_pose_;
+  }
+  if (arrangement_.lamp != Lamp::off) {
+    now.lamp = arrangement_.lamp == Lamp::front ? truth_.front : truth_.back;
+  }
+  if (arrangement_.room_light) {
+    now.room_radiance = truth_.room_radiance;
+  }
+  return now;
+}
+
+// The hand's error: an offset in the parent's frame and a small turn about the object's own origin.
+void SimulatedBench::place(const Arrangement& arrangement) {
+  arrangement_ = arrangement;
+  placed_pose_ = arrangement.pose;
+  if (arrangement.object == BenchObject::nothing) {
+    return;
+  }
+  NoiseStream hand(truth_.seed, placement_key(arrangement));
+  const auto [x, y] = hand.normals();
+  const auto [z, turn_x] = hand.normals();
+  const auto [turn_y, turn_z] = hand.normals();
+  placed_pose_.translation() += truth_.placement_mm * Eigen::Vector3d(x, y, z);
+  const Eigen::Vector3d turn = truth_.placement_rad * Eigen::Vector3d(turn_x, turn_y, turn_z);
+  if (turn.norm() > 0) {
+    placed_pose_.rotate(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
+  }
+}
+
+bool same_state(const BenchState& a, const BenchState& b) {
+  return same_arrangement(a.arrangement, b.arrangement) &&
+         a.world_from_object.matrix() == b.world_from_object.matrix() &&
+         a.platform_angle_rad == b.platform_angle_rad && same_lamp(a.lamp, b.lamp) &&
+         a.room_radiance == b.room_radiance;
+}
+
+std::unique_ptr<Operator> make_simulated_operator(SimulatedBench& bench) {
+  return std::make_unique<SimulatedOperator>(bench);
+}
+
+}  // namespace rig

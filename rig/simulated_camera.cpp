@@ -1,0 +1,163 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "rig/noise.h"
+#include "rig/raw_writer.h"
+#include "rig/simulated_bench.h"
+
+namespace rig {
+namespace {
+
+constexpr double kCalibratedFNumber = 8.0;
+constexpr double kBaseIso = 100.0;
+constexpr double kCountedElectrons = 50.0;  // below: counted one by one; above: a normal number of the same variance
+
+// Thirds of a stop as they are engraved; the simulated shutter keeps exactly these.
+constexpr std::array kShutterTimesS{
+    1 / 4000., 1 / 3200., 1 / 2500., 1 / 2000., 1 / 1600., 1 / 1250., 1 / 1000., 1 / 800., 1 / 640.,
+    1 / 500.,  1 / 400.,  1 / 320.,  1 / 250.,  1 / 200.,  1 / 160.,  1 / 125.,  1 / 100., 1 / 80.,
+    1 / 60.,   1 / 50.,   1 / 40.,   1 / 30.,   1 / 25.,   1 / 20.,   1 / 15.,   1 / 13.,  1 / 10.,
+    1 / 8.,    1 / 6.,    1 / 5.,    1 / 4.,    1 / 3.,    0.4,       0.5,       0.6,      0.8,
+    1.,        1.3,       1.6,       2.,        2.5,       3.2,       4.,        5.,       6.,
+    8.,        10.,       13.,       15.,       20.,       25.,       30.};
+constexpr std::array kIsos{50,   64,   80,   100,  125,  160,  200,  250,  320,  400,   500,   640,   800,   1000,
+                           1250, 1600, 2000, 2500, 3200, 4000, 5000, 6400, 8000, 10000, 12800, 16000, 20000, 25600};
+constexpr std::array kFNumbers{2.8, 3.2, 3.5, 4.,  4.5, 5.,  5.6, 6.3, 7.1, 8.,
+                               9.,  10., 11., 13., 14., 16., 18., 20., 22.};
+
+// What one exposure does to every pixel alike.
+struct Conversion {
+  double electrons_per_radiance, dark_electrons, read_noise_e, dn_per_electron, black_dn, white_dn;
+};
+
+Conversion conversion(const TrueSensor& sensor, const ExposureSettings& settings) {
+  const double aperture = std::pow(kCalibratedFNumber / settings.f_number, 2);
+  const double gain = settings.iso / kBaseIso;
+  return {.electrons_per_radiance = settings.exposure_s * aperture * sensor.full_well_e,
+          .dark_electrons = settings.exposure_s * sensor.dark_current_e_s,
+          .read_noise_e = sensor.read_noise_e,
+          .dn_per_electron = gain * (sensor.white_level_dn - sensor.black_level_dn) / sensor.full_well_e,
+          .black_dn = sensor.black_level_dn,
+          .white_dn = sensor.white_level_dn};
+}
+
+// Gain at a pixel, 1 at the centre of the image.
+double vignetting(const TrueLens& lens, int row, int column) {
+  const double x = column - (lens.width_px - 1) / 2.0, y = row - (lens.height_px - 1) / 2.0;
+  const double half_diagonal = std::hypot(lens.width_px, lens.height_px) / 2;
+  const double r2 = (x * x + y * y) / (half_diagonal * half_diagonal);
+  return 1 + (lens.vignetting[0] + lens.vignetting[1] * r2) * r2;
+}
+
+// RGGB: red where row and column are even, blue where both are odd.
+int mosaic_channel(int row, int column) {
+  return (row & 1) + (column & 1);
+}
+
+std::uint16_t exposed_dn(const Conversion& convert, double radiance, NoiseStream& noise) {
+  const double mean_e = std::max(radiance, 0.0) * convert.electrons_per_radiance + convert.dark_electrons;
+  const auto [read, shot] = noise.normals();
+  const double counted_e =
+      mean_e < kCountedElectrons ? noise.small_poisson(mean_e) : mean_e + std::sqrt(mean_e) * shot;
+  const double dn = convert.black_dn + (counted_e + convert.read_noise_e * read) * convert.dn_per_electron;
+  return static_cast<std::uint16_t>(std::lround(std::clamp(dn, 0.0, convert.white_dn)));
+}
+
+void check_drawing(const cv::Mat3f& radiance, const TrueLens& lens) {
+  if (radiance.cols != lens.width_px || radiance.rows != lens.height_px) {
+    throw std::runtime_error("the simulated bench was to be drawn with " + std::to_string(lens.width_px) + " x " +
+                             std::to_string(lens.height_px) + " pixels, but the drawing has " +
+                             std::to_string(radiance.cols) + " x " + std::to_string(radiance.rows));
+  }
+  const bool finite = std::all_of(radiance.begin(), radiance.end(), [](const cv::Vec3f& pixel) {
+    return std::isfinite(pixel[0]) && std::isfinite(pixel[1]) && std::isfinite(pixel[2]);
+  });
+  if (!finite) {
+    throw std::runtime_error("the drawing of the simulated bench has pixels that are not finite numbers");
+  }
+}
+
+class SimulatedCamera final : public Camera {
+ public:
+  SimulatedCamera(SimulatedBench& bench, Clock& clock) : bench_(bench), clock_(clock) {}
+
+  CameraIdentity identity() override {
+    return {.make = "Sony",
+            .model = "ILCE-7M2",
+            .serial = "SIM" + std::to_string(bench_.truth().seed),
+            .width_px = bench_.truth().lens.width_px,
+            .height_px = bench_.truth().lens.height_px};
+  }
+
+  std::vector<double> shutter_times_s() override { return {kShutterTimesS.begin(), kShutterTimesS.end()}; }
+
+  ExposureSettings configure(const ExposureSettings& wanted) override {
+    if (std::ranges::find(kIsos, wanted.iso) == kIsos.end()) {
+      throw std::runtime_error(
+          "ISO " + std::to_string(wanted.iso) +
+          " was asked; the camera offers thirds of a stop from 50 to 25600, ISO 100 is the base");
+    }
+    if (!std::isfinite(wanted.f_number) || wanted.f_number <= 0) {
+      throw std::runtime_error("f/" + std::to_string(wanted.f_number) +
+                               " was asked; the camera offers f/2.8 to f/22, f/8 is the calibrated aperture");
+    }
+    const double exposure_s = nearest_shutter_s(shutter_times_s(), wanted.exposure_s);
+    const auto stops = [&](double offered) { return std::abs(std::log2(offered / wanted.f_number)); };
+    settings_ = {exposure_s, wanted.iso, *std::ranges::min_element(kFNumbers, {}, stops)};
+    return settings_;
+  }
+
+  Picture capture() override {
+    const BenchState now = bench_.state();
+    if (!drawn_state_ || !same_state(*drawn_state_, now)) {
+      drawn_state_.reset();  // a drawing that fails must not leave the old one behind
+      radiance_ = bench_.draw();
+      check_drawing(radiance_, now.lens);
+      drawn_state_ = now;
+    }
+    RawFrame frame;
+    frame.mosaic = expose();
+    frame.black_level_dn = static_cast<std::uint16_t>(bench_.truth().sensor.black_level_dn);
+    frame.white_level_dn = static_cast<std::uint16_t>(bench_.truth().sensor.white_level_dn);
+    frame.settings = settings_;
+    frame.utc = clock_.utc();
+    frame.serial = identity().serial;
+    clock_.sleep_s(settings_.exposure_s);
+    return {.bytes = encode_raw(frame), .extension = "arw", .settings = settings_, .utc = frame.utc};
+  }
+
+ private:
+  // Fresh noise for each picture, the same in each run.
+  cv::Mat1w expose() {
+    const BenchTruth& truth = bench_.truth();
+    const Conversion convert = conversion(truth.sensor, settings_);
+    NoiseStream noise(truth.seed, ++pictures_taken_);
+    cv::Mat1w mosaic(radiance_.size());
+    for (int row = 0; row < mosaic.rows; ++row) {
+      for (int column = 0; column < mosaic.cols; ++column) {
+        const double radiance = static_cast<double>(radiance_(row, column)[mosaic_channel(row, column)]);
+        mosaic(row, column) = exposed_dn(convert, radiance * vignetting(truth.lens, row, column), noise);
+      }
+    }
+    return mosaic;
+  }
+
+  SimulatedBench& bench_;
+  Clock& clock_;
+  ExposureSettings settings_;
+  std::uint64_t pictures_taken_ = 0;
+  std::optional<BenchState> drawn_state_;  // what radiance_ shows
+  cv::Mat3f radiance_;
+};
+
+}  // namespace
+
+std::unique_ptr<Camera> make_simulated_camera(SimulatedBench& bench, Clock& clock) {
+  return std::make_unique<SimulatedCamera>(bench, clock);
+}
+
+}  // namespace rig
