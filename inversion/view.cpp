@@ -1,0 +1,48 @@
+#include "inversion/view.h"
+
+#include <cmath>
+
+#include "renderer/path_tracer.h"
+
+namespace inversion {
+namespace {
+
+constexpr double kFrameAlbedo = 0.0;          // matt black; what it reflects is below the camera's noise
+constexpr std::uint64_t kMaskSeed = 20250801;
+
+}  // namespace
+
+renderer::SphereLight sphere_light(const NearLight& light) {
+  return {.center = light.position,
+          .radius_mm = light.radius_mm,
+          .radiance = light.intensity / (M_PI * light.radius_mm * light.radius_mm),
+          .visible = false};
+}
+
+renderer::Scene view_scene(const WrappedSpool& spool, const renderer::ScatteringModel& scattering, const NearLight& light) {
+  renderer::Scene scene;
+  scene.curves.push_back(aligned_threads(spool, scattering));
+  scene.meshes.push_back(holder_frame(spool, kFrameAlbedo));
+  scene.lights.push_back(sphere_light(light));
+  return scene;
+}
+
+cv::Mat1b thread_mask(const WrappedSpool& spool, const renderer::Camera& camera, const NearLight& light, int samples_per_pixel) {
+  // A white, rough thread scatters into every direction, so wherever a lit thread is seen the rendering is not zero.
+  const renderer::FiberParameters white{.beta_m = 0.5, .beta_n = 0.5};
+  const renderer::PathTracer tracer(view_scene(spool, white, light));
+  const cv::Mat3f initial = tracer.render(camera, {.samples_per_pixel = samples_per_pixel, .seed = kMaskSeed});
+  cv::Mat1b mask(initial.size(), 0);
+  for (int row = 0; row < mask.rows; ++row)
+    for (int column = 0; column < mask.cols; ++column) {
+      const cv::Vec3f& pixel = initial(row, column);
+      if (pixel[0] > 0 || pixel[1] > 0 || pixel[2] > 0) mask(row, column) = 255;
+    }
+  return mask;
+}
+
+Eigen::Vector3d diffuser_radiance(const NearLight& light) {
+  return light.intensity / (M_PI * light.position.squaredNorm());
+}
+
+}  // namespace inversion

@@ -1,0 +1,42 @@
+// One photograph of the wrapped spool as the fit sees it, everything in the holder frame (wrapped_spool.h).
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "inversion/wrapped_spool.h"
+#include "renderer/camera.h"
+#include "renderer/scene.h"
+
+namespace inversion {
+
+struct NearLight {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();   // mm, holder frame
+  Eigen::Vector3d intensity = Eigen::Vector3d::Ones();  // RGB, radiance unit x mm^2: irradiance at distance d facing it is I / d^2
+  double radius_mm = 4;
+};
+
+struct View {
+  std::string id;
+  renderer::Camera camera;  // undistorted; world = holder frame
+  NearLight light;
+  bool transmission = false;
+  cv::Mat3f image;  // linear camera RGB, radiance unit; may be empty
+  cv::Mat1b mask;   // 255 where threads are; same size
+};
+
+renderer::SphereLight sphere_light(const NearLight& light);
+
+// Holder, threads with the given scattering and the view's light; the lamp itself is not seen by the camera.
+renderer::Scene view_scene(const WrappedSpool& spool, const renderer::ScatteringModel& scattering, const NearLight& light);
+
+// Mask of the threads: the non-zero region of a rendering of the threads from this view before anything is fitted
+// [Xia 2025, section 4]. 255 inside. `samples_per_pixel` rays per pixel decide.
+cv::Mat1b thread_mask(const WrappedSpool& spool, const renderer::Camera& camera, const NearLight& light, int samples_per_pixel);
+
+// Radiance of a perfect diffuser at the holder frame's origin facing the light: I / (pi d^2). Pictures are divided by its
+// mean in the objective of eq. 6.
+Eigen::Vector3d diffuser_radiance(const NearLight& light);
+
+}  // namespace inversion

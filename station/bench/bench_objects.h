@@ -1,0 +1,22 @@
+// Meshes of what stands on the simulated bench: table, platform, tag board, Spectralon panel, holder with its tags.
+// Each in its own object frame (mm) unless said otherwise.
+#pragma once
+
+#include <vector>
+
+#include "inversion/wrapped_spool.h"
+#include "renderer/scene.h"
+#include "station/documents/rig_file.h"
+
+namespace station {
+
+// World frame: a dark table at z = 0 and the platform's disc standing on it.
+std::vector<renderer::TriangleMesh> table_and_platform(double platform_height_mm, double platform_radius_mm);
+
+std::vector<renderer::TriangleMesh> board_meshes(const calibration::TagLayout& board);
+std::vector<renderer::TriangleMesh> spectralon_meshes(const SpectralonPanel& panel);
+std::vector<renderer::TriangleMesh> holder_meshes(const inversion::WrappedSpool& spool, const calibration::TagLayout& tags);
+
+void transform(renderer::TriangleMesh& mesh, const Eigen::Isometry3d& to_from_mesh);
+
+}  // namespace station

@@ -1,0 +1,116 @@
+#include "station/bench/bench_picture.h"
+
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "renderer/fiber_bundle.h"
+#include "renderer/path_tracer.h"
+#include "station/bench/bench_objects.h"
+
+namespace station {
+namespace {
+
+constexpr int kPiecesPerFiber = 10;
+constexpr int kPackingAttempts = 20000;
+constexpr double kRoomLampRadius_mm = 250;
+const Eigen::Vector3d kRoomLampPosition(900, 350, 1100);  // above and beside the camera: upright targets are lit too
+
+renderer::SphereLight flashlight(const rig::TrueLamp& lamp, const Eigen::Isometry3d& object_from_world) {
+  const double area = M_PI * lamp.radius_mm * lamp.radius_mm;
+  return {.center = object_from_world * lamp.position, .radius_mm = lamp.radius_mm, .radiance = lamp.intensity / area};
+}
+
+// A ceiling lamp that gives a white diffuser at the origin, facing it, the asked radiance.
+renderer::SphereLight room_lamp(const Eigen::Vector3d& diffuser_radiance, const Eigen::Isometry3d& object_from_world) {
+  const double ratio = kRoomLampPosition.norm() / kRoomLampRadius_mm;
+  return {.center = object_from_world * kRoomLampPosition,
+          .radius_mm = kRoomLampRadius_mm,
+          .radiance = diffuser_radiance * ratio * ratio};
+}
+
+renderer::Camera camera_of(const rig::TrueLens& lens, const Eigen::Isometry3d& object_from_world) {
+  return {.width = lens.width_px,
+          .height = lens.height_px,
+          .fx = lens.fx_px,
+          .fy = lens.fy_px,
+          .cx = lens.cx_px,
+          .cy = lens.cy_px,
+          .distortion = lens.distortion,
+          .world_from_camera = object_from_world * lens.world_from_camera};
+}
+
+struct Painter {
+  RigFile rig;
+  std::optional<Spool> spool;
+  renderer::CurveSet fibers;  // empty until a holder is drawn first
+  std::uint64_t pictures = 0;
+
+  // The scene in the frame of the object, where long straight fibers are axis-aligned and their boxes tight.
+  renderer::Scene scene(const rig::BenchState& state, const Eigen::Isometry3d& object_from_world) {
+    renderer::Scene scene;
+    switch (state.arrangement.object) {
+      case rig::BenchObject::nothing: break;
+      case rig::BenchObject::board: scene.meshes = board_meshes(rig.board); break;
+      case rig::BenchObject::spectralon: scene.meshes = spectralon_meshes(rig.spectralon); break;
+      case rig::BenchObject::holder:
+        if (!spool) throw std::runtime_error("the simulated bench was asked for a spool, but none was given; give --spool");
+        if (fibers.segments.empty()) fibers = spool_fibers(*spool);
+        scene.curves.push_back(fibers);
+        scene.meshes = holder_meshes(spool->wrapping, rig.holder_tags);
+        break;
+    }
+    for (renderer::TriangleMesh& mesh : table_and_platform(rig.platform_height_mm, rig.platform_radius_mm)) {
+      transform(mesh, object_from_world);
+      scene.meshes.push_back(std::move(mesh));
+    }
+    if (state.lamp) scene.lights.push_back(flashlight(*state.lamp, object_from_world));
+    if (state.room_radiance.maxCoeff() > 0) scene.lights.push_back(room_lamp(state.room_radiance, object_from_world));
+    return scene;
+  }
+
+  cv::Mat3f paint(const rig::BenchState& state) {
+    const bool dark = !state.lamp && state.room_radiance.maxCoeff() <= 0;
+    if (dark) return cv::Mat3f(state.lens.height_px, state.lens.width_px, cv::Vec3f(0, 0, 0));
+    const Eigen::Isometry3d object_from_world = state.world_from_object.inverse();
+    const renderer::PathTracer tracer(scene(state, object_from_world));
+    renderer::RenderOptions options;
+    const bool threads_lit = state.arrangement.object == rig::BenchObject::holder && state.lamp;
+    options.samples_per_pixel = threads_lit ? rig.simulation->samples_per_pixel : rig.simulation->target_samples_per_pixel;
+    options.seed = rig.simulation->truth.seed + 7919 * ++pictures;
+    return tracer.render(camera_of(state.lens, object_from_world), options);
+  }
+};
+
+}  // namespace
+
+renderer::CurveSet spool_fibers(const Spool& spool) {
+  if (!spool.simulation)
+    throw std::runtime_error("spool \"" + spool.name + "\" has no \"simulation\" part; the simulated bench cannot draw it");
+  const SimulatedFibers& fibers = *spool.simulation;
+  const double thread_radius = spool.wrapping.thread_diameter_mm / 2;
+  renderer::CurveSet curves;
+  curves.scattering = fibers.scattering;
+  std::uint64_t seed = fibers.seed * 1000003;
+  for (const inversion::Segment3& line : inversion::thread_lines(spool.wrapping)) {
+    const auto centres = renderer::pack_fibers(thread_radius, fibers.fiber_radius_mm, fibers.min_gap_mm,
+                                               kPackingAttempts, fibers.fibers_per_thread, ++seed);
+    if (static_cast<int>(centres.size()) < fibers.fibers_per_thread)
+      throw std::runtime_error("spool \"" + spool.name + "\": only " + std::to_string(centres.size()) + " of " +
+                               std::to_string(fibers.fibers_per_thread) +
+                               " fibers fit into a thread at random; make fibers_per_thread or fiber_radius_mm smaller");
+    for (const Eigen::Vector2d& centre : centres) {
+      const Eigen::Vector3d offset(centre.x(), 0, centre.y());  // threads run along y
+      inversion::add_straight_curve(curves, {line.from + offset, line.to + offset}, fibers.fiber_radius_mm, kPiecesPerFiber);
+    }
+  }
+  return curves;
+}
+
+rig::DrawPicture make_bench_picture(const RigFile& rig, const std::optional<Spool>& spool) {
+  if (!rig.simulation) throw std::runtime_error("rig \"" + rig.name + "\" has no \"simulation\" part; there is no bench to draw");
+  auto painter = std::make_shared<Painter>(Painter{.rig = rig, .spool = spool, .fibers = {}});
+  return [painter](const rig::BenchState& state) { return painter->paint(state); };
+}
+
+}  // namespace station

@@ -1,0 +1,46 @@
+#include "station/calibrate/calibrate_rig.h"
+
+#include "station/documents/reader.h"
+#include "station/documents/session_file.h"
+#include "station/interrupt.h"
+#include "station/rig_devices.h"
+
+namespace station {
+namespace {
+
+bool belongs_to(CalibrationRole role, const std::string& part) {
+  switch (role) {
+    case CalibrationRole::lens: return part == "camera";
+    case CalibrationRole::turning:
+    case CalibrationRole::flat: return part == "platform";
+    case CalibrationRole::front_light:
+    case CalibrationRole::back_light: return part == "light";
+  }
+  return false;
+}
+
+}  // namespace
+
+RigCalibration calibrate_rig(const CalibrateRequest& request) {
+  const RigFile rig = read_rig(request.rig);
+  ProgressDisplay progress("calibrate", request.progress_style);
+  const auto show = [&](int done, int total, const std::string& label) { progress.show(done, total, label); };
+  std::string utc;
+  if (!request.solve_only) {
+    watch_interrupts();
+    const std::vector<CalibrationStep> plan = make_calibration_plan(rig);
+    if (!request.only.empty())
+      forget_calibration_pictures(request.out, [&](CalibrationRole role) { return belongs_to(role, request.only); });
+    RigDevices devices = open_rig(rig, std::nullopt, false);
+    record_calibration(plan, devices, request.out, show, interrupted);
+    utc = devices.clock->utc();
+  }
+  RigCalibration calibration = solve_calibration(rig, request.out, read_calibration_pictures(request.out), show);
+  calibration.utc = utc.empty() ? rig::SystemClock().utc() : utc;
+  calibration.software = software_version();
+  write_json_file(request.out / "calibration.json", to_json(calibration));
+  progress.finish("done");
+  return calibration;
+}
+
+}  // namespace station

@@ -1,0 +1,39 @@
+// The pictures of a rig calibration: taken step by step into a folder, listed with their hashes, read back.
+//
+// Folder: pictures/<id>.arw as delivered, pictures.json ("threadstation/calibration_pictures") rewritten after each one,
+// so that an interrupted calibration goes on where it stood.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "station/calibrate/calibration_plan.h"
+#include "station/rig_devices.h"
+
+namespace station {
+
+struct CalibrationPicture {
+  std::string id;
+  CalibrationRole role = CalibrationRole::lens;
+  std::string file;           // relative to the folder
+  std::string sha256;
+  double reading_rad = 0.0;   // of the turntable
+};
+
+using StepProgress = std::function<void(int done, int total, const std::string& label)>;
+
+// Takes what `plan` asks for and the folder does not hold yet. `should_stop` is polled between steps; when it says so the
+// platform is stopped and std::runtime_error thrown.
+std::vector<CalibrationPicture> record_calibration(const std::vector<CalibrationStep>& plan, RigDevices& devices,
+                                                   const std::filesystem::path& folder, const StepProgress& progress,
+                                                   const std::function<bool()>& should_stop);
+
+// Takes pictures of these roles off the list, so that record_calibration takes them again. No list: nothing to do.
+void forget_calibration_pictures(const std::filesystem::path& folder, const std::function<bool(CalibrationRole)>& forget);
+
+// Errors: std::runtime_error when the list or a picture is missing or a picture's hash differs.
+std::vector<CalibrationPicture> read_calibration_pictures(const std::filesystem::path& folder);
+
+}  // namespace station

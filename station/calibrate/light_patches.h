@@ -1,0 +1,19 @@
+// Radiance of the Spectralon panel, cell by cell, from one picture whose pose is known from the panel's tags.
+#pragma once
+
+#include <vector>
+
+#include "calibration/light.h"
+#include "calibration/pose.h"
+#include "calibration/sensor_file.h"
+#include "station/documents/rig_file.h"
+
+namespace station {
+
+// `light`: 0 front, 1 back. Cells that leave the picture or are saturated are left out.
+std::vector<calibration::LightPatch> panel_patches(const calibration::SensorPicture& picture, const calibration::Lens& lens,
+                                                   const Eigen::Isometry3d& world_from_camera,
+                                                   const Eigen::Isometry3d& camera_from_panel, const SpectralonPanel& panel,
+                                                   int light);
+
+}  // namespace station

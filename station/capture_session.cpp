@@ -1,0 +1,112 @@
+#include "station/capture_session.h"
+
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+#include "station/documents/calibration_file.h"
+#include "station/documents/reader.h"
+#include "station/documents/session_file.h"
+#include "station/exposure.h"
+#include "station/interrupt.h"
+#include "station/rig_devices.h"
+#include "station/views.h"
+
+namespace station {
+namespace {
+
+// Where the holder should stand: upright on the platform, its front over the axis; turned a quarter for vertical threads.
+Eigen::Isometry3d nominal_holder_pose(const RigFile& rig, const inversion::WrappedSpool& spool, rig::Mounting mounting) {
+  const bool vertical = mounting == rig::Mounting::vertical;
+  const double half_height_mm = (vertical ? spool.frame_width_mm : spool.frame_height_mm) / 2;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation().z() = rig.platform_height_mm + half_height_mm;
+  if (vertical) pose.rotate(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX()));
+  return pose;
+}
+
+// 255 over the holder's window, where the exposure is measured; raw pixels.
+cv::Mat1b window_region(const RigFile& rig, const Spool& spool, const RigCalibration& calibration, const PlanStep& step) {
+  const Eigen::Isometry3d world_from_holder = Eigen::AngleAxisd(step.platform_angle_rad, Eigen::Vector3d::UnitZ()) *
+                                              nominal_holder_pose(rig, spool.wrapping, step.mounting);
+  const renderer::Camera camera =
+      camera_of(calibration.lens.lens, world_from_holder.inverse() * calibration.platform.world_from_camera, false);
+  cv::Mat1b region(camera.height, camera.width, static_cast<unsigned char>(0));
+  std::vector<cv::Point> outline;
+  for (const auto& [y, z] : {std::pair{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}) {
+    const Eigen::Vector2d pixel =
+        renderer::project(camera, {0, y * spool.wrapping.window_width_mm, z * spool.wrapping.window_height_mm});
+    outline.emplace_back(cvRound(pixel.x()), cvRound(pixel.y()));
+  }
+  cv::fillConvexPoly(region, outline, cv::Scalar(255));
+  return region;
+}
+
+// Views are metered on the threads; pose pictures on the whole frame, for the tags.
+ChooseExposure exposure_chooser(const RigFile& rig, const Spool& spool, const RigCalibration& calibration) {
+  return [rig, spool, calibration](const PlanStep& step, const rig::Picture& test) -> ExposureChoice {
+    const calibration::SensorPicture picture = calibration::read_sensor_bytes(test.bytes, "test picture of " + step.id);
+    const cv::Mat1b region = step.kind == StepKind::view ? window_region(rig, spool, calibration, step) : cv::Mat1b();
+    const auto next = next_exposure_s(picture, region, {.level = rig.target_level});
+    return next ? ExposureChoice{.exposure_s = *next} : ExposureChoice{.exposure_s = picture.exposure_s, .done = true};
+  };
+}
+
+RunOutcome run(SessionFolder& session, RigDevices& devices, const SessionFile& asked, const RigCalibration& calibration,
+               ProgressStyle progress_style) {
+  ProgressDisplay display("capture", progress_style);
+  RunOptions options;
+  options.settings.exposure_s = 0.125;
+  options.choose_exposure = exposure_chooser(asked.rig, asked.spool, calibration);
+  options.nominal_holder_pose = [&](rig::Mounting mounting) { return nominal_holder_pose(asked.rig, asked.spool.wrapping, mounting); };
+  options.progress = [&](const Progress& p) {
+    display.show(static_cast<int>(p.done), static_cast<int>(p.total), p.step, devices.bench ? -1 : p.seconds_left);
+  };
+  watch_interrupts();
+  options.should_stop = interrupted;
+  const RunDevices run_devices{*devices.camera, *devices.turntable, *devices.person, *devices.clock};
+  const RunOutcome outcome = run_plan(asked.plan, run_devices, session, options);
+  display.finish(outcome == RunOutcome::complete ? "complete: " + session.path().string()
+                                                 : "interrupted; go on with capture --resume --out " + session.path().string());
+  return outcome;
+}
+
+CalibrationFiles calibration_files(const std::filesystem::path& folder) {
+  const std::string text = read_json_file(folder / "calibration.json").dump(2) + "\n";
+  const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
+  return {{"calibration.json", {bytes, bytes + text.size()}}};
+}
+
+}  // namespace
+
+RunOutcome capture_session(const CaptureRequest& request) {
+  const nlohmann::json rig_document = read_json_file(request.rig), spool_document = read_json_file(request.spool);
+  const RigFile rig = parse_rig(rig_document, request.rig.string());
+  const Spool spool = parse_spool(spool_document, request.spool.string());
+  const RigCalibration calibration = read_calibration(request.calibration);
+  if (calibration.rig_name != rig.name)
+    throw std::runtime_error("the calibration was made on rig \"" + calibration.rig_name + "\", this is \"" + rig.name +
+                             "\"; calibrate this rig");
+  if (is_session(request.out))
+    throw std::runtime_error(request.out.string() + " is a session already; choose another folder, or go on with capture --resume");
+  const Plan plan = make_capture_plan({.reflection_angles_deg = rig.reflection_angles_deg,
+                                       .transmission_angles_deg = rig.transmission_angles_deg});
+  RigDevices devices = open_rig(rig, spool, request.unattended);
+  FileSystem disk;
+  const std::filesystem::path calibration_folder =
+      std::filesystem::is_directory(request.calibration) ? request.calibration : request.calibration.parent_path();
+  SessionFolder session =
+      SessionFolder::create(request.out, make_session_document(devices.clock->utc(), rig_document, spool_document, plan),
+                            calibration_files(calibration_folder), *devices.clock, disk);
+  return run(session, devices, read_session_file(request.out), calibration, request.progress_style);
+}
+
+RunOutcome resume_session(const std::filesystem::path& folder, bool unattended, ProgressStyle progress_style) {
+  const SessionFile asked = read_session_file(folder);
+  const RigCalibration calibration = read_calibration(folder / "calibration");
+  RigDevices devices = open_rig(asked.rig, asked.spool, unattended);
+  FileSystem disk;
+  SessionFolder session = SessionFolder::open(folder, *devices.clock, disk);
+  return run(session, devices, asked, calibration, progress_style);
+}
+
+}  // namespace station

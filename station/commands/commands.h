@@ -1,0 +1,17 @@
+// One function per command of the public interface: it adds the sub-command with its options; the callback reads
+// arguments, calls one function and prints. Errors are thrown and printed by main.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace station {
+
+void add_calibrate_command(CLI::App& app);
+void add_capture_command(CLI::App& app);
+void add_demo_command(CLI::App& app);
+void add_develop_command(CLI::App& app);
+void add_devices_command(CLI::App& app);
+void add_report_command(CLI::App& app);
+void add_verify_command(CLI::App& app);
+
+}  // namespace station

@@ -1,0 +1,35 @@
+#include <iostream>
+
+#include "station/commands/commands.h"
+#include "station/commands/output_options.h"
+#include "station/demo.h"
+
+namespace station {
+namespace {
+
+struct Arguments {
+  DemoRequest request;
+  OutputOptions output;
+};
+
+void run(Arguments& arguments) {
+  arguments.request.progress_style = arguments.output.progress_style();
+  const DemoResult result = run_demo(arguments.request);
+  if (arguments.output.json)
+    std::cout << nlohmann::json{{"session", result.session}, {"report", result.report}}.dump() << "\n";
+  else
+    std::cout << "session  " << result.session.string() << "\nreport   " << result.report.string() << "\n";
+}
+
+}  // namespace
+
+void add_demo_command(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("demo", "the whole job on the simulated bench");
+  command->add_option("--out", arguments->request.out, "folder for the results")->capture_default_str();
+  command->add_flag("--quick", arguments->request.quick, "fewer samples per pixel: noisier, within a minute");
+  arguments->output.add_to(*command);
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace station

@@ -1,0 +1,61 @@
+#include "station/demo.h"
+
+#include <stdexcept>
+
+#include "station/calibrate/calibrate_rig.h"
+#include "station/capture_session.h"
+#include "station/develop/develop_session.h"
+#include "station/documents/reader.h"
+#include "station/report/session_report.h"
+
+namespace station {
+namespace {
+
+constexpr const char* kFixtures = THREADSTATION_FIXTURES;
+
+nlohmann::json demo_rig(bool quick) {
+  nlohmann::json rig = read_json_file(std::filesystem::path(kFixtures) / "rigs" / "simulated.json");
+  if (quick) {
+    rig["simulation"]["samples_per_pixel"] = 6;
+    rig["simulation"]["target_samples_per_pixel"] = 4;
+  }
+  return rig;
+}
+
+// A demo folder that this program made, or a new one; never somebody's other files.
+void prepare_folder(const std::filesystem::path& out, const nlohmann::json& rig) {
+  const std::filesystem::path mark = out / "rig.json";
+  std::error_code code;
+  if (std::filesystem::exists(out) && !std::filesystem::exists(mark) && !std::filesystem::is_empty(out, code))
+    throw std::runtime_error(out.string() + " is not an earlier demo's folder and not empty; choose another --out");
+  const bool same_rig = std::filesystem::exists(mark) && read_json_file(mark) == rig;
+  const bool finished = std::filesystem::exists(out / "session" / "report.html");
+  if (finished || !same_rig) {
+    std::filesystem::remove_all(out / "calibration", code);
+    std::filesystem::remove_all(out / "session", code);
+  }
+  std::filesystem::create_directories(out, code);
+  if (code) throw std::runtime_error("cannot make " + out.string() + ": " + code.message() + "; choose a writable folder with --out");
+  write_json_file(mark, rig);
+}
+
+}  // namespace
+
+DemoResult run_demo(const DemoRequest& request) {
+  prepare_folder(request.out, demo_rig(request.quick));
+  const std::filesystem::path rig = request.out / "rig.json", session = request.out / "session";
+  calibrate_rig({.rig = rig, .out = request.out / "calibration", .progress_style = request.progress_style});
+  const RunOutcome outcome =
+      is_session(session) ? resume_session(session, true, request.progress_style)
+                          : capture_session({.rig = rig,
+                                             .calibration = request.out / "calibration",
+                                             .spool = std::filesystem::path(kFixtures) / "spools" / "silk_blue.json",
+                                             .out = session,
+                                             .unattended = true,
+                                             .progress_style = request.progress_style});
+  if (outcome == RunOutcome::interrupted) throw std::runtime_error("the demo was interrupted; the same command goes on from here");
+  develop_session(session, request.progress_style);
+  return {.session = session, .report = write_session_report(session)};
+}
+
+}  // namespace station

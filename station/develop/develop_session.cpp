@@ -1,0 +1,147 @@
+#include "station/develop/develop_session.h"
+
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "calibration/develop.h"
+#include "calibration/pose.h"
+#include "renderer/image_file.h"
+#include "station/capture/manifest.h"
+#include "station/capture/picture_record.h"
+#include "station/capture/sha256.h"
+#include "station/documents/calibration_file.h"
+#include "station/documents/session_file.h"
+#include "station/documents/reader.h"
+#include "station/report/html.h"
+#include "station/views.h"
+
+namespace station {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / M_PI;
+constexpr int kMaskSamples = 8;
+constexpr int kFewestTags = 2;
+
+using Pictures = std::map<std::string, PictureRecord>;
+
+struct MountedHolder {
+  Eigen::Isometry3d world_from_holder;  // at the pose picture
+  double reading_rad = 0;               // of the turntable then
+  double rms_px = 0;
+};
+
+const PictureRecord& picture_of(const Pictures& pictures, const std::string& step) {
+  const auto found = pictures.find(step);
+  if (found == pictures.end())
+    throw std::runtime_error("the session has no picture of step " + step + "; finish it with capture --resume");
+  return found->second;
+}
+
+calibration::SensorPicture read_picture(const std::filesystem::path& session, const PictureRecord& record) {
+  const std::filesystem::path file = session / record.file;
+  if (!std::filesystem::exists(file) || sha256_of_file(file) != record.sha256)
+    throw std::runtime_error(file.string() + " is missing or differs from the journal; take it again with capture --resume");
+  return calibration::read_sensor_file(file);
+}
+
+MountedHolder measure_holder(const std::filesystem::path& session, const PictureRecord& pose_picture, const RigCalibration& calibration,
+                             const RigFile& rig) {
+  const calibration::TagObservation tags = tags_in(read_picture(session, pose_picture));
+  const auto pose = calibration::fit_pose(calibration.lens.lens, rig.holder_tags, tags);
+  if (!pose || pose->tags_used < kFewestTags)
+    throw std::runtime_error("step " + pose_picture.step + ": " + std::to_string(pose ? pose->tags_used : 0) +
+                             " of the holder's tags were found, " + std::to_string(kFewestTags) +
+                             " are needed; uncover the tags and take the picture again");
+  return {.world_from_holder = calibration.platform.world_from_camera * pose->camera_from_object,
+          .reading_rad = pose_picture.read_angle_rad,
+          .rms_px = pose->rms_px};
+}
+
+// Where things stand in one view, holder frame.
+DevelopedView place_view(const PlanStep& step, const PictureRecord& picture, const MountedHolder& mounted,
+                         const RigCalibration& calibration, double lamp_radius_mm) {
+  const double turned_rad = calibration.platform.scale * (picture.read_angle_rad - mounted.reading_rad);
+  const Eigen::Isometry3d world_from_holder =
+      Eigen::AngleAxisd(turned_rad, Eigen::Vector3d::UnitZ()) * mounted.world_from_holder;
+  const Eigen::Isometry3d holder_from_world = world_from_holder.inverse();
+  DevelopedView developed;
+  developed.mounting = step.mounting;
+  developed.platform_angle_rad = calibration.platform.scale * picture.read_angle_rad + calibration.platform.offset_rad;
+  developed.pose_rms_px = mounted.rms_px;
+  developed.image_file = "linear/" + step.id + ".exr";
+  developed.mask_file = "masks/" + step.id + ".png";
+  inversion::View& view = developed.view;
+  view.id = step.id;
+  view.transmission = is_transmission(step);
+  view.camera = camera_of(calibration.lens.lens, holder_from_world * calibration.platform.world_from_camera, true);
+  view.light.position = holder_from_world * calibration.light.positions.at(view.transmission ? 1 : 0);
+  view.light.intensity = calibration.light.intensity;
+  view.light.radius_mm = lamp_radius_mm;
+  return developed;
+}
+
+void develop_view(const std::filesystem::path& session, const Pictures& pictures, const RigCalibration& calibration,
+                  const inversion::WrappedSpool& spool, DevelopedView& developed) {
+  inversion::View& view = developed.view;
+  const calibration::SensorPicture raw = read_picture(session, picture_of(pictures, view.id));
+  const calibration::SensorPicture dark = read_picture(session, picture_of(pictures, "dark-" + view.id));
+  const calibration::Developed picture =
+      calibration::develop(raw, {.dark_dn = calibration::master_dark({dark}),
+                                 .vignetting = calibration.light.vignetting,
+                                 .lens = calibration.lens.lens});
+  developed.exposure_s = raw.exposure_s;
+  view.image = picture.radiance;
+  view.mask = inversion::thread_mask(spool, view.camera, view.light, kMaskSamples);
+  developed.masked_pixels = cv::countNonZero(view.mask);
+  if (developed.masked_pixels == 0)
+    throw std::runtime_error("view " + view.id + ": no thread is where the calibration expects them; calibrate the rig again");
+  developed.saturated_fraction =
+      static_cast<double>(cv::countNonZero(picture.saturated & view.mask)) / developed.masked_pixels;
+  renderer::write_exr(session / developed.image_file, view.image,
+                      {{"threadstation/content", "linear camera RGB, radiance unit (full scale per second); dark subtracted, "
+                                                 "exposure divided, flat-fielded, distortion removed"},
+                       {"threadstation/view", view.id}});
+  renderer::write_png(session / developed.mask_file, view.mask);
+}
+
+}  // namespace
+
+DevelopedViews develop_session(const std::filesystem::path& session, ProgressStyle progress_style) {
+  const SessionFile asked = read_session_file(session);
+  const RigCalibration calibration = read_calibration(session / "calibration");
+  const Pictures pictures = taken_pictures(read_journal(session / "journal.jsonl").records);
+  std::map<rig::Mounting, MountedHolder> mounted;
+  for (const PlanStep& step : asked.plan.steps)
+    if (step.kind == StepKind::pose)
+      mounted[step.mounting] = measure_holder(session, picture_of(pictures, step.id), calibration, asked.rig);
+
+  ProgressDisplay progress("develop", progress_style);
+  DevelopedViews developed;
+  developed.linear_srgb_from_camera = calibration.linear_srgb_from_camera;
+  const auto total = static_cast<int>(view_count(asked.plan));
+  for (const PlanStep& step : asked.plan.steps) {
+    if (step.kind != StepKind::view) continue;
+    progress.show(static_cast<int>(developed.views.size()), total, step.id);
+    developed.views.push_back(
+        place_view(step, picture_of(pictures, step.id), mounted.at(step.mounting), calibration, asked.rig.lamp_radius_mm));
+    develop_view(session, pictures, calibration, asked.spool.wrapping, developed.views.back());
+  }
+  write_json_file(session / "linear" / "views.json", to_json(developed));
+  FileSystem disk;
+  write_manifest(session / "linear", disk);
+  write_manifest(session / "masks", disk);
+  progress.finish(std::to_string(total) + " views");
+  return developed;
+}
+
+std::string describe(const DevelopedViews& developed) {
+  std::string text;
+  for (const DevelopedView& view : developed.views)
+    text += view.view.id + ": " + number_text(view.platform_angle_rad * kDegPerRad, 2) + " deg, exposure " +
+            number_text(view.exposure_s, 4) + " s, " + std::to_string(view.masked_pixels) + " masked pixels, saturated " +
+            number_text(100 * view.saturated_fraction, 2) + " %, holder tags " + number_text(view.pose_rms_px, 3) + " px\n";
+  return text;
+}
+
+}  // namespace station

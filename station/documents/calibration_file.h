@@ -1,0 +1,29 @@
+// The rig calibration that sessions use (kind "calibration"): lens, camera pose, platform, lamp positions and intensity.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "calibration/lens.h"
+#include "calibration/light.h"
+#include "calibration/platform.h"
+
+namespace station {
+
+struct RigCalibration {
+  calibration::LensFit lens;
+  calibration::PlatformFit platform;
+  calibration::LightFit light;  // light 0 = front, 1 = back
+  double spectralon_albedo = 0.99;
+  std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major; for display only
+  std::string rig_name, utc, software;
+  std::vector<std::string> picture_sha256;  // of the pictures it was solved from, in their order
+};
+
+nlohmann::json to_json(const RigCalibration& calibration);
+RigCalibration parse_calibration(const nlohmann::json& document, const std::string& source);
+// `folder_or_file`: calibration.json or the folder that holds it.
+RigCalibration read_calibration(const std::filesystem::path& folder_or_file);
+
+}  // namespace station

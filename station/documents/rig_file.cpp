@@ -1,0 +1,157 @@
+#include "station/documents/rig_file.h"
+
+#include <cmath>
+
+#include "station/documents/reader.h"
+
+namespace station {
+namespace {
+
+constexpr double kRadPerDeg = M_PI / 180.0;
+
+// Camera axes (OpenCV) at `position`, looking at `aim`, picture upright.
+Eigen::Isometry3d looking_at(const Eigen::Vector3d& position, const Eigen::Vector3d& aim) {
+  const Eigen::Vector3d forward = (aim - position).normalized();
+  const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear().col(0) = right;
+  pose.linear().col(1) = forward.cross(right);
+  pose.linear().col(2) = forward;
+  pose.translation() = position;
+  return pose;
+}
+
+calibration::TagLayout parse_board(ObjectReader board, double& thickness_mm) {
+  const int rows = board.integer("rows", 1, 100), columns = board.integer("columns", 1, 100);
+  const double tag_mm = board.number("tag_mm", 0.5, 500);
+  const double pitch_mm = board.number("pitch_mm", tag_mm * 1.25, 1000);
+  const int first_id = board.integer("first_id", 0, 586 - rows * columns + 1);
+  thickness_mm = board.number("thickness_mm", 0, 100);
+  board.finish();
+  return calibration::make_tag_board("board", rows, columns, tag_mm, pitch_mm, first_id);
+}
+
+// Four tags at the corners (+-offset, +-offset) of the plane spanned by `right` and `up`, normal right x up.
+calibration::TagLayout corner_tags(ObjectReader tags, const std::string& name, const Eigen::Vector3d& right,
+                                   const Eigen::Vector3d& up) {
+  const double size_mm = tags.number("tag_mm", 0.5, 500), offset_mm = tags.number("offset_mm", 0.5, 1000);
+  const int first_id = tags.integer("first_id", 0, 583);
+  tags.finish();
+  calibration::TagLayout layout{.name = name, .tags = {}};
+  for (int i = 0; i < 4; ++i) {
+    calibration::Tag tag{.id = first_id + i, .size_mm = size_mm};
+    tag.object_from_tag.linear().col(0) = right;
+    tag.object_from_tag.linear().col(1) = up;
+    tag.object_from_tag.linear().col(2) = right.cross(up);
+    tag.object_from_tag.translation() = (i % 2 ? offset_mm : -offset_mm) * right + (i < 2 ? offset_mm : -offset_mm) * up;
+    layout.tags.push_back(tag);
+  }
+  return layout;
+}
+
+rig::TrueSensor parse_sensor(ObjectReader sensor, rig::TrueLens& lens) {
+  rig::TrueSensor truth;
+  lens.width_px = sensor.integer("width_px", 16, 20000);
+  lens.height_px = sensor.integer("height_px", 16, 20000);
+  truth.black_level_dn = sensor.number("black_level_dn", 0, 4000);
+  truth.white_level_dn = sensor.number("white_level_dn", truth.black_level_dn + 100, 16383);
+  truth.full_well_e = sensor.number("full_well_e", 100, 1e7);
+  truth.read_noise_e = sensor.number("read_noise_e", 0, 1000);
+  truth.dark_current_e_s = sensor.number("dark_current_e_s", 0, 1e5);
+  sensor.finish();
+  return truth;
+}
+
+void parse_lens(ObjectReader lens, rig::TrueLens& truth) {
+  const std::vector<double> focal = lens.numbers("focal_length_px", 2);
+  const std::vector<double> centre = lens.numbers("principal_point_px", 2);
+  const std::vector<double> distortion = lens.numbers("distortion", 5);
+  const std::vector<double> vignetting = lens.numbers("vignetting", 2);
+  if (focal[0] <= 0 || focal[1] <= 0) lens.refuse("focal_length_px", "a focal length must be positive");
+  truth.fx_px = focal[0];
+  truth.fy_px = focal[1];
+  truth.cx_px = centre[0];
+  truth.cy_px = centre[1];
+  std::copy(distortion.begin(), distortion.end(), truth.distortion.begin());
+  std::copy(vignetting.begin(), vignetting.end(), truth.vignetting.begin());
+  truth.world_from_camera = looking_at(lens.vector3("position_mm"), lens.vector3("aim_mm"));
+  lens.finish();
+}
+
+SimulatedRig parse_simulation(ObjectReader simulation) {
+  SimulatedRig result;
+  rig::BenchTruth& truth = result.truth;
+  truth.seed = static_cast<std::uint64_t>(simulation.integer("seed", 0, 1 << 30));
+  result.samples_per_pixel = simulation.integer("samples_per_pixel", 1, 100000);
+  result.target_samples_per_pixel = simulation.integer("target_samples_per_pixel", 1, 100000);
+  truth.sensor = parse_sensor(simulation.object("sensor"), truth.lens);
+  parse_lens(simulation.object("lens"), truth.lens);
+  ObjectReader turntable = simulation.object("turntable");
+  truth.turntable.scale = turntable.number("scale", 0.5, 2);
+  truth.turntable.step_rad = turntable.number("step_deg", 0, 10) * kRadPerDeg;
+  truth.turntable.speed_rad_s = turntable.number("speed_deg_s", 0.01, 1000) * kRadPerDeg;
+  turntable.finish();
+  ObjectReader lamp = simulation.object("lamp");
+  truth.front.position = lamp.vector3("front_position_mm");
+  truth.back.position = lamp.vector3("back_position_mm");
+  truth.front.intensity = truth.back.intensity = lamp.vector3("intensity_mm2");
+  truth.front.radius_mm = truth.back.radius_mm = lamp.number("radius_mm", 0.1, 100);
+  if (truth.front.intensity.minCoeff() < 0) lamp.refuse("intensity_mm2", "cannot be negative");
+  lamp.finish();
+  truth.room_radiance = simulation.vector3("room_radiance");
+  truth.placement_mm = simulation.number("placement_mm", 0, 20);
+  truth.placement_rad = simulation.number("placement_deg", 0, 20) * kRadPerDeg;
+  simulation.finish();
+  return result;
+}
+
+void parse_capture(ObjectReader capture, RigFile& rig) {
+  rig.reflection_angles_deg = capture.numbers("reflection_angles_deg");
+  rig.transmission_angles_deg = capture.numbers("transmission_angles_deg");
+  rig.target_level = capture.number("target_level", 0.05, 0.9);
+  capture.finish();
+}
+
+}  // namespace
+
+RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
+  ObjectReader reader(document, source, "rig", 1);
+  RigFile rig;
+  rig.name = reader.text("name");
+  rig.camera_driver = reader.choice("camera", {"simulated"});
+  rig.turntable_driver = reader.choice("turntable", {"simulated"});
+  rig.operator_driver = reader.choice("operator", {"simulated", "console"});
+  rig.focal_length_guess_px = reader.number("focal_length_guess_px", 10, 1e6);
+  const std::vector<double> colour = reader.numbers("linear_srgb_from_camera", 9);
+  std::copy(colour.begin(), colour.end(), rig.linear_srgb_from_camera.begin());
+  ObjectReader camera = reader.object("camera_by_tape");
+  rig.world_from_camera_by_tape = looking_at(camera.vector3("position_mm"), camera.vector3("aim_mm"));
+  camera.finish();
+  rig.board = parse_board(reader.object("board"), rig.board_thickness_mm);
+  ObjectReader platform = reader.object("platform");
+  rig.platform_height_mm = platform.number("height_mm", 0, 1000);
+  rig.platform_radius_mm = platform.number("radius_mm", 1, 2000);
+  platform.finish();
+  rig.holder_tags = corner_tags(reader.object("holder_tags"), "holder", Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
+  ObjectReader panel = reader.object("spectralon");
+  rig.spectralon.albedo = panel.number("albedo", 0.5, 1);
+  rig.spectralon.white_mm = panel.number("white_mm", 1, 1000);
+  rig.spectralon.plate_mm = panel.number("plate_mm", rig.spectralon.white_mm, 2000);
+  rig.spectralon.tags = corner_tags(panel.object("tags"), "spectralon", Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
+  panel.finish();
+  ObjectReader lamps = reader.object("lamp_by_tape");
+  rig.front_lamp_mm = lamps.vector3("front_position_mm");
+  rig.back_lamp_mm = lamps.vector3("back_position_mm");
+  rig.lamp_radius_mm = lamps.number("radius_mm", 0.1, 100);
+  lamps.finish();
+  parse_capture(reader.object("capture"), rig);
+  if (reader.has("simulation")) rig.simulation = parse_simulation(reader.object("simulation"));
+  if ((rig.camera_driver == "simulated" || rig.turntable_driver == "simulated") && !rig.simulation)
+    reader.refuse("simulation", "is missing; a rig with simulated devices needs it");
+  reader.finish();
+  return rig;
+}
+
+RigFile read_rig(const std::filesystem::path& file) { return parse_rig(read_json_file(file), file.string()); }
+
+}  // namespace station

@@ -1,0 +1,50 @@
+// Rig files (kind "rig"): which devices there are, the printed targets in use, rough tape measures, the capture plan's
+// angles, and for a simulated rig the truth of its bench.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/tags.h"
+#include "rig/simulated_bench.h"
+
+namespace station {
+
+struct SpectralonPanel {
+  double albedo = 0.99;       // of the white square
+  double white_mm = 50;       // its edge
+  double plate_mm = 90;       // edge of the black plate that carries the tags
+  calibration::TagLayout tags;
+};
+
+struct SimulatedRig {
+  rig::BenchTruth truth;
+  int samples_per_pixel = 32;         // of the path tracer that draws the spool
+  int target_samples_per_pixel = 12;  // and of pictures without threads
+};
+
+struct RigFile {
+  std::string name;
+  std::string camera_driver, turntable_driver, operator_driver;  // "simulated"; operator also "console"
+  std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major; for display only
+  double focal_length_guess_px = 0;  // from the lens's engraving
+  Eigen::Isometry3d world_from_camera_by_tape = Eigen::Isometry3d::Identity();  // OpenCV axes; roughly
+  calibration::TagLayout board;
+  double board_thickness_mm = 0;
+  double platform_height_mm = 0, platform_radius_mm = 0;
+  calibration::TagLayout holder_tags;
+  SpectralonPanel spectralon;
+  Eigen::Vector3d front_lamp_mm, back_lamp_mm;  // by tape, world frame
+  double lamp_radius_mm = 0;  // of its bright face
+  std::vector<double> reflection_angles_deg, transmission_angles_deg;
+  double target_level = 0.6;  // of full scale that the brightest thread pixels should reach
+  std::optional<SimulatedRig> simulation;
+};
+
+RigFile parse_rig(const nlohmann::json& document, const std::string& source);
+RigFile read_rig(const std::filesystem::path& file);
+
+}  // namespace station

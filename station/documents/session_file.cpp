@@ -1,0 +1,32 @@
+#include "station/documents/session_file.h"
+
+#include "station/capture/plan_file.h"
+#include "station/documents/reader.h"
+
+namespace station {
+
+nlohmann::json make_session_document(const std::string& utc, const nlohmann::json& rig, const nlohmann::json& spool,
+                                     const Plan& plan) {
+  return {{"format", "threadstation/session"}, {"version", 1},     {"utc", utc}, {"software", software_version()},
+          {"rig", rig},                        {"spool", spool},   {"plan", plan_to_json(plan)}};
+}
+
+SessionFile read_session_file(const std::filesystem::path& session) {
+  const std::filesystem::path file = session / "session.json";
+  if (!std::filesystem::exists(file))
+    throw std::runtime_error(session.string() + " is not a session folder (no session.json); give the folder that capture made");
+  const nlohmann::json document = read_json_file(file);
+  ObjectReader reader(document, file.string(), "session", 1);
+  SessionFile result;
+  result.utc = reader.text("utc");
+  result.software = reader.text("software");
+  result.rig = parse_rig(reader.raw("rig"), file.string() + " (rig)");
+  result.spool = parse_spool(reader.raw("spool"), file.string() + " (spool)");
+  result.plan = plan_from_json(reader.raw("plan"), file.string() + " (plan)");
+  reader.finish();
+  return result;
+}
+
+std::string software_version() { return std::string("threadstation ") + THREADSTATION_VERSION; }
+
+}  // namespace station

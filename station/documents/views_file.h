@@ -1,0 +1,33 @@
+// The developed views of a session (linear/views.json, kind "views"): everything that the inversion needs, holder frame.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "inversion/view.h"
+#include "rig/operator.h"
+
+namespace station {
+
+struct DevelopedView {
+  inversion::View view;  // image and mask are read on demand (read_view_pictures)
+  rig::Mounting mounting = rig::Mounting::horizontal;
+  double platform_angle_rad = 0.0;  // true, measured through the calibration
+  double exposure_s = 0.0;
+  std::string image_file, mask_file;  // relative to the session folder
+  int masked_pixels = 0;
+  double saturated_fraction = 0.0;    // of the masked pixels
+  double pose_rms_px = 0.0;           // of the holder's tags at this mounting
+};
+
+struct DevelopedViews {
+  std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major; for display only
+  std::vector<DevelopedView> views;
+};
+
+nlohmann::json to_json(const DevelopedViews& views);
+DevelopedViews read_views(const std::filesystem::path& session);
+void read_view_pictures(const std::filesystem::path& session, DevelopedViews& views);
+
+}  // namespace station

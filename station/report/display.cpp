@@ -1,0 +1,46 @@
+#include "station/report/display.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "renderer/image_file.h"
+
+namespace station {
+
+double display_scale(const cv::Mat3f& linear, const cv::Mat1b& mask, double white) {
+  std::vector<float> brightest;
+  for (int row = 0; row < linear.rows; ++row)
+    for (int column = 0; column < linear.cols; ++column) {
+      const cv::Vec3f& p = linear(row, column);
+      if (mask(row, column)) brightest.push_back(std::max({p[0], p[1], p[2]}));
+    }
+  if (brightest.empty()) return 1.0;
+  const auto rank = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(brightest.size() - 1));
+  std::nth_element(brightest.begin(), brightest.begin() + rank, brightest.end());
+  const double level = brightest[static_cast<std::size_t>(rank)];
+  return level > 0 ? white / level : 1.0;
+}
+
+cv::Rect threads_box(const cv::Mat1b& mask, int margin_px) {
+  const cv::Rect whole(0, 0, mask.cols, mask.rows);
+  const cv::Rect box = cv::boundingRect(mask);
+  if (box.empty()) return whole;
+  return cv::Rect(box.x - margin_px, box.y - margin_px, box.width + 2 * margin_px, box.height + 2 * margin_px) & whole;
+}
+
+cv::Mat3b display(const cv::Mat3f& linear, double scale, const std::array<double, 9>& linear_srgb_from_camera) {
+  cv::Matx33f matrix;
+  std::copy(linear_srgb_from_camera.begin(), linear_srgb_from_camera.end(), matrix.val);
+  return renderer::encode_srgb(linear, scale, matrix);
+}
+
+void draw_outline(cv::Mat3b& picture, const cv::Mat1b& mask) {
+  cv::Mat1b inner;
+  cv::erode(mask, inner, cv::Mat());
+  for (int row = 0; row < mask.rows; ++row)
+    for (int column = 0; column < mask.cols; ++column)
+      if (mask(row, column) && !inner(row, column)) picture(row, column) = cv::Vec3b(0, 255, 80);
+}
+
+}  // namespace station

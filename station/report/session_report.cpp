@@ -1,0 +1,100 @@
+#include "station/report/session_report.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "station/documents/calibration_file.h"
+#include "station/documents/reader.h"
+#include "station/documents/session_file.h"
+#include "station/documents/views_file.h"
+#include "station/report/display.h"
+#include "station/report/html.h"
+
+namespace station {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / M_PI;
+constexpr int kMargin_px = 24;
+
+std::string caption(const DevelopedView& developed) {
+  return escaped(developed.view.id) + "<br>" + number_text(developed.platform_angle_rad * kDegPerRad, 2) + "&deg;, exposure " +
+         number_text(developed.exposure_s, 4) + " s, " + std::to_string(developed.masked_pixels) + " masked pixels, saturated " +
+         number_text(100 * developed.saturated_fraction, 2) + " %";
+}
+
+// One tile: the developed picture and, under it, the same with the mask's outline.
+std::string tile(const DevelopedView& developed, double scale, const std::array<double, 9>& colour) {
+  const cv::Rect box = threads_box(developed.view.mask, kMargin_px);
+  const cv::Mat3b picture = display(developed.view.image, scale, colour);
+  cv::Mat3b outlined = picture.clone();
+  draw_outline(outlined, developed.view.mask);
+  return "<figure>" + embedded_image(picture(box).clone(), developed.view.id) +
+         embedded_image(outlined(box).clone(), developed.view.id + " with its mask") + "<figcaption>" + caption(developed) +
+         "</figcaption></figure>\n";
+}
+
+// Reflection views share one brightness scale and transmission views another, so that tiles can be compared.
+std::string contact_sheet(const DevelopedViews& developed, bool transmission) {
+  double scale = 0;
+  int count = 0;
+  for (const DevelopedView& view : developed.views)
+    if (view.view.transmission == transmission) {
+      scale += std::log(display_scale(view.view.image, view.view.mask));
+      ++count;
+    }
+  if (count == 0) return {};
+  scale = std::exp(scale / count);
+  std::string tiles;
+  for (const DevelopedView& view : developed.views)
+    if (view.view.transmission == transmission) tiles += tile(view, scale, developed.linear_srgb_from_camera);
+  return "<h2>" + std::string(transmission ? "Transmission" : "Reflection") + ", " + std::to_string(count) +
+         " views (shown at " + number_text(scale, 3) + " times their radiance)</h2>\n<div class=\"sheet\">\n" + tiles + "</div>\n";
+}
+
+std::string position_text(const Eigen::Vector3d& position, const Eigen::Matrix3d& covariance) {
+  std::string text;
+  for (int i = 0; i < 3; ++i)
+    text += (i ? ", " : "") + number_text(position[i], 1) + " ± " + number_text(std::sqrt(covariance(i, i)), 1);
+  return text + " mm";
+}
+
+std::string calibration_table(const RigCalibration& calibration) {
+  const calibration::Lens& lens = calibration.lens.lens;
+  const calibration::PlatformFit& platform = calibration.platform;
+  const calibration::LightFit& light = calibration.light;
+  const Eigen::Vector3d camera = platform.world_from_camera.translation();
+  return fact_table(
+      {{"made", calibration.utc + " on " + calibration.rig_name},
+       {"lens", "f " + number_text(lens.fx_px, 1) + " / " + number_text(lens.fy_px, 1) + " px, rms " +
+                    number_text(calibration.lens.rms_px, 3) + " px over " + std::to_string(calibration.lens.corners_used) + " corners"},
+       {"camera in the world", number_text(camera.x(), 1) + ", " + number_text(camera.y(), 1) + ", " + number_text(camera.z(), 1) + " mm"},
+       {"platform", "angles " + number_text(platform.angle_rms_rad * kDegPerRad, 4) + "° rms about " + number_text(platform.scale, 5) +
+                        " × the reading; rms " + number_text(platform.rms_px, 3) + " px"},
+       {"lamp in front", position_text(light.positions[0], light.position_covariances[0])},
+       {"lamp behind", position_text(light.positions[1], light.position_covariances[1])},
+       {"lamp intensity (R, G, B)", number_text(light.intensity[0], 0) + ", " + number_text(light.intensity[1], 0) + ", " +
+                                        number_text(light.intensity[2], 0) + " (radiance unit × mm²)"},
+       {"Spectralon residual", number_text(100 * light.relative_rms, 2) + " % rms"}});
+}
+
+}  // namespace
+
+std::filesystem::path write_session_report(const std::filesystem::path& session) {
+  const SessionFile asked = read_session_file(session);
+  const RigCalibration calibration = read_calibration(session / "calibration");
+  DevelopedViews developed = read_views(session);
+  read_view_pictures(session, developed);
+  std::string body = fact_table({{"spool", asked.spool.name + " (" + asked.spool.material + ")"},
+                                 {"wrapping", std::to_string(asked.spool.wrapping.turns) + " turns of " +
+                                                  number_text(asked.spool.wrapping.thread_diameter_mm, 3) + " mm"},
+                                 {"rig", asked.rig.name},
+                                 {"captured", asked.utc},
+                                 {"software", asked.software}});
+  body += contact_sheet(developed, false) + contact_sheet(developed, true);
+  body += "<h2>Calibration</h2>\n" + calibration_table(calibration);
+  const std::filesystem::path file = session / "report.html";
+  write_text_file(file, html_page("Thread session: " + asked.spool.name, body));
+  return file;
+}
+
+}  // namespace station

@@ -1,0 +1,31 @@
+#include "station/views.h"
+
+#include "calibration/develop.h"
+
+namespace station {
+
+renderer::Camera camera_of(const calibration::Lens& lens, const Eigen::Isometry3d& frame_from_camera, bool undistorted) {
+  renderer::Camera camera{.width = lens.width_px,
+                          .height = lens.height_px,
+                          .fx = lens.fx_px,
+                          .fy = lens.fy_px,
+                          .cx = lens.cx_px,
+                          .cy = lens.cy_px,
+                          .distortion = lens.distortion,
+                          .world_from_camera = frame_from_camera};
+  if (undistorted) camera.distortion = {};
+  return camera;
+}
+
+calibration::TagObservation tags_in(const calibration::SensorPicture& picture) {
+  const cv::Mat3f radiance = calibration::develop(picture, {}).radiance;
+  cv::Mat1f grey(radiance.size());
+  for (int row = 0; row < grey.rows; ++row)
+    for (int column = 0; column < grey.cols; ++column) {
+      const cv::Vec3f& pixel = radiance(row, column);
+      grey(row, column) = std::max(0.F, (pixel[0] + pixel[1] + pixel[2]) / 3.F);
+    }
+  return calibration::detect_tags(grey);
+}
+
+}  // namespace station
