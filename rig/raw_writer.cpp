@@ -126,6 +126,12 @@ void check(const RawFrame& frame) {
   if (frame.mosaic.empty()) {
     throw std::runtime_error("a raw file was to be written from a mosaic without pixels");
   }
+  const std::uint16_t highest = *std::max_element(frame.mosaic.begin(), frame.mosaic.end());
+  if (std::max(highest, frame.black_level_dn) > kRawWhiteLevelDn) {
+    throw std::runtime_error("a raw file was to be written with values up to " + std::to_string(highest) +
+                             " and black level " + std::to_string(frame.black_level_dn) +
+                             "; it has 14 bits, up to 16383");
+  }
   const ExposureSettings& settings = frame.settings;
   const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
   if (!positive(settings.exposure_s) || !positive(settings.f_number) || settings.iso <= 0 || settings.iso > 65535) {
@@ -144,7 +150,7 @@ Directory exif_directory(const RawFrame& frame) {
 Directory mosaic_directory(const RawFrame& frame, std::uint32_t pixels_at) {
   const auto width = static_cast<std::uint32_t>(frame.mosaic.cols);
   const auto height = static_cast<std::uint32_t>(frame.mosaic.rows);
-  const std::uint16_t black = frame.black_level_dn, white = frame.white_level_dn;
+  const std::uint16_t black = frame.black_level_dn, white = kRawWhiteLevelDn;
   return {long_number(254, 0),  // full resolution
           long_number(256, width),
           long_number(257, height),

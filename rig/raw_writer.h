@@ -16,16 +16,20 @@
 
 namespace rig {
 
+// The largest value of 14 bits. A genuine file repeats the white level in an encrypted directory (tag 0x787f);
+// readers do without it and take this value for the model, so no other can be written.
+inline constexpr std::uint16_t kRawWhiteLevelDn = 16383;
+
 struct RawFrame {
   cv::Mat1w mosaic;  // rows x columns, DN; RGGB: (0, 0) red, (0, 1) and (1, 0) green, (1, 1) blue
   std::uint16_t black_level_dn = 512;
-  std::uint16_t white_level_dn = 16383;
   ExposureSettings settings;
   std::string utc;     // as Clock::utc() gives it; EXIF dates have no zone, the file says UTC
   std::string serial;  // of the body
 };
 
-// The bytes of the file. Throws std::runtime_error when there are no pixels, `utc` is not ISO 8601, or the settings
+// The bytes of the file. Throws std::runtime_error when there are no pixels, `utc` is not ISO 8601, a value
+// needs more than 14 bits, or the settings
 // are not positive numbers.
 std::vector<std::byte> encode_raw(const RawFrame& frame);
 

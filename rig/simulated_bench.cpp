@@ -59,8 +59,8 @@ BenchState SimulatedBench::state() const {
   return now;
 }
 
-// The hand's error: an offset in the parent's frame and a small turn about the object's own origin. What stands or lies on
-// the platform is held by it, so only its place and direction on the platform are uncertain.
+// The hand's error: an offset in the parent's frame and a small turn about the object's own origin. What stands or
+// lies on the platform is held by it, so only its place and direction on the platform are uncertain.
 void SimulatedBench::place(const Arrangement& arrangement) {
   arrangement_ = arrangement;
   placed_pose_ = arrangement.pose;
@@ -73,7 +73,8 @@ void SimulatedBench::place(const Arrangement& arrangement) {
   const auto [turn_y, turn_z] = hand.normals();
   if (arrangement.on_platform) {
     placed_pose_.translation() += truth_.placement_mm * Eigen::Vector3d(x, y, 0);
-    placed_pose_.linear() = Eigen::AngleAxisd(truth_.placement_rad * turn_z, Eigen::Vector3d::UnitZ()) * placed_pose_.linear();
+    placed_pose_.linear() =
+        Eigen::AngleAxisd(truth_.placement_rad * turn_z, Eigen::Vector3d::UnitZ()) * placed_pose_.linear();
     return;
   }
   placed_pose_.translation() += truth_.placement_mm * Eigen::Vector3d(x, y, z);

@@ -30,7 +30,7 @@ struct TrueLens {
 // A pixel's value = black level + (Poisson(photo + dark electrons) + normal(0, read noise)) * gain, rounded and kept
 // within 0 and the white level; gain = ISO / 100 * (white - black) / full well [DN per electron].
 struct TrueSensor {
-  double black_level_dn = 512, white_level_dn = 16383;  // 14 bits
+  double black_level_dn = 512, white_level_dn = 16383;  // as the files have them: 14 bits
   double full_well_e = 50000;                           // electrons from black to white level at base ISO
   double read_noise_e = 5;
   double dark_current_e_s = 2;  // electrons per second
@@ -50,10 +50,10 @@ struct TrueLamp {
 };
 
 struct BenchTruth {
-  TrueLens lens;
-  TrueSensor sensor;
-  TrueTurntable turntable;
-  TrueLamp front, back;
+  TrueLens lens{};
+  TrueSensor sensor{};
+  TrueTurntable turntable{};
+  TrueLamp front{}, back{};
   Eigen::Vector3d room_radiance =
       Eigen::Vector3d::Constant(0.3);  // of a white diffuser under the room light, roughly
   double placement_mm = 1.0;           // a hand places an object this well (standard deviation per axis)
@@ -63,11 +63,11 @@ struct BenchTruth {
 
 // Everything that the radiance reaching the lens depends on, at one instant.
 struct BenchState {
-  TrueLens lens;
-  Arrangement arrangement;                                              // as asked
+  TrueLens lens{};
+  Arrangement arrangement{};                                            // as asked
   Eigen::Isometry3d world_from_object = Eigen::Isometry3d::Identity();  // as it truly stands now
   double platform_angle_rad = 0.0;                                      // true
-  std::optional<TrueLamp> lamp;
+  std::optional<TrueLamp> lamp{};
   Eigen::Vector3d room_radiance = Eigen::Vector3d::Zero();
 };
 
@@ -89,7 +89,8 @@ class SimulatedBench {
   cv::Mat3f draw() const { return draw_(state()); }
 
   // With the placement error of a hand, which depends only on the truth's seed and on the object, its mounting and
-  // pose (not on the lights): asked again for the same, the hand places it the same.
+  // pose (not on the lights): asked again for the same, the hand places it the same. On the platform only the place
+  // and the direction on it are uncertain.
   void place(const Arrangement& arrangement);
   void turn_platform(double true_angle_rad) { platform_angle_rad_ = true_angle_rad; }
 

@@ -81,9 +81,22 @@ void check_drawing(const cv::Mat3f& radiance, const TrueLens& lens) {
   }
 }
 
+void check_sensor(const TrueSensor& sensor) {
+  const double black_dn = sensor.black_level_dn;
+  if (!(black_dn >= 0 && black_dn < kRawWhiteLevelDn && black_dn == std::round(black_dn)) ||
+      sensor.white_level_dn != kRawWhiteLevelDn || !(sensor.full_well_e > 0)) {
+    throw std::runtime_error("a sensor was to be simulated with black level " + std::to_string(black_dn) +
+                             ", white level " + std::to_string(sensor.white_level_dn) + " and full well " +
+                             std::to_string(sensor.full_well_e) +
+                             " electrons; its files hold a whole black level below the white level 16383");
+  }
+}
+
 class SimulatedCamera final : public Camera {
  public:
-  SimulatedCamera(SimulatedBench& bench, Clock& clock) : bench_(bench), clock_(clock) {}
+  SimulatedCamera(SimulatedBench& bench, Clock& clock) : bench_(bench), clock_(clock) {
+    check_sensor(bench.truth().sensor);
+  }
 
   CameraIdentity identity() override {
     return {.make = "Sony",
@@ -122,7 +135,6 @@ class SimulatedCamera final : public Camera {
     RawFrame frame;
     frame.mosaic = expose();
     frame.black_level_dn = static_cast<std::uint16_t>(bench_.truth().sensor.black_level_dn);
-    frame.white_level_dn = static_cast<std::uint16_t>(bench_.truth().sensor.white_level_dn);
     frame.settings = settings_;
     frame.utc = clock_.utc();
     frame.serial = identity().serial;
