@@ -1,10 +1,14 @@
-// Raw mosaic to linear radiance: dark or black level, exposure, flat field, demosaicing that keeps linearity, undistortion.
+// Raw mosaic to linear radiance: dark or black level, exposure, flat field, demosaicing that keeps linearity,
+// undistortion.
 //
-// Result: cv::Mat3f RGB in the radiance unit (1 = full scale (white - black level) per second of exposure, flat-fielded).
+// Result: cv::Mat3f RGB in the radiance unit (1 = full scale (white - black level) per second of exposure,
+// flat-fielded). Values below 0 (noise about the dark level) are kept, so that means stay unbiased. No white balance,
+// no ISO scaling. Order: dark, exposure, vignetting (on the sensor's own pixels), demosaicing, undistortion.
 #pragma once
 
 #include <opencv2/core.hpp>
 #include <optional>
+#include <vector>
 
 #include "calibration/lens.h"
 #include "calibration/light.h"
@@ -16,16 +20,17 @@ namespace calibration {
 cv::Mat1f master_dark(const std::vector<SensorPicture>& darks);
 
 struct DevelopOptions {
-  std::optional<cv::Mat1f> dark_dn;          // absent: the file's black level
-  std::optional<Vignetting> vignetting;      // absent: not flat-fielded
-  std::optional<Lens> lens;                  // absent: not undistorted
+  std::optional<cv::Mat1f> dark_dn{};      // absent: the file's black level
+  std::optional<Vignetting> vignetting{};  // absent: not flat-fielded
+  std::optional<Lens> lens{};              // absent: not undistorted
 };
 
 struct Developed {
-  cv::Mat3f radiance;
-  cv::Mat1b saturated;       // 255 where any of the raw values that a pixel was made from is above 0.98 of the range
+  cv::Mat3f radiance;   // undistorted: same intrinsic matrix; 0 where the sensor did not see
+  cv::Mat1b saturated;  // 255 where any of the raw values that a pixel was made from is above 0.98 of the range
 };
 
+// Throws std::runtime_error when sizes do not match or the picture has no levels or exposure.
 Developed develop(const SensorPicture& raw, const DevelopOptions& options);
 
 }  // namespace calibration

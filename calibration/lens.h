@@ -19,16 +19,17 @@ struct Lens {
 
 struct LensFit {
   Lens lens;
-  double rms_px = 0.0;                        // per axis, over the corners used
-  Eigen::MatrixXd covariance;                 // 9 x 9: fx fy cx cy k1 k2 p1 p2 k3 (pixels where they have units)
-  std::vector<double> view_rms_px;            // one per view
+  double rms_px = 0.0;              // per axis, over the corners used
+  Eigen::MatrixXd covariance;       // 9 x 9: fx fy cx cy k1 k2 p1 p2 k3 (pixels where they have units)
+  std::vector<double> view_rms_px;  // one per view
   int corners_used = 0;
   bool converged = false;
 };
 
 // Board views -> lens. `focal_guess_px` from EXIF or the rig file. Throws std::runtime_error when the views cannot
 // determine a lens (too few, all alike), saying what is missing.
-LensFit fit_lens(const std::vector<TagObservation>& views, const TagLayout& board, cv::Size image_size, double focal_guess_px);
+LensFit fit_lens(const std::vector<TagObservation>& views, const TagLayout& board, cv::Size image_size,
+                 double focal_guess_px);
 
 // Pixel positions with the distortion removed (same intrinsic matrix, zero distortion).
 std::vector<Eigen::Vector2d> undistort_points(const Lens& lens, const std::vector<Eigen::Vector2d>& pixels);
