@@ -22,7 +22,7 @@ RigDevices open_rig(const RigFile& rig, const std::optional<Spool>& spool, bool 
   if (rig.operator_driver == "simulated")
     devices.person = rig::make_simulated_operator(*devices.bench);
   else
-    devices.person = std::make_unique<rig::ConsoleOperator>(std::cin, std::cout);
+    devices.person = rig::make_console_operator(std::cin, std::cout);
   return devices;
 }
 

@@ -6,16 +6,16 @@
 namespace station {
 namespace {
 
-void print(const std::vector<rig::DetectedDevice>& devices, bool json) {
+void print(const std::vector<rig::FoundDevice>& devices, bool json) {
   if (json) {
     nlohmann::json list = nlohmann::json::array();
-    for (const rig::DetectedDevice& d : devices)
-      list.push_back({{"kind", d.kind}, {"name", d.name}, {"port", d.port}, {"serial", d.serial}, {"believed_to_be", d.believed_to_be}});
+    for (const rig::FoundDevice& d : devices)
+      list.push_back({{"kind", d.kind}, {"name", d.name}, {"port", d.port}, {"usb_id", d.usb_id}, {"serial", d.serial}, {"believed_to_be", d.believed_to_be}});
     std::cout << list.dump() << "\n";
     return;
   }
   if (devices.empty()) std::cout << "no camera and no serial port found; plug one in and switch it on\n";
-  for (const rig::DetectedDevice& d : devices)
+  for (const rig::FoundDevice& d : devices)
     std::cout << d.kind << "  " << d.port << "  " << d.name << (d.serial.empty() ? "" : "  serial " + d.serial) << "  (" << d.believed_to_be << ")\n";
 }
 
@@ -25,7 +25,7 @@ void add_devices_command(CLI::App& app) {
   auto json = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("devices", "list cameras and serial ports, and what each is believed to be");
   command->add_flag("--json", *json, "as JSON, for machines");
-  command->callback([json] { print(rig::detect_devices(), *json); });
+  command->callback([json] { print(rig::find_devices(), *json); });
 }
 
 }  // namespace station

@@ -1,7 +1,9 @@
 // The rig calibration that sessions use (kind "calibration"): lens, camera pose, platform, lamp positions and intensity.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 

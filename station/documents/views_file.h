@@ -1,7 +1,9 @@
 // The developed views of a session (linear/views.json, kind "views"): everything that the inversion needs, holder frame.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
