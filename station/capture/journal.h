@@ -1,0 +1,66 @@
+// What happened in a session, one record per line, each on the disk before the next thing is done (journal.jsonl).
+//
+// A line, so that another program can check it:
+//   {"seq":3,"utc":"...","event":"picture","data":{...},"sha256":"<64 hexadecimal digits>"}
+// - "seq" counts from 1 without a gap; "sha256" is the last key, and the line ends with one newline (byte 10);
+// - the digits are the SHA-256 of: the 64 digits of the line before (64 times '0' for the first line), followed by
+// the
+//   bytes of this line up to and without `,"sha256":"`. A line that is edited, removed or moved breaks the chain.
+//
+// Opening cuts a torn last line (without its newline, or with another checksum): that record was never acknowledged.
+// The cut is itself a record, event "cut". A line before the last that does not check is an error.
+//
+// Errors: std::runtime_error that names the file, the line where there is one, and what to do.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rig/clock.h"
+#include "station/capture/file_system.h"
+
+namespace station {
+
+struct JournalRecord {
+  std::uint64_t seq = 0;
+  std::string utc, event;
+  nlohmann::json data;
+  std::string sha256;
+};
+
+struct JournalText {
+  std::vector<JournalRecord> records;
+  std::uintmax_t good_bytes = 0;  // where a torn tail begins, or the end
+  std::uintmax_t torn_bytes = 0;  // 0: the journal ends with a whole record
+};
+
+// A missing file is an empty journal. Changes nothing.
+JournalText read_journal(const std::filesystem::path& file);
+
+class Journal {
+ public:
+  // The clock and the file system must outlive the journal.
+  Journal(const std::filesystem::path& file, rig::Clock& clock, FileSystem& file_system);
+
+  // Returns when the record is on the disk. After an error the journal ends as it did before.
+  void append(std::string_view event, const nlohmann::json& data);
+
+  const std::vector<JournalRecord>& records() const { return records_; }
+
+ private:
+  void write_line(const std::string& line);
+
+  std::filesystem::path path_;
+  rig::Clock* clock_;
+  FileSystem* file_system_;
+  OpenFile file_;
+  std::uintmax_t size_ = 0;
+  bool broken_ = false;  // it is not known what stands on the disk
+  std::vector<JournalRecord> records_;
+};
+
+}  // namespace station

@@ -1,0 +1,189 @@
+#include "station/capture/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include "station/capture/file_name.h"
+
+namespace station {
+namespace {
+
+constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+constexpr std::size_t kReflections = 6, kTransmissions = 5;
+
+PlanStep pose_step(const std::string& id, rig::Mounting mounting) {
+  return {.id = id,
+          .kind = StepKind::pose,
+          .mounting = mounting,
+          .lamp = rig::Lamp::off,
+          .room_light = true,
+          .platform_angle_rad = 0,
+          .exposure_of = {}};
+}
+
+void add_views(Plan& plan, const std::string& name, rig::Mounting mounting, rig::Lamp lamp,
+               const std::vector<double>& angles_deg) {
+  for (std::size_t i = 0; i < angles_deg.size(); ++i) {
+    plan.steps.push_back({.id = name + "-" + std::to_string(i + 1),
+                          .kind = StepKind::view,
+                          .mounting = mounting,
+                          .lamp = lamp,
+                          .room_light = false,
+                          .platform_angle_rad = angles_deg[i] * kRadiansPerDegree,
+                          .exposure_of = {}});
+  }
+}
+
+// The holder stays as the last view left it; nothing is seen of it anyway.
+void add_darks(Plan& plan) {
+  const PlanStep last = plan.steps.back();
+  for (std::size_t i = 0, count = plan.steps.size(); i < count; ++i) {
+    if (plan.steps[i].kind == StepKind::view) {
+      const std::string view = plan.steps[i].id;
+      plan.steps.push_back({.id = "dark-" + view,
+                            .kind = StepKind::dark,
+                            .mounting = last.mounting,
+                            .lamp = rig::Lamp::off,
+                            .room_light = false,
+                            .platform_angle_rad = last.platform_angle_rad,
+                            .exposure_of = view});
+    }
+  }
+}
+
+void require_count(const char* what, std::size_t found, std::size_t wanted) {
+  if (found != wanted) {
+    throw std::runtime_error("a capture plan has " + std::to_string(wanted) + " " + what + " angles, " +
+                             std::to_string(found) + " were given; correct the list");
+  }
+}
+
+std::optional<std::string> angle_problem(const PlanStep& step, double largest_angle_rad) {
+  if (!std::isfinite(step.platform_angle_rad)) {
+    return "the platform angle is not a finite number";
+  }
+  if (std::abs(step.platform_angle_rad) > largest_angle_rad * (1 + 1e-9)) {
+    return "the platform angle " + std::to_string(step.platform_angle_rad / kRadiansPerDegree) + " deg is beyond +-" +
+           std::to_string(largest_angle_rad / kRadiansPerDegree) + " deg";
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> light_problem(const PlanStep& step) {
+  if (step.kind == StepKind::view && (step.lamp == rig::Lamp::off || step.room_light)) {
+    return "a view needs the lamp on and the room light off";
+  }
+  if (step.kind == StepKind::dark && (step.lamp != rig::Lamp::off || step.room_light)) {
+    return "a dark needs the lamp and the room light off";
+  }
+  if (step.kind == StepKind::pose && !step.room_light) {
+    return "a pose picture needs the room light on";
+  }
+  return std::nullopt;
+}
+
+// `earlier`: the steps before this one.
+std::optional<std::string> order_problem(const PlanStep& step, const std::map<std::string, StepKind>& earlier,
+                                         const std::set<rig::Mounting>& posed) {
+  if (earlier.contains(step.id)) {
+    return "the id stands twice in the plan";
+  }
+  if (step.kind == StepKind::view && !posed.contains(step.mounting)) {
+    return "a pose picture with its mounting has to come before it";
+  }
+  if (step.kind != StepKind::dark && !step.exposure_of.empty()) {
+    return "only a dark repeats the exposure of another step";
+  }
+  const auto view = earlier.find(step.exposure_of);
+  if (step.kind == StepKind::dark && (view == earlier.end() || view->second != StepKind::view)) {
+    return "exposure_of '" + step.exposure_of + "' names no view before it";
+  }
+  return std::nullopt;
+}
+
+bool needs_a_hand(const PlanStep& before, const PlanStep& step) {
+  return before.mounting != step.mounting || before.lamp != step.lamp || before.room_light != step.room_light;
+}
+
+}  // namespace
+
+bool is_reflection(const PlanStep& step) {
+  return step.kind == StepKind::view && step.lamp == rig::Lamp::front;
+}
+
+bool is_transmission(const PlanStep& step) {
+  return step.kind == StepKind::view && step.lamp == rig::Lamp::back;
+}
+
+std::size_t view_count(const Plan& plan) {
+  return static_cast<std::size_t>(std::count_if(plan.steps.begin(), plan.steps.end(),
+                                                [](const PlanStep& step) { return step.kind == StepKind::view; }));
+}
+
+const PlanStep* find_step(const Plan& plan, const std::string& id) {
+  const auto found =
+      std::find_if(plan.steps.begin(), plan.steps.end(), [&](const PlanStep& step) { return step.id == id; });
+  return found == plan.steps.end() ? nullptr : &*found;
+}
+
+Plan make_capture_plan(const PlanRequest& request) {
+  using rig::Lamp, rig::Mounting;
+  require_count("reflection", request.reflection_angles_deg.size(), kReflections);
+  require_count("transmission", request.transmission_angles_deg.size(), kTransmissions);
+  Plan plan;
+  plan.steps.push_back(pose_step("pose-horizontal", Mounting::horizontal));
+  add_views(plan, "reflection-horizontal", Mounting::horizontal, Lamp::front, request.reflection_angles_deg);
+  add_views(plan, "transmission", Mounting::horizontal, Lamp::back, request.transmission_angles_deg);
+  plan.steps.push_back(pose_step("pose-vertical", Mounting::vertical));
+  add_views(plan, "reflection-vertical", Mounting::vertical, Lamp::front, request.reflection_angles_deg);
+  add_darks(plan);
+  if (const std::optional<std::string> problem = check_plan(plan)) {
+    throw std::runtime_error(*problem);
+  }
+  return plan;
+}
+
+std::optional<std::string> check_plan(const Plan& plan, double largest_angle_rad) {
+  std::map<std::string, StepKind> earlier;
+  std::set<rig::Mounting> posed;
+  for (const PlanStep& step : plan.steps) {
+    std::optional<std::string> problem = problem_with_name(step.id);
+    if (!problem) {
+      problem = order_problem(step, earlier, posed);
+    }
+    if (!problem) {
+      problem = angle_problem(step, largest_angle_rad);
+    }
+    if (!problem) {
+      problem = light_problem(step);
+    }
+    if (problem) {
+      return "plan step " + std::to_string(earlier.size() + 1) +
+             (problem_with_name(step.id) ? "" : " '" + step.id + "'") + ": " + *problem + "; correct the plan";
+    }
+    earlier.emplace(step.id, step.kind);
+    if (step.kind == StepKind::pose) {
+      posed.insert(step.mounting);
+    }
+  }
+  if (view_count(plan) == 0) {
+    return "the plan has no view; add one";
+  }
+  return std::nullopt;
+}
+
+double estimated_duration_s(const Plan& plan, const StepDurations& durations) {
+  double total_s = 0;
+  for (std::size_t i = 0; i < plan.steps.size(); ++i) {
+    total_s += plan.steps[i].kind == StepKind::dark ? durations.dark_s : durations.picture_s;
+    if (i == 0 || needs_a_hand(plan.steps[i - 1], plan.steps[i])) {
+      total_s += durations.arrange_s;
+    }
+  }
+  return total_s;
+}
+
+}  // namespace station

@@ -1,0 +1,64 @@
+// A capture plan: the list of pictures of a session, as data. Each step says the whole arrangement that it needs (the
+// holder on the platform at its nominal pose, lamp, room light, platform angle), so that any step may come first
+// after an interruption. Angles in radians, 0 where the front of the holder faces the camera.
+#pragma once
+
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rig/operator.h"
+
+namespace station {
+
+// pose: under the room light, for the tags on the holder. view: one of the 17. dark: no light at all, with the
+// exposure of the view that it belongs to.
+enum class StepKind { pose, view, dark };
+
+struct PlanStep {
+  std::string id;  // also the name of the picture's file
+  StepKind kind = StepKind::view;
+  rig::Mounting mounting = rig::Mounting::horizontal;
+  rig::Lamp lamp = rig::Lamp::off;
+  bool room_light = false;
+  double platform_angle_rad = 0.0;
+  std::string exposure_of;  // dark only: the view whose camera settings it repeats
+
+  bool operator==(const PlanStep&) const = default;
+};
+
+struct Plan {
+  std::vector<PlanStep> steps;
+
+  bool operator==(const Plan&) const = default;
+};
+
+bool is_reflection(const PlanStep& step);    // a view with the lamp in front
+bool is_transmission(const PlanStep& step);  // a view with the lamp behind
+std::size_t view_count(const Plan& plan);
+const PlanStep* find_step(const Plan& plan, const std::string& id);  // nullptr: no such step
+
+struct PlanRequest {
+  std::vector<double> reflection_angles_deg = {-50, -30, -10, 10, 30, 50};  // 6, for each mounting
+  std::vector<double> transmission_angles_deg = {-40, -20, 0, 20, 40};      // 5, threads horizontal
+};
+
+// Horizontal: pose, 6 reflections, 5 transmissions; vertical: pose, 6 reflections; then a dark for each view.
+// Errors: std::runtime_error when the angles are not 6 and 5, or check_plan finds something.
+Plan make_capture_plan(const PlanRequest& request);
+
+// One clear line about the first thing that makes the plan impossible.
+std::optional<std::string> check_plan(const Plan& plan, double largest_angle_rad = std::numbers::pi);
+
+// Rough durations for the time left before the session has measured its own.
+struct StepDurations {
+  double picture_s = 8.0;  // a step with its metering, from asking to stored
+  double dark_s = 4.0;
+  double arrange_s = 40.0;  // a hand changes lamp, room light or mounting
+};
+
+double estimated_duration_s(const Plan& plan, const StepDurations& durations = {});
+
+}  // namespace station

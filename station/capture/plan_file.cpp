@@ -1,0 +1,106 @@
+#include "station/capture/plan_file.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "station/documents/reader.h"
+
+namespace station {
+namespace {
+
+using nlohmann::json;
+constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
+constexpr double kWidestAngleDeg = 1e6;  // check_plan knows the limits of a platform
+
+StepKind kind_from_name(const std::string& name) {
+  return name == "pose" ? StepKind::pose : name == "dark" ? StepKind::dark : StepKind::view;
+}
+
+json step_to_json(const PlanStep& step) {
+  json document = {{"id", step.id},
+                   {"kind", kind_name(step.kind)},
+                   {"mounting", mounting_name(step.mounting)},
+                   {"lamp", lamp_name(step.lamp)},
+                   {"room_light", step.room_light},
+                   {"platform_angle_deg", file_degrees(step.platform_angle_rad)}};
+  if (step.kind == StepKind::dark) {
+    document["exposure_of"] = step.exposure_of;
+  }
+  return document;
+}
+
+PlanStep read_step(ObjectReader& reader) {
+  PlanStep step;
+  step.id = reader.text("id");
+  step.kind = kind_from_name(reader.choice("kind", {"pose", "view", "dark"}));
+  step.mounting = mounting_from_name(reader.choice("mounting", {"horizontal", "vertical"}));
+  step.lamp = lamp_from_name(reader.choice("lamp", {"off", "front", "back"}));
+  step.room_light = reader.flag("room_light");
+  step.platform_angle_rad =
+      reader.number("platform_angle_deg", -kWidestAngleDeg, kWidestAngleDeg) / kDegreesPerRadian;
+  if (step.kind == StepKind::dark) {
+    step.exposure_of = reader.text("exposure_of");
+  }
+  reader.finish();
+  return step;
+}
+
+}  // namespace
+
+json plan_to_json(const Plan& plan) {
+  json steps = json::array();
+  for (const PlanStep& step : plan.steps) {
+    steps.push_back(step_to_json(step));
+  }
+  return {{"format", "threadstation/plan"}, {"version", 1}, {"steps", steps}};
+}
+
+Plan plan_from_json(const json& document, const std::string& source) {
+  ObjectReader reader(document, source, "plan", 1);
+  Plan plan;
+  for (ObjectReader& step : reader.objects("steps")) {
+    plan.steps.push_back(read_step(step));
+  }
+  reader.finish();
+  if (const std::optional<std::string> problem = check_plan(plan)) {
+    throw std::runtime_error(source + ": " + *problem);
+  }
+  return plan;
+}
+
+std::string lamp_name(rig::Lamp lamp) {
+  return lamp == rig::Lamp::off ? "off" : lamp == rig::Lamp::front ? "front" : "back";
+}
+
+std::string mounting_name(rig::Mounting mounting) {
+  return mounting == rig::Mounting::horizontal ? "horizontal" : "vertical";
+}
+
+std::string kind_name(StepKind kind) {
+  return kind == StepKind::pose ? "pose" : kind == StepKind::view ? "view" : "dark";
+}
+
+rig::Lamp lamp_from_name(const std::string& name) {
+  for (const rig::Lamp lamp : {rig::Lamp::off, rig::Lamp::front, rig::Lamp::back}) {
+    if (name == lamp_name(lamp)) {
+      return lamp;
+    }
+  }
+  throw std::runtime_error("the lamp is said to be '" + name + "'; it is off, front or back");
+}
+
+rig::Mounting mounting_from_name(const std::string& name) {
+  for (const rig::Mounting mounting : {rig::Mounting::horizontal, rig::Mounting::vertical}) {
+    if (name == mounting_name(mounting)) {
+      return mounting;
+    }
+  }
+  throw std::runtime_error("the mounting is said to be '" + name + "'; it is horizontal or vertical");
+}
+
+double file_degrees(double angle_rad) {
+  return std::round(angle_rad * kDegreesPerRadian * 1e9) / 1e9;
+}
+
+}  // namespace station

@@ -1,0 +1,210 @@
+#include "station/capture/session_folder.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <system_error>
+
+#include "station/capture/file_name.h"
+#include "station/capture/folder_lock.h"
+#include "station/capture/plan_file.h"
+#include "station/capture/sha256.h"
+#include "station/capture/stored_file.h"
+#include "station/documents/reader.h"
+
+namespace station {
+namespace fs = std::filesystem;
+namespace {
+
+using nlohmann::json;
+constexpr std::array kSubfolders = {"raw", "calibration", "linear", "masks", "result"};
+constexpr const char* kSessionFile = "session.json";
+constexpr const char* kJournalFile = "journal.jsonl";
+
+void require_name(const std::string& name) {
+  if (const std::optional<std::string> problem = problem_with_name(name)) {
+    throw std::runtime_error(*problem);
+  }
+}
+
+std::string last_name(const fs::path& folder) {
+  const fs::path normal = fs::absolute(folder).lexically_normal();
+  return (normal.has_filename() ? normal : normal.parent_path()).filename().string();
+}
+
+// A link in the place of a folder would lead the pictures elsewhere.
+bool is_true_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::symlink_status(path, ignored).type() == fs::file_type::directory;
+}
+
+bool is_empty_or_absent(const fs::path& folder) {
+  return !fs::exists(folder) || fs::is_empty(folder);
+}
+
+// create() makes the lock first and session.json last, and nothing else in between.
+bool is_unfinished(const fs::path& folder) {
+  const bool known = std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), [](const auto& entry) {
+    const std::string name = entry.path().filename().string();
+    return name == kLockFile || is_left_over(entry.path()) ||
+           std::find(kSubfolders.begin(), kSubfolders.end(), name) != kSubfolders.end();
+  });
+  return known && fs::exists(folder / kLockFile) && is_empty_or_absent(folder / "raw");
+}
+
+void require_room_for_a_session(const fs::path& folder) {
+  if (!fs::exists(folder)) {
+    return;
+  }
+  if (!fs::is_directory(folder)) {
+    throw std::runtime_error("'" + folder.string() + "' is a file, a session needs a folder; choose another name");
+  }
+  if (is_session(folder)) {
+    throw std::runtime_error("'" + folder.string() + "' is a session already; resume it, or choose another name");
+  }
+  if (!fs::is_empty(folder) && !is_unfinished(folder)) {
+    throw std::runtime_error("'" + folder.string() +
+                             "' holds other files and is no session; choose a new or an empty folder");
+  }
+}
+
+void make_folders(const fs::path& folder) {
+  std::error_code code;
+  fs::create_directories(folder, code);
+  if (code) {
+    throw std::runtime_error(write_problem(folder, code));
+  }
+}
+
+void make_subfolders(const fs::path& folder) {
+  for (const char* name : kSubfolders) {
+    make_folders(folder / name);
+  }
+}
+
+std::runtime_error not_whole(const fs::path& folder, const std::string& found) {
+  return std::runtime_error("the session '" + folder.string() + "' " + found + "; restore it from a copy");
+}
+
+void require_whole(const fs::path& folder) {
+  if (!is_session(folder)) {
+    throw std::runtime_error(
+        "'" + folder.string() +
+        "' is no session (it has no session.json); check the path, or start a new session there");
+  }
+  for (const char* name : kSubfolders) {
+    if (!is_true_folder(folder / name)) {
+      throw not_whole(folder, "has no folder " + std::string(name) + "/");
+    }
+  }
+}
+
+Plan plan_of(const json& session, const fs::path& file) {
+  ObjectReader reader(session, file.string(), "session", 1);
+  return plan_from_json(reader.raw("plan"), file.string());
+}
+
+void store_calibration(const fs::path& folder, const CalibrationFiles& calibration, FileSystem& file_system) {
+  for (const auto& [name, bytes] : calibration) {
+    require_name(name);
+    store_file(file_system, folder / "calibration" / name, bytes);
+  }
+}
+
+}  // namespace
+
+bool is_session(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::is_regular_file(folder / kSessionFile, ignored);
+}
+
+SessionFolder SessionFolder::create(const fs::path& folder, const json& session, const CalibrationFiles& calibration,
+                                    rig::Clock& clock, FileSystem& file_system) {
+  require_name(last_name(folder));
+  plan_of(session, folder / kSessionFile);
+  OpenFile lock;
+  try {
+    require_room_for_a_session(folder);
+    make_folders(folder);
+    lock = lock_folder(folder, file_system);
+    require_room_for_a_session(folder);  // another process may have been quicker
+    make_subfolders(folder);
+    store_calibration(folder, calibration, file_system);
+  } catch (const std::system_error& error) {
+    throw std::runtime_error(write_problem(folder, error.code()));
+  }
+  const std::string text = session.dump(2) + "\n";
+  store_file(file_system, folder / kSessionFile, std::as_bytes(std::span(text)));
+  return SessionFolder(folder, std::move(lock), clock, file_system);
+}
+
+SessionFolder SessionFolder::open(const fs::path& folder, rig::Clock& clock, FileSystem& file_system) {
+  require_whole(folder);
+  OpenFile lock = lock_folder(folder, file_system);
+  return SessionFolder(folder, std::move(lock), clock, file_system);
+}
+
+SessionFolder::SessionFolder(const fs::path& folder, OpenFile lock, rig::Clock& clock, FileSystem& file_system)
+    : path_(folder),
+      lock_(std::move(lock)),
+      file_system_(&file_system),
+      session_(read_json_file(folder / kSessionFile)),
+      plan_(plan_of(session_, folder / kSessionFile)),
+      journal_(folder / kJournalFile, clock, file_system) {
+  // The first record is on the disk before the first picture, so this was no interruption.
+  if (journal_.records().empty() && !picture_names().empty()) {
+    throw not_whole(folder, "has pictures, but its journal is missing or empty");
+  }
+  json removed = json::array();
+  for (const fs::path& place : {path_, path_ / "raw", path_ / "calibration"}) {
+    for (const std::string& name : remove_left_overs(place)) {
+      removed.push_back((place / name).lexically_relative(path_).string());
+    }
+  }
+  if (!removed.empty()) {
+    append("left_overs_removed", {{"files", removed}});
+  }
+}
+
+std::string SessionFolder::store_picture(const std::string& name, std::span<const std::byte> bytes) {
+  require_name(name);
+  const fs::path file = path_ / "raw" / name;
+  if (fs::exists(fs::symlink_status(file))) {
+    throw std::runtime_error("'" + file.string() +
+                             "' is there already and pictures are never overwritten; resume the session");
+  }
+  return store_file(*file_system_, file, bytes);
+}
+
+void SessionFolder::remove_picture(const std::string& name) {
+  const fs::path file = path_ / "raw" / name;
+  try {
+    fs::remove(file);
+    file_system_->sync_folder(path_ / "raw");
+  } catch (const std::system_error& error) {
+    throw std::runtime_error(write_problem(file, error.code()));
+  }
+}
+
+std::vector<std::string> SessionFolder::picture_names() const {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_ / "raw")) {
+    if (!is_left_over(entry.path())) {
+      names.push_back(entry.path().filename().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::map<std::string, std::string> SessionFolder::hashes_of_fixed_files() const {
+  std::map<std::string, std::string> hashes = {{kSessionFile, sha256_of_file(path_ / kSessionFile)}};
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_ / "calibration")) {
+    if (entry.is_regular_file()) {
+      hashes["calibration/" + entry.path().filename().string()] = sha256_of_file(entry.path());
+    }
+  }
+  return hashes;
+}
+
+}  // namespace station

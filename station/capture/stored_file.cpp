@@ -1,0 +1,96 @@
+#include "station/capture/stored_file.h"
+
+#include <fcntl.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "station/capture/sha256.h"
+
+namespace station {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::string_view kLeftOverEnding = ".partial";
+
+fs::path temporary_name(const fs::path& file) {
+  std::string name = file.filename().string();
+  name.insert(name.begin(), '.');
+  name += kLeftOverEnding;
+  return file.parent_path() / name;
+}
+
+std::string advice(const std::error_code& code) {
+  if (code == std::errc::no_space_on_device || code.value() == EDQUOT) {
+    return "free space on that disk, then resume";
+  }
+  if (code == std::errc::read_only_file_system) {
+    return "make that disk writable or choose another folder";
+  }
+  if (code == std::errc::permission_denied || code == std::errc::operation_not_permitted) {
+    return "give this user the right to write there or choose another folder";
+  }
+  if (code == std::errc::io_error) {
+    return "the disk or its cable may be failing: check it, then resume";
+  }
+  return "check the folder, then resume";
+}
+
+void write_temporary(FileSystem& file_system, const fs::path& temporary, std::span<const std::byte> bytes) {
+  std::error_code ignored;
+  fs::remove(temporary, ignored);  // from a run that was killed
+  const OpenFile out = file_system.open(temporary, O_WRONLY | O_CREAT | O_EXCL);
+  file_system.write(out, bytes);
+  file_system.sync(out);
+}
+
+}  // namespace
+
+std::string write_problem(const fs::path& file, const std::error_code& code) {
+  return "could not write '" + file.string() + "': " + code.message() + "; " + advice(code);
+}
+
+std::string store_file(FileSystem& file_system, const fs::path& file, std::span<const std::byte> bytes) {
+  const fs::path temporary = temporary_name(file);
+  const std::string hash = sha256_hex(bytes);
+  std::error_code ignored;
+  bool renamed = false;
+  try {
+    write_temporary(file_system, temporary, bytes);
+    if (sha256_of_file(temporary) != hash) {
+      throw std::runtime_error("wrote '" + file.string() +
+                               "' and read back other bytes; the disk may be failing: check it, then resume");
+    }
+    file_system.rename(temporary, file);
+    renamed = true;
+    file_system.sync_folder(file.parent_path());
+  } catch (const std::system_error& error) {
+    fs::remove(renamed ? file : temporary, ignored);
+    throw std::runtime_error(write_problem(file, error.code()));
+  } catch (...) {
+    fs::remove(temporary, ignored);
+    throw;
+  }
+  return hash;
+}
+
+bool is_left_over(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return name.starts_with('.') && name.ends_with(kLeftOverEnding);
+}
+
+std::vector<std::string> remove_left_overs(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (is_left_over(entry.path())) {
+      names.push_back(entry.path().filename().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  for (const std::string& name : names) {
+    fs::remove(folder / name);
+  }
+  return names;
+}
+
+}  // namespace station

@@ -1,0 +1,183 @@
+#include "station/capture/verify.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <stdexcept>
+
+#include "station/capture/manifest.h"
+#include "station/capture/picture_record.h"
+#include "station/capture/plan_file.h"
+#include "station/capture/session_folder.h"
+#include "station/capture/sha256.h"
+#include "station/documents/reader.h"
+
+namespace station {
+namespace fs = std::filesystem;
+namespace {
+
+using nlohmann::json;
+
+class Verification {
+ public:
+  explicit Verification(const fs::path& folder) : folder_(folder) {}
+
+  VerifyReport run() {
+    guarded([&] { plan_ = read_plan(); });
+    guarded([&] { read_records(); });
+    guarded([&] { check_fixed_files(); });
+    guarded([&] { check_pictures(); });
+    guarded([&] { check_extra_files(); });
+    guarded([&] { check_steps(); });
+    check_end();
+    check_manifests();
+    return report_;
+  }
+
+ private:
+  template <typename Check>
+  void guarded(const Check& check) {
+    try {
+      check();
+    } catch (const std::exception& error) {
+      problem(error.what());
+    }
+  }
+
+  void problem(const std::string& line) { report_.problems.push_back(line); }
+
+  Plan read_plan() const {
+    const fs::path file = folder_ / "session.json";
+    const json session = read_json_file(file);
+    ObjectReader reader(session, file.string(), "session", 1);
+    return plan_from_json(reader.raw("plan"), file.string());
+  }
+
+  void read_records() {
+    const JournalText journal = read_journal(folder_ / "journal.jsonl");
+    records_ = journal.records;
+    report_.records = records_.size();
+    if (journal.torn_bytes > 0) {
+      problem("journal.jsonl ends with a torn line of " + std::to_string(journal.torn_bytes) +
+              " bytes; resume the session");
+    }
+    taken_ = taken_pictures(records_);
+  }
+
+  // True when the file is there, is a file, and has the hash.
+  bool check_file(const std::string& name, const std::string& sha256) {
+    const fs::path file = folder_ / name;
+    if (!fs::is_regular_file(fs::symlink_status(file))) {
+      problem(name + " is missing");
+      return false;
+    }
+    ++report_.files;
+    if (sha256_of_file(file) != sha256) {
+      problem(name + " differs from its journalled hash");
+      return false;
+    }
+    return true;
+  }
+
+  void check_fixed_files() {
+    const auto start = std::find_if(records_.begin(), records_.end(),
+                                    [](const JournalRecord& record) { return record.event == "start"; });
+    if (start == records_.end()) {
+      problem("journal.jsonl has no start; resume the session");
+      return;
+    }
+    const auto fixed = start->data.at("files").get<std::map<std::string, std::string>>();
+    for (const auto& [name, sha256] : fixed) {
+      check_file(name, sha256);
+    }
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "calibration")) {
+      const std::string name = "calibration/" + entry.path().filename().string();
+      if (!fixed.contains(name)) {
+        problem(name + " is not named in the journal");
+      }
+    }
+  }
+
+  // A dark may share the file of another.
+  void check_pictures() {
+    std::map<std::string, bool> holds;
+    for (const auto& [step, picture] : taken_) {
+      if (!holds.contains(picture.file)) {
+        holds[picture.file] = check_file(picture.file, picture.sha256);
+      }
+      if (holds.at(picture.file)) {
+        good_steps_.insert(step);
+      }
+    }
+    report_.pictures = good_steps_.size();
+  }
+
+  void check_extra_files() {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "raw")) {
+      const std::string name = "raw/" + entry.path().filename().string();
+      const bool named =
+          std::any_of(taken_.begin(), taken_.end(), [&](const auto& taken) { return taken.second.file == name; });
+      if (!named) {
+        problem(name + " is not named in the journal");
+      }
+    }
+  }
+
+  void check_steps() {
+    if (!plan_) {
+      return;
+    }
+    report_.views_planned = view_count(*plan_);
+    for (const PlanStep& step : plan_->steps) {
+      const bool good = good_steps_.contains(step.id);
+      report_.views += good && step.kind == StepKind::view ? 1U : 0U;
+      if (!taken_.contains(step.id)) {
+        problem("step " + step.id + " has no picture; resume the session");
+      }
+    }
+    for (const auto& [step, picture] : taken_) {
+      if (find_step(*plan_, step) == nullptr) {
+        problem(picture.file + " belongs to the step " + step + ", which the plan does not have");
+      }
+    }
+    report_.complete = good_steps_.size() == plan_->steps.size() && !records_.empty() && ends_complete();
+  }
+
+  bool ends_complete() const {
+    return records_.back().event == "stop" && records_.back().data.value("outcome", std::string()) == "complete";
+  }
+
+  void check_end() {
+    if (records_.empty() || !ends_complete()) {
+      problem("journal.jsonl does not end with a complete session; resume the session");
+    }
+  }
+
+  void check_manifests() {
+    for (const char* name : {"linear", "masks", "result"}) {
+      const ManifestReport manifest = check_manifest(folder_ / name);
+      report_.files += manifest.files;
+      report_.problems.insert(report_.problems.end(), manifest.problems.begin(), manifest.problems.end());
+    }
+  }
+
+  fs::path folder_;
+  VerifyReport report_;
+  std::optional<Plan> plan_;
+  std::vector<JournalRecord> records_;
+  std::map<std::string, PictureRecord> taken_;
+  std::set<std::string> good_steps_;
+};
+
+}  // namespace
+
+VerifyReport verify_session(const fs::path& folder) {
+  if (!is_session(folder)) {
+    throw std::runtime_error("'" + folder.string() + "' is no session (it has no session.json); check the path");
+  }
+  return Verification(folder).run();
+}
+
+}  // namespace station

@@ -1,0 +1,240 @@
+#include "station/capture/runner.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "station/capture/verify.h"
+#include "tests/station/capture/fakes.h"
+
+namespace station {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class RunnerTest : public testing::Test {
+ protected:
+  std::string last_outcome() const {
+    const JournalRecord last = records_of(path).back();
+    return last.event == "stop" ? last.data.at("outcome").get<std::string>() : last.event;
+  }
+
+  // Runs on fresh devices, as after a new start of the program.
+  void expect_resume_completes(const Plan& plan) const {
+    FakeStation fresh;
+    EXPECT_EQ(fresh.run(path, plan), RunOutcome::complete);
+    const VerifyReport report = verify_session(path);
+    EXPECT_THAT(report.problems, testing::IsEmpty());
+    EXPECT_TRUE(report.complete);
+  }
+
+  TemporaryFolder folder;
+  fs::path path = folder / "session";
+  FakeStation fake;
+};
+
+TEST_F(RunnerTest, TakesThe17ViewsAndEveryOtherStepOfThePlan) {
+  const Plan plan = make_capture_plan({});
+  EXPECT_EQ(fake.run(path, plan), RunOutcome::complete);
+  const auto pictures = pictures_of(path);
+  ASSERT_EQ(pictures.size(), plan.steps.size());
+  for (const PlanStep& step : plan.steps) {
+    const PictureRecord& picture = pictures.at(step.id);
+    EXPECT_EQ(picture.kind, step.kind);
+    if (picture.same_as.empty()) {
+      EXPECT_EQ(picture.file, "raw/" + step.id + ".arw");
+      EXPECT_EQ(picture.lamp, step.lamp);
+      // Files carry degrees to a billionth.
+      EXPECT_NEAR(picture.read_angle_rad, step.platform_angle_rad, 1e-10);
+    }
+  }
+  EXPECT_EQ(last_outcome(), "complete");
+  EXPECT_EQ(verify_session(path).views, 17U);
+}
+
+TEST_F(RunnerTest, TakesOneDarkForEachExposureOnly) {
+  const Plan plan = make_capture_plan({});
+  fake.run(path, plan);
+  std::map<double, int> taken;
+  for (const auto& [step, picture] : pictures_of(path)) {
+    if (picture.kind == StepKind::dark) {
+      EXPECT_EQ(picture.asked.exposure_s, pictures_of(path).at(find_step(plan, step)->exposure_of).asked.exposure_s);
+      taken[picture.asked.exposure_s] += picture.same_as.empty() ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(taken.size(), 2U) << "lamp in front and lamp behind";
+  for (const auto& [exposure_s, count] : taken) {
+    EXPECT_EQ(count, 1) << exposure_s;
+  }
+}
+
+TEST_F(RunnerTest, AsksThePersonOnlyForChanges) {
+  fake.run(path, make_capture_plan({}));
+  // pose, lamp in front, lamp behind, turned and lit for the pose, lamp in front, dark
+  EXPECT_EQ(fake.person.asked.size(), 6U);
+  for (const rig::Arrangement& arrangement : fake.person.asked) {
+    EXPECT_EQ(arrangement.object, rig::BenchObject::holder);
+    EXPECT_TRUE(arrangement.on_platform);
+    EXPECT_EQ(arrangement.pose.translation().z(), arrangement.mounting == rig::Mounting::horizontal ? 60 : 80);
+  }
+}
+
+TEST_F(RunnerTest, ReportsProgressUpToTheEnd) {
+  std::vector<Progress> reports;
+  fake.options.progress = [&](const Progress& progress) { reports.push_back(progress); };
+  fake.options.choose_exposure = [this](const PlanStep&, const rig::Picture& test) {
+    fake.clock.sleep_s(10);  // each metered step takes this long
+    return ExposureChoice{.exposure_s = test.settings.exposure_s, .done = true};
+  };
+  fake.run(path, small_plan());
+  ASSERT_EQ(reports.size(), 8U);
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    EXPECT_EQ(reports[i].done, i);
+    EXPECT_EQ(reports[i].total, 7U);
+  }
+  EXPECT_EQ(reports.front().step, "pose-horizontal");
+  EXPECT_GT(reports.front().seconds_left, 0) << "a guess before anything was measured";
+  EXPECT_NEAR(reports[2].seconds_left, 5 * 10, 1e-9) << "five steps left, of the median duration";
+  EXPECT_EQ(reports.back().seconds_left, 0);
+}
+
+TEST_F(RunnerTest, InterruptedAtAnyMomentStopsThePlatformFirstAndResumes) {
+  const Plan plan = small_plan();
+  bool interrupted = true;
+  for (int at = 1; interrupted; ++at) {
+    ASSERT_LT(at, 1000);
+    const fs::path session = folder.session(at);
+    FakeStation run;
+    int asked = 0;
+    run.options.should_stop = [&] { return ++asked == at; };
+    interrupted = run.run(session, plan) == RunOutcome::interrupted;
+    const JournalRecord last = records_of(session).back();
+    ASSERT_EQ(last.event, "stop");
+    EXPECT_EQ(last.data.at("outcome"), interrupted ? "interrupted" : "complete");
+    EXPECT_EQ(run.turntable.stops, interrupted ? 1 : 0);
+    const auto before = pictures_of(session);
+    FakeStation fresh;
+    EXPECT_EQ(fresh.run(session, plan), RunOutcome::complete);
+    EXPECT_EQ(count_events(session, "picture"), plan.steps.size()) << "nothing was taken twice";
+    for (const auto& [step, picture] : before) {
+      EXPECT_EQ(pictures_of(session).at(step).sha256, picture.sha256);
+    }
+    EXPECT_TRUE(verify_session(session).sound());
+  }
+}
+
+TEST_F(RunnerTest, AMoveThatCtrlCEndedIsAnInterruptionAndNoFailure) {
+  bool stop_asked = false;
+  fake.options.choose_exposure = [&](const PlanStep&, const rig::Picture&) -> ExposureChoice {
+    stop_asked = true;
+    throw std::runtime_error("the platform was stopped on its way");
+  };
+  fake.options.should_stop = [&] { return stop_asked; };
+  EXPECT_EQ(fake.run(path, small_plan()), RunOutcome::interrupted);
+  EXPECT_EQ(last_outcome(), "interrupted");
+}
+
+TEST_F(RunnerTest, AFailedDeviceStopsThePlatformIsJournalledAndTheSessionResumes) {
+  const Plan plan = small_plan();
+  for (int at = 1;; ++at) {
+    path = folder.session(at);
+    FakeStation run;
+    run.camera.fail_at_capture = at;
+    const std::string message = message_of([&] { run.run(path, plan); });
+    if (message.empty()) {
+      EXPECT_GT(at, 7) << "each step has a picture";
+      break;
+    }
+    EXPECT_THAT(message, HasSubstr("did not answer"));
+    EXPECT_EQ(run.turntable.stops, 1);
+    EXPECT_EQ(last_outcome(), "failed");
+    EXPECT_EQ(records_of(path).back().data.at("message"), message);
+    expect_resume_completes(plan);
+  }
+}
+
+TEST_F(RunnerTest, APlatformThatReadsAnotherAngleIsAnError) {
+  fake.turntable.slips = true;
+  EXPECT_THAT(message_of([&] { fake.run(path, small_plan()); }),
+              HasSubstr("asked to turn to 0.000000 deg and reads 2.86"));
+  EXPECT_EQ(count_events(path, "picture"), 0U);
+}
+
+TEST_F(RunnerTest, AStalePictureOfTheCameraIsRefused) {
+  fake.options.choose_exposure = nullptr;
+  fake.camera.stale = true;
+  EXPECT_THAT(message_of([&] { fake.run(path, small_plan()); }),
+              HasSubstr("delivered the picture of 'pose-horizontal' again"));
+  EXPECT_EQ(count_events(path, "picture"), 1U);
+  expect_resume_completes(small_plan());
+}
+
+TEST_F(RunnerTest, AnEmptyPictureIsRefused) {
+  fake.options.choose_exposure = nullptr;
+  fake.camera.empty = true;
+  EXPECT_THAT(message_of([&] { fake.run(path, small_plan()); }), HasSubstr("empty picture"));
+}
+
+TEST_F(RunnerTest, APictureTakenWithOtherSettingsIsRefused) {
+  fake.options.choose_exposure = nullptr;
+  fake.camera.lies = true;
+  EXPECT_THAT(message_of([&] { fake.run(path, small_plan()); }), HasSubstr("was to be taken with 0.25 s"));
+  EXPECT_TRUE(fs::is_empty(path / "raw"));
+}
+
+TEST_F(RunnerTest, ResumesOnlyWithItsOwnPlanAndCamera) {
+  fake.options.should_stop = [&] { return fake.camera.captures > 3; };
+  ASSERT_EQ(fake.run(path, small_plan()), RunOutcome::interrupted);
+  Plan other = small_plan();
+  other.steps[1].platform_angle_rad += 0.1;
+  FakeStation fresh;
+  EXPECT_THAT(message_of([&] { fresh.run(path, other); }), HasSubstr("started with another plan"));
+  fresh.camera.serial = "456";
+  EXPECT_THAT(message_of([&] { fresh.run(path, small_plan()); }), HasSubstr("begun with the camera 123 and 456"));
+  expect_resume_completes(small_plan());
+}
+
+TEST_F(RunnerTest, ACompleteSessionTouchesNoDeviceWhenResumed) {
+  fake.run(path, small_plan());
+  FakeStation fresh;
+  EXPECT_EQ(fresh.run(path, small_plan()), RunOutcome::complete);
+  EXPECT_EQ(fresh.camera.captures, 0);
+  EXPECT_FALSE(fresh.turntable.homed);
+  EXPECT_TRUE(fresh.person.asked.empty());
+}
+
+TEST_F(RunnerTest, TakesAgainWhatWasDamagedOrLostAndWhatNobodyNamed) {
+  fake.run(path, small_plan());
+  const auto before = pictures_of(path);
+  write_text(path / "raw/reflection-horizontal-1.arw", "damaged");
+  fs::remove(path / "raw/dark-reflection-horizontal-1.arw");  // the second dark shares it
+  write_text(path / "raw/stranger.arw", "?");
+  expect_resume_completes(small_plan());
+  EXPECT_FALSE(fs::exists(path / "raw/stranger.arw"));
+  EXPECT_EQ(count_events(path, "discarded"), 3U);
+  const auto after = pictures_of(path);
+  EXPECT_NE(after.at("reflection-horizontal-1").sha256, before.at("reflection-horizontal-1").sha256);
+  EXPECT_NE(after.at("dark-reflection-horizontal-2").sha256, before.at("dark-reflection-horizontal-2").sha256);
+  for (const char* kept : {"pose-horizontal", "reflection-horizontal-2", "transmission-1", "dark-transmission-1"}) {
+    EXPECT_EQ(after.at(kept).sha256, before.at(kept).sha256) << kept;
+  }
+}
+
+TEST_F(RunnerTest, AViewTakenAgainAtAnotherExposureGetsItsOwnDark) {
+  fake.run(path, small_plan());
+  fs::remove(path / "raw/reflection-horizontal-1.arw");
+  FakeStation dimmer;
+  dimmer.camera.radiance = [] { return 0.1; };
+  EXPECT_EQ(dimmer.run(path, small_plan()), RunOutcome::complete);
+  const auto pictures = pictures_of(path);
+  for (const auto& [step, picture] : pictures) {
+    if (picture.kind == StepKind::dark) {
+      const std::string view = find_step(small_plan(), step)->exposure_of;
+      EXPECT_EQ(picture.asked.exposure_s, pictures.at(view).asked.exposure_s) << step;
+    }
+  }
+  EXPECT_TRUE(verify_session(path).sound());
+}
+
+}  // namespace
+}  // namespace station
