@@ -1,0 +1,48 @@
+// Yarn patch: one period of a woven cloth as yarns in space, the geometry that simulation and rendering share.
+//
+// Frame of draft.h, millimetres: the cell is [0, period_x) x [0, period_y), its mid-plane z = 0; warp yarns repeat
+// themselves along y, weft yarns along x, and the set of all yarns repeats along both. The cloth lies within z = +-
+// thickness / 2 for initial shapes; in general within the slab of surface_range() (patch_measures.h).
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "renderer/weave/draft.h"
+#include "renderer/weave/periodic_spline.h"
+
+namespace renderer {
+
+// A round yarn. Its centre line is a periodic uniform cubic B-spline (periodic_spline.h) of constant radius.
+struct Yarn {
+  bool warp = true;
+  int thread = 0;  // index into the list of threads that the cloth is made of
+  double radius_mm = 0.25;
+  std::vector<Eigen::Vector3d> control_points;  // one period, mm; at least 4
+};
+
+struct YarnPatch {
+  std::string name;           // of the draft
+  double period_x_mm = 0.0;   // of the cell across the warp
+  double period_y_mm = 0.0;   // along the warp
+  double height_scale = 1.0;  // already applied to the control points
+  std::vector<Yarn> yarns;    // warp ends by rising x, then weft picks by rising y
+
+  // Measured on the splines (patch_measures.h).
+  double thickness_mm = 0.0;  // from the lowest to the highest point of the yarns' surfaces
+  double crimp_warp = 0.0;    // length of yarn / length of cloth - 1, mean over the warp yarns
+  double crimp_weft = 0.0;
+  double cover = 0.0;         // share of the plane that yarns hide: k1 + k2 - k1 k2, k = diameters / period
+  double least_gap_mm = 0.0;  // between the surfaces of any two yarns; negative: how deep they overlap
+};
+
+Eigen::Vector3d period_of(const YarnPatch& patch, const Yarn& yarn);
+PeriodicSpline center_line(const YarnPatch& patch, const Yarn& yarn);
+
+// The patch of a draft with the analytic shapes of yarn_path.h, measured. Yarns are straight in plan: warp end j at
+// x = (j + 1/2) pitch, weft pick i at y = (i + 1/2) pitch; control point 0 belongs to the knot on the cell's border.
+// Errors: std::runtime_error with the line of check_draft().
+YarnPatch initial_patch(const Draft& draft);
+
+}  // namespace renderer

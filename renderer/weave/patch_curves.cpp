@@ -1,0 +1,103 @@
+#include "renderer/weave/patch_curves.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <set>
+
+namespace renderer {
+namespace {
+
+// Segments first .. last - 1 of a yarn, moved by `offset`, as one curve.
+void add_segments(CurveSet& set, const PeriodicSpline& line, double radius_mm, const Eigen::Vector3d& offset,
+                  int first, int last) {
+  const auto start = static_cast<std::uint32_t>(set.control_points.size());
+  for (int k = first - 1; k < last + 2; ++k) {
+    const Eigen::Vector3f p = (line.control_point(k) + offset).cast<float>();
+    set.control_points.push_back({p.x(), p.y(), p.z(), static_cast<float>(radius_mm)});
+  }
+  for (int k = first; k < last; ++k) set.segments.push_back(start + static_cast<std::uint32_t>(k - first));
+}
+
+// Does the surface of segment k reach the box [low, high] in x and y? True at least where it does.
+bool reaches(const PeriodicSpline& line, double radius_mm, const Eigen::Vector3d& offset, int k,
+             const Eigen::Vector2d& low, const Eigen::Vector2d& high) {
+  Eigen::Vector2d least = (line.control_point(k - 1) + offset).head<2>(), most = least;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector2d p = (line.control_point(k + i) + offset).head<2>();
+    least = least.cwiseMin(p);
+    most = most.cwiseMax(p);
+  }
+  return (most.array() + radius_mm >= low.array()).all() && (least.array() - radius_mm <= high.array()).all();
+}
+
+// The runs of neighbouring segments of one image of a yarn that reach the box, each as one curve.
+void add_reaching_runs(CurveSet& set, const PeriodicSpline& line, double radius_mm, const Eigen::Vector3d& offset,
+                       int periods, const Eigen::Vector2d& low, const Eigen::Vector2d& high) {
+  const int count = static_cast<int>(line.control_points.size());
+  const int end = (periods + 1) * count;
+  for (int k = -periods * count; k < end; ++k) {
+    const int first = k;
+    while (k < end && reaches(line, radius_mm, offset, k, low, high)) ++k;
+    if (k > first) add_segments(set, line, radius_mm, offset, first, k);
+  }
+}
+
+// Farthest that the yarns' surfaces or control points stray from the cell, in x or y.
+double stray_of(const YarnPatch& patch) {
+  double stray = 0;
+  const Eigen::Vector2d cell(patch.period_x_mm, patch.period_y_mm);
+  for (const Yarn& yarn : patch.yarns) {
+    for (const Eigen::Vector3d& p : yarn.control_points)
+      stray = std::max(
+          {stray, yarn.radius_mm - p.head<2>().minCoeff(), yarn.radius_mm + (p.head<2>() - cell).maxCoeff()});
+  }
+  return stray;
+}
+
+}  // namespace
+
+std::vector<int> threads_of(const YarnPatch& patch) {
+  std::set<int> threads;
+  for (const Yarn& yarn : patch.yarns) threads.insert(yarn.thread);
+  return {threads.begin(), threads.end()};
+}
+
+CurveSet curves_of(const YarnPatch& patch, int tiles_x, int tiles_y, int thread) {
+  assert(tiles_x > 0 && tiles_y > 0);
+  CurveSet set;
+  for (const Yarn& yarn : patch.yarns) {
+    if (yarn.thread != thread) continue;
+    const PeriodicSpline line = center_line(patch, yarn);
+    const int along = yarn.warp ? tiles_y : tiles_x, across = yarn.warp ? tiles_x : tiles_y;
+    for (int tile = 0; tile < across; ++tile) {
+      const Eigen::Vector3d offset = yarn.warp ? Eigen::Vector3d(tile * patch.period_x_mm, 0, 0)
+                                               : Eigen::Vector3d(0, tile * patch.period_y_mm, 0);
+      add_segments(set, line, yarn.radius_mm, offset, 0, along * static_cast<int>(line.control_points.size()));
+    }
+  }
+  return set;
+}
+
+CurveSet cell_curves_of(const YarnPatch& patch, int thread, double margin_mm) {
+  assert(margin_mm >= 0);
+  CurveSet set;
+  const Eigen::Vector2d low(-margin_mm, -margin_mm);
+  const Eigen::Vector2d high(patch.period_x_mm + margin_mm, patch.period_y_mm + margin_mm);
+  const double reach = margin_mm + stray_of(patch);
+  const int images_x = 1 + static_cast<int>(reach / patch.period_x_mm),
+            images_y = 1 + static_cast<int>(reach / patch.period_y_mm);
+  for (const Yarn& yarn : patch.yarns) {
+    if (yarn.thread != thread) continue;
+    const PeriodicSpline line = center_line(patch, yarn);
+    const int across = yarn.warp ? images_x : images_y, along = yarn.warp ? images_y : images_x;
+    for (int image = -across; image <= across; ++image) {
+      const Eigen::Vector3d offset = yarn.warp ? Eigen::Vector3d(image * patch.period_x_mm, 0, 0)
+                                               : Eigen::Vector3d(0, image * patch.period_y_mm, 0);
+      add_reaching_runs(set, line, yarn.radius_mm, offset, along, low, high);
+    }
+  }
+  return set;
+}
+
+}  // namespace renderer

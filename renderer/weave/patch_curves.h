@@ -1,0 +1,26 @@
+// A patch as curves for the ray tracer: an explicit sheet of tiles, or all that reaches into one cell.
+//
+// Both return the yarns of one thread, so that each thread's CurveSet gets its own scattering model (the caller sets
+// it; an empty set has no segments). Positions are those of the patch's frame (mm), +z the face.
+#pragma once
+
+#include <vector>
+
+#include "renderer/scene.h"
+#include "renderer/weave/patch.h"
+
+namespace renderer {
+
+// Thread indices that occur in the patch, rising.
+std::vector<int> threads_of(const YarnPatch& patch);
+
+// tiles_x x tiles_y periods, for brute-force rendering: every yarn runs in one piece from one border of the sheet
+// [0, tiles_x period_x] x [0, tiles_y period_y] to the other and ends there; curves have no end caps.
+CurveSet curves_of(const YarnPatch& patch, int tiles_x, int tiles_y, int thread);
+
+// For the two-scale renderer: every segment, of whichever periodic image, whose surface can reach the column
+// [-margin, period_x + margin] x [-margin, period_y + margin]. A ray that stays inside the column meets exactly what
+// it would meet in the infinite cloth. Segments are tested by the box of their control points plus the radius.
+CurveSet cell_curves_of(const YarnPatch& patch, int thread, double margin_mm = 0.0);
+
+}  // namespace renderer

@@ -1,0 +1,29 @@
+// Periodic uniform cubic B-splines in space: one period of n control points c_0 .. c_(n-1), then c_(k+n) = c_k +
+// period.
+//
+// The parameter t counts knots: t = 0 .. n is one period, and knot k lies at (c_(k-1) + 4 c_k + c_(k+1)) / 6. Segment
+// k, from knot k to knot k + 1, has the four control points c_(k-1) .. c_(k+2). C2 everywhere, across the period too.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace renderer {
+
+struct PeriodicSpline {
+  std::vector<Eigen::Vector3d> control_points;  // one period, mm; at least 3
+  Eigen::Vector3d period = Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d control_point(int k) const;  // any k
+};
+
+// The spline whose knot k is points[k]; at least 3 points. Linear in the points, exact to rounding.
+PeriodicSpline spline_through(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& period);
+
+// d-th derivative to t (d = 0: the point itself; d <= 2), any t.
+Eigen::Vector3d spline_value(const PeriodicSpline& spline, double t, int derivative = 0);
+
+// Arc length of one period, mm (five Gauss points per segment).
+double spline_length(const PeriodicSpline& spline);
+
+}  // namespace renderer

@@ -1,0 +1,50 @@
+// The analytic path of a yarn in its own plane: Peirce's geometry of round, flexible, inextensible yarns.
+//
+// A yarn lies at +height where it is on top and at -height where it is below, flat along floats. Between a crossing
+// on top and one below it lies on the crossing yarn's section (a circle of radius d = contact distance = sum of the
+// two radii round that yarn's centre line), runs straight, and lies on the next section. This is the shortest path
+// that does not enter the crossing yarns: the tension-dominated limit of a relaxed cloth. Source: models.md
+// section 4.3 (Peirce 1937); there D = 2 d and h is twice our height.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "renderer/weave/draft.h"
+
+namespace renderer {
+
+// Heights of the crowns over the mid-plane; warp + weft = contact distance, so that yarns touch where they cross.
+struct CrownHeights {
+  double warp_mm = 0.0, weft_mm = 0.0;
+};
+
+// The split is Peirce's crimp interchange h1 / h2 = (B2 p2^3) / (B1 p1^3) (p2 = weft pitch, along the warp) with
+// bending stiffness B ~ diameter^2 (a bundle of loose fibers); equal for square cloth. Where that would press yarns
+// into each other it is moved to the nearest split that does not; where no split is free (the sett jams), to the
+// middle.
+CrownHeights split_heights(const YarnSystem& warp, const YarnSystem& weft);
+
+// Half a wave: from the crown at 0 down to the middle of the way to the next crossing, where the path's height is 0.
+struct HalfWave {
+  double crown_mm = 0.0;     // height at the crown
+  double radius_mm = 1.0;    // of the arc that starts, level, at the crown
+  double angle_rad = 0.0;    // of the arc: the weave angle
+  double straight_mm = 0.0;  // from the end of the arc to the middle
+
+  double length_mm() const { return radius_mm * angle_rad + straight_mm; }
+  Eigen::Vector2d at(double arc_length_mm) const;  // (distance from the crown, height)
+};
+
+// `pitch_mm` is the way to the next crossing. When round yarns jam, the arc is as wide as the pitch allows (no
+// straight part, radius below the contact distance) and cuts into the crossing yarns.
+HalfWave half_wave(double pitch_mm, double crown_mm, double crossing_crown_mm);
+
+// One period, (along, height) at kPointsPerCrossing equal steps of arc length from one crossing to the next, starting
+// half a pitch before the first crossing (along = 0); crossing i is point kPointsPerCrossing * i + kPointsPerCrossing
+// / 2.
+std::vector<Eigen::Vector2d> yarn_path(const std::vector<bool>& on_top, double pitch_mm, const HalfWave& wave);
+
+inline constexpr int kPointsPerCrossing = 8;
+
+}  // namespace renderer

@@ -1,0 +1,85 @@
+#include "station/documents/draft_file.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "station/documents/reader.h"
+
+namespace station {
+namespace {
+
+using nlohmann::json;
+
+std::vector<std::vector<bool>> parse_structure(ObjectReader& draft) {
+  const json& rows = draft.raw("structure");
+  if (!rows.is_array()) draft.refuse("structure", "expected a list with one text per pick, such as \"X.\"");
+  std::vector<std::vector<bool>> warp_over;
+  for (const json& row : rows) {
+    const std::string where = "pick " + std::to_string(warp_over.size() + 1);
+    if (!row.is_string()) draft.refuse("structure", where + " is not text such as \"X.\"");
+    std::vector<bool> pick;
+    for (char mark : row.get_ref<const std::string&>()) {
+      if (mark != 'X' && mark != '.')
+        draft.refuse("structure", where + " has a mark other than X (warp on top) and . (weft on top)");
+      pick.push_back(mark == 'X');
+    }
+    warp_over.push_back(std::move(pick));
+  }
+  return warp_over;
+}
+
+renderer::YarnSystem parse_system(ObjectReader reader) {
+  constexpr double kMost = 1000;
+  renderer::YarnSystem system;
+  system.diameter_mm = reader.number("diameter_mm", -kMost, kMost);  // check_draft says what is wrong with its value
+  system.pitch_mm = reader.number("pitch_mm", -kMost, kMost);
+  system.threads.clear();
+  for (double thread : reader.numbers("threads")) {
+    if (thread != std::floor(thread) || std::abs(thread) > 1e6)
+      reader.refuse("threads", "found " + json(thread).dump() + ", expected whole numbers");
+    system.threads.push_back(static_cast<int>(thread));
+  }
+  reader.finish();
+  return system;
+}
+
+json system_json(const renderer::YarnSystem& system) {
+  return {{"diameter_mm", system.diameter_mm}, {"pitch_mm", system.pitch_mm}, {"threads", system.threads}};
+}
+
+}  // namespace
+
+renderer::Draft parse_draft(const json& document, const std::string& source) {
+  ObjectReader reader(document, source, "draft", 1);
+  renderer::Draft draft;
+  draft.name = reader.text("name");
+  draft.warp_over = parse_structure(reader);
+  draft.warp = parse_system(reader.object("warp"));
+  draft.weft = parse_system(reader.object("weft"));
+  if (reader.has("height_scale")) draft.height_scale = reader.number("height_scale", -10, 10);
+  reader.finish();
+  if (const auto problem = renderer::check_draft(draft)) throw std::runtime_error(source + ": " + *problem);
+  return draft;
+}
+
+renderer::Draft read_draft(const std::filesystem::path& file) {
+  return parse_draft(read_json_file(file), file.string());
+}
+
+json to_json(const renderer::Draft& draft) {
+  json structure = json::array();
+  for (const std::vector<bool>& row : draft.warp_over) {
+    std::string marks;
+    for (bool warp : row) marks += warp ? 'X' : '.';
+    structure.push_back(marks);
+  }
+  return {{"format", "threadstation/draft"},
+          {"version", 1},
+          {"name", draft.name},
+          {"structure", structure},
+          {"warp", system_json(draft.warp)},
+          {"weft", system_json(draft.weft)},
+          {"height_scale", draft.height_scale}};
+}
+
+}  // namespace station

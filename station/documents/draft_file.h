@@ -1,0 +1,19 @@
+// Draft files (kind "draft"): the structure, sett, yarn sizes and thread order of a cloth; keys in
+// fixtures/drafts/README.md.
+//
+// Errors: those of reader.h, and the line of renderer::check_draft with the file's name in front.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "renderer/weave/draft.h"
+
+namespace station {
+
+renderer::Draft parse_draft(const nlohmann::json& document, const std::string& source);
+renderer::Draft read_draft(const std::filesystem::path& file);
+nlohmann::json to_json(const renderer::Draft& draft);
+
+}  // namespace station
