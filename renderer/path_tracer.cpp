@@ -148,7 +148,8 @@ void for_each_pixel(const Camera& camera, int threads, const std::function<bool(
       stopped = true;
     }
   };
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  const int cores = tbb::info::default_concurrency();
+  tbb::task_arena arena(threads > 0 ? std::min(threads, cores) : cores);
   arena.execute([&] { tbb::parallel_for(0, columns * rows, draw_tile, tbb::simple_partitioner()); });
   if (stopped) throw std::runtime_error("rendering was stopped on request; start it again for the whole picture");
 }

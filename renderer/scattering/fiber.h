@@ -67,29 +67,22 @@ class FiberModel {
   }
 
   // The lobes seen from unit direction wo (local frame) at offset h = sin(gamma_o) in [-1, 1].
-  CurveLobes<S> lobes_at(const S& h, const Vec3<S>& wo) const {
-    using std::abs, std::asin, std::exp, std::sqrt;
-    const S sin_o = wo.x(), cos_o = sqrt(wo.y() * wo.y() + wo.z() * wo.z());
+  CurveLobes<S> lobes_at(const Geometry<S>& h, const Vec3<Geometry<S>>& wo) const {
+    using std::asin, std::sqrt;
+    const Geometry<S> sin_o = wo.x(), cos_o = sqrt(wo.y() * wo.y() + wo.z() * wo.z());
     CurveLobes<S> lobes;
     lobes.widths = &widths_;
-    if (cos_o > S(0.0)) {
-      lobes.azimuth_o = {wo.y() / cos_o, wo.z() / cos_o};
-    } else {
-      lobes.azimuth_o = {S(0.0), S(1.0)};
-    }
-    lobes.sin_theta_o = cos_turn_ * sin_o + sin_turn_ * cos_o;
-    lobes.cos_theta_o = (cos_turn_ * cos_o - sin_turn_ * sin_o).abs();
+    lobes.set_azimuth(wo);
+    lobes.sin_theta_o = cos_turn_ * S(sin_o) + sin_turn_ * S(cos_o);
+    lobes.cos_theta_o = (cos_turn_ * S(cos_o) - sin_turn_ * S(sin_o)).abs();
 
-    const S sin_gamma_t = h * cos_o / sqrt(eta_ * eta_ - sin_o * sin_o);  // Bravais: h / eta'
-    const S gamma_o = asin(h), gamma_t = asin(sin_gamma_t);
-    for (int p = 0; p < 3; ++p) lobes.center[p] = lobe_center(p, gamma_o, gamma_t);
+    const InnerChord<S> chord(h, sin_o, cos_o, eta_);
+    for (int p = 0; p < 3; ++p) lobes.center[p] = lobe_center<S>(p, S(asin(h)), chord.gamma_t);
     lobes.center[3] = S(0.0);
 
-    const S cos_theta_t = sqrt(S(1.0) - sin_o * sin_o / (eta_ * eta_));
-    const S chord = S(2.0) * sqrt(S(1.0) - sin_gamma_t * sin_gamma_t) / cos_theta_t;  // in radii
-    const S cos_gamma_o = sqrt(S(1.0) - h * h);
-    lobes.attenuation =
-        fiber_attenuation(fresnel_dielectric<S>(cos_o * cos_gamma_o, eta_), Rgb<S>((sigma_a_ * -chord).exp()));
+    const Geometry<S> cos_gamma_o = sqrt(1 - h * h);
+    const Rgb<S> transmittance = (sigma_a_ * -chord.length).exp();
+    lobes.attenuation = fiber_attenuation<S>(fresnel_dielectric<S>(S(cos_o * cos_gamma_o), eta_), transmittance);
     const Lanes<S> energy = lobes.attenuation.rowwise().sum();
     lobes.probability = energy / energy.sum();
     return lobes;

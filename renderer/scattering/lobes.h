@@ -27,6 +27,21 @@ using Rgb = Eigen::Array<S, 3, 1>;
 template <class S>
 using Vec3 = Eigen::Matrix<S, 3, 1>;
 
+// The scalar of directions: S itself, or what a dual number is made of.
+template <class S>
+struct GeometryOf {
+  using type = S;
+};
+template <class S>
+requires requires {
+  typename S::Scalar;
+}
+struct GeometryOf<S> {
+  using type = typename S::Scalar;
+};
+template <class S>
+using Geometry = typename GeometryOf<S>::type;
+
 template <class S>
 S power(const S& base, int exponent) {  // exponent >= 0, by squaring
   if (exponent == 0) return S(1.0);
@@ -58,6 +73,21 @@ S fresnel_dielectric(const S& cos_i, const S& eta) {
   const S perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
   return S(0.5) * (parallel * parallel + perpendicular * perpendicular);
 }
+
+// The straight way through the fiber after the first refraction, in the plane's effective index eta' (Bravais).
+template <class S>
+struct InnerChord {
+  S gamma_t;
+  S length;  // in fiber radii
+
+  InnerChord(const Geometry<S>& h, const Geometry<S>& sin_theta, const Geometry<S>& cos_theta, const S& eta) {
+    using std::asin, std::sqrt;
+    const S inside2 = eta * eta - S(sin_theta * sin_theta);  // (eta cos theta_t)^2
+    const S sin_gamma_t = S(h * cos_theta) / sqrt(inside2);  // h / eta'
+    gamma_t = asin(sin_gamma_t);
+    length = S(2.0) * eta * sqrt((S(1.0) - sin_gamma_t * sin_gamma_t) / inside2);
+  }
+};
 
 // Azimuth of the centre of lobe p relative to phi_o, within [-pi, pi].
 template <class S>
@@ -111,14 +141,26 @@ struct ScatteringValue {
 // sampled as often as wanted. Refers to the model's widths: must not outlive it.
 template <class S>
 struct CurveLobes {
+  using G = Geometry<S>;
+
   const LobeWidths<S>* widths = nullptr;
-  Eigen::Matrix<S, 2, 1> azimuth_o;   // unit (y, z) of direction o
+  Eigen::Matrix<G, 2, 1> azimuth_o;   // unit (y, z) of direction o
   Lanes<S> sin_theta_o, cos_theta_o;  // after the cuticle tilt
   Lanes<S> center;                    // Phi_p, within [-pi, pi]
   Eigen::Array<S, 4, 3> attenuation;  // A_p, RGB
   Lanes<S> probability;               // of choosing lobe p when sampling; sums to 1
 
-  ScatteringValue<S> evaluate(const Vec3<S>& wi) const {
+  void set_azimuth(const Vec3<G>& wo) {
+    using std::sqrt;
+    const G radial = sqrt(wo.y() * wo.y() + wo.z() * wo.z());
+    if (radial > 0) {
+      azimuth_o = {wo.y() / radial, wo.z() / radial};
+    } else {
+      azimuth_o = {G(0), G(1)};
+    }
+  }
+
+  ScatteringValue<S> evaluate(const Vec3<G>& wi) const {
     const Lanes<S> density = lobe_densities(wi);
     ScatteringValue<S> value;
     for (int c = 0; c < 3; ++c) value.f_cos[c] = (density * attenuation.col(c)).sum();
@@ -127,33 +169,32 @@ struct CurveLobes {
   }
 
   // M_p N_p of each lobe: its density over solid angle.
-  Lanes<S> lobe_densities(const Vec3<S>& wi) const {
+  Lanes<S> lobe_densities(const Vec3<G>& wi) const {
     using std::atan2, std::sqrt;
-    const S cos_theta_i = sqrt(wi.y() * wi.y() + wi.z() * wi.z());
-    const S phi = cos_theta_i > S(0.0) ? S(atan2(azimuth_o.x() * wi.z() - azimuth_o.y() * wi.y(),
-                                                 azimuth_o.x() * wi.y() + azimuth_o.y() * wi.z()))
-                                       : S(0.0);
-    return longitudinal(wi.x(), cos_theta_i) * azimuthal(phi);
+    const G cos_theta_i = sqrt(wi.y() * wi.y() + wi.z() * wi.z());
+    const G along = azimuth_o.x() * wi.y() + azimuth_o.y() * wi.z();
+    const G across = azimuth_o.x() * wi.z() - azimuth_o.y() * wi.y();
+    return longitudinal(wi.x(), cos_theta_i) * azimuthal(atan2(across, along));
   }
 
   // M = exp(-b) I0(a) / (2 v sinh(1/v)) with a = cos cos / v, b = sin sin / v. The exponentials are merged into the
   // squared distance of the two directions across the specular cone, which stays exact in float for small v.
-  Lanes<S> longitudinal(const S& sin_theta_i, const S& cos_theta_i) const {
-    const Lanes<S> distance2 = (cos_theta_o - cos_theta_i).square() + (sin_theta_o + sin_theta_i).square();
-    const Lanes<S> a = cos_theta_o * widths->inv_v * cos_theta_i;
+  Lanes<S> longitudinal(const G& sin_theta_i, const G& cos_theta_i) const {
+    const Lanes<S> distance2 = (cos_theta_o - S(cos_theta_i)).square() + (sin_theta_o + S(sin_theta_i)).square();
+    const Lanes<S> a = cos_theta_o * widths->inv_v * S(cos_theta_i);
     return widths->m_norm * (distance2 * widths->inv_v * S(-0.5)).exp() * bessel_i0e(a);
   }
 
   // Logistic trimmed to [-pi, pi] around each centre.
-  Lanes<S> azimuthal(const S& phi) const {
-    const Lanes<S> straight = (center - phi).abs();
+  Lanes<S> azimuthal(const G& phi) const {
+    const Lanes<S> straight = (center - S(phi)).abs();
     const Lanes<S> x = straight.min(Lanes<S>(S(2 * kPi) - straight));
     const Lanes<S> e = (-x * widths->inv_s).exp();
     return widths->n_norm * e / (e + S(1.0)).square();
   }
 
   // A direction i with density evaluate(i).pdf; u in [0, 1).
-  Vec3<S> sample(const S& u_lobe, const S& u_theta, const S& u_ring, const S& u_phi) const {
+  Vec3<G> sample(const S& u_lobe, const S& u_theta, const S& u_ring, const S& u_phi) const {
     using std::cos, std::sin, std::sqrt;
     const int p = choose_lobe(u_lobe);
     const S sin_theta_i = sample_longitudinal(p, u_theta, u_ring);

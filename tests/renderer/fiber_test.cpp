@@ -1,0 +1,181 @@
+#include "renderer/scattering/fiber.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <vector>
+
+namespace renderer {
+namespace {
+
+using Eigen::Vector3d;
+
+Vector3d direction(double theta, double phi) {
+  return {std::sin(theta), std::cos(theta) * std::cos(phi), std::cos(theta) * std::sin(phi)};
+}
+
+// Direction o of the local frame: phi_o = pi/2 + asin(h).
+Vector3d viewing_direction(double theta, double h) {
+  return direction(theta, kPi / 2 + std::asin(h));
+}
+
+std::vector<std::vector<double>> reference_rows() {
+  std::ifstream file(FIXTURES_DIR "/reference/single_fiber_bcsdf.csv");
+  std::vector<std::vector<double>> rows;
+  std::string line;
+  std::getline(file, line);
+  while (std::getline(file, line)) {
+    std::vector<double> row;
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+TEST(FiberTest, AgreesWithAllRowsOfTheReferenceTable) {
+  const auto rows = reference_rows();
+  ASSERT_EQ(rows.size(), 800u);
+  for (const auto& r : rows) {
+    const FiberModel<double> model(
+        {.eta = r[1], .sigma_a = {r[2], r[3], r[4]}, .beta_m = r[5], .beta_n = r[6], .tilt_rad = r[7] * kPi / 180});
+    const auto value = model.lobes_at(r[0], {r[8], r[9], r[10]}).evaluate({r[11], r[12], r[13]});
+    // The table's directions have 12 digits; narrow lobes amplify their rounding, the formula itself agrees to 1e-9.
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(value.f_cos[c] / r[14 + static_cast<std::size_t>(c)], 1, 1e-6);
+    }
+    EXPECT_NEAR(value.pdf / r[17], 1, 1e-6);
+  }
+}
+
+TEST(FiberTest, FloatAgreesWithDouble) {
+  for (const auto& r : reference_rows()) {
+    const FiberModel<float> model({static_cast<float>(r[1]), Vector3d(r[2], r[3], r[4]).cast<float>(),
+                                   static_cast<float>(r[5]), static_cast<float>(r[6]),
+                                   static_cast<float>(r[7] * kPi / 180)});
+    const auto value = model.lobes_at(static_cast<float>(r[0]), Vector3d(r[8], r[9], r[10]).cast<float>())
+                           .evaluate(Vector3d(r[11], r[12], r[13]).cast<float>());
+    // Rounding of angles (1e-7 rad), divided by the narrowest width of the table (about 1e-3 rad far in the tails).
+    const double tolerance = 2e-3 * r[17] + 1e-6;
+    EXPECT_NEAR(static_cast<double>(value.pdf), r[17], tolerance);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(static_cast<double>(value.f_cos[c]), r[14 + static_cast<std::size_t>(c)], tolerance);
+    }
+  }
+}
+
+TEST(FiberTest, ScaledBesselFunctionAgreesWithTheStandardLibrary) {
+  for (double x : {0.0, 0.1, 1.0, 3.7, 3.8, 8.0, 11.8, 12.1, 19.9, 20.1, 60.0, 500.0}) {
+    const double expected = std::cyl_bessel_i(0.0, x) * std::exp(-x);
+    EXPECT_NEAR(bessel_i0e(x) / expected, 1, 1e-13) << x;  // rounding of some hundred operations
+    const float single = bessel_i0e(Eigen::Array4f(Eigen::Array4f::Constant(static_cast<float>(x))))[0];
+    EXPECT_NEAR(static_cast<double>(single) / expected, 1, 1e-6) << x;  // the polynomials' own error is 4e-7
+  }
+}
+
+// The lobes are products of a longitudinal and an azimuthal factor, so the integral over the sphere is one of sums.
+double energy(const CurveLobes<double>& lobes, int channel) {
+  constexpr int kSteps = 4000;  // a step is below the narrowest width of the grid below (0.0036 rad)
+  Lanes<double> m = Lanes<double>::Zero(), n = Lanes<double>::Zero();
+  for (int k = 0; k < kSteps; ++k) {
+    const double theta = kPi * ((k + 0.5) / kSteps - 0.5), phi = 2 * kPi * (k + 0.5) / kSteps - kPi;
+    m += lobes.longitudinal(std::sin(theta), std::cos(theta)) * (std::cos(theta) * kPi / kSteps);
+    n += lobes.azimuthal(phi) * (2 * kPi / kSteps);
+  }
+  return (m * n * lobes.attenuation.col(channel)).sum();
+}
+
+TEST(FiberTest, WhiteFurnaceIsOneForEveryRoughnessOffsetAndInclination) {
+  for (double beta_m : {0.02, 0.1, 0.3, 0.6, 1.0}) {
+    for (double beta_n : {0.02, 0.1, 0.3, 0.6, 1.0}) {
+      const FiberModel<double> model({.beta_m = beta_m, .beta_n = beta_n});
+      for (double theta_deg : {-85.0, -40.0, 0.0, 60.0, 85.0}) {
+        for (double h : {-0.99, 0.3, 0.8}) {
+          const auto lobes = model.lobes_at(h, viewing_direction(theta_deg * kPi / 180, h));
+          EXPECT_NEAR(energy(lobes, 0), 1, 1e-3) << beta_m << ' ' << beta_n << ' ' << theta_deg << ' ' << h;
+        }
+      }
+    }
+  }
+}
+
+TEST(FiberTest, WhiteFurnaceOfTheWholeFunctionIsOne) {
+  constexpr int kTheta = 300, kPhi = 600;
+  const FiberModel<double> model({.beta_m = 0.25, .beta_n = 0.3, .tilt_rad = 0.03});
+  const auto lobes = model.lobes_at(0.6, viewing_direction(0.5, 0.6));
+  double sum = 0;
+  for (int i = 0; i < kTheta; ++i) {
+    const double theta = kPi * ((i + 0.5) / kTheta - 0.5);
+    for (int j = 0; j < kPhi; ++j) {
+      sum += lobes.evaluate(direction(theta, 2 * kPi * j / kPhi)).f_cos[1] * std::cos(theta);
+    }
+  }
+  EXPECT_NEAR(sum * (kPi / kTheta) * (2 * kPi / kPhi), 1, 1e-3);
+}
+
+TEST(FiberTest, AbsorptionTakesEnergyFromEveryLobeButTheReflection) {
+  const FiberModel<double> clear({}), dyed({.sigma_a = {0.1, 0.3, 0.8}});
+  const auto a = clear.lobes_at(0.2, viewing_direction(0.3, 0.2)),
+             b = dyed.lobes_at(0.2, viewing_direction(0.3, 0.2));
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_DOUBLE_EQ(a.attenuation(0, c), b.attenuation(0, c));
+    for (int p = 1; p < 4; ++p) EXPECT_GT(a.attenuation(p, c), b.attenuation(p, c));
+  }
+}
+
+TEST(FiberTest, MirroringTheCrossSectionMirrorsTheScattering) {
+  const FiberModel<double> model({.sigma_a = {0.1, 0.3, 0.8}});
+  const auto value = model.lobes_at(0.4, viewing_direction(0.2, 0.4)).evaluate(direction(-0.3, 1.1));
+  const auto mirrored = model.lobes_at(-0.4, viewing_direction(0.2, -0.4)).evaluate(direction(-0.3, kPi - 1.1));
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(value.f_cos[c], mirrored.f_cos[c], 1e-14);
+}
+
+TEST(FiberTest, ReflectionPeaksWhereAMirrorWouldSendTheLight) {
+  const FiberModel<double> model({.sigma_a = {50, 50, 50}, .beta_m = 0.05, .beta_n = 0.05});
+  const double h = 0.5, theta = 0.3;
+  const auto lobes = model.lobes_at(h, viewing_direction(theta, h));
+  // The surface normal is the local z axis: a mirror turns (x, y, z) into (-x, -y, z).
+  const Vector3d wo = viewing_direction(theta, h), mirror(-wo.x(), -wo.y(), wo.z());
+  const double peak = lobes.evaluate(mirror).f_cos[0];
+  for (double delta : {-0.05, 0.05}) {
+    EXPECT_LT(lobes.evaluate(direction(std::asin(mirror.x()) + delta, std::atan2(mirror.z(), mirror.y()))).f_cos[0],
+              peak);
+    EXPECT_LT(lobes.evaluate(direction(std::asin(mirror.x()), std::atan2(mirror.z(), mirror.y()) + delta)).f_cos[0],
+              peak);
+  }
+}
+
+template <class S>
+void expect_finite_everywhere() {
+  for (S h : {S(-1), S(0), S(1)}) {
+    for (S theta : {S(-kPi / 2), S(-1.5707), S(0), S(1.57), S(kPi / 2)}) {
+      for (S beta : {S(0.02), S(1)}) {
+        for (S sigma : {S(0), S(1000)}) {
+          const FiberModel<S> model(
+              {.sigma_a = Vec3<S>::Constant(sigma), .beta_m = beta, .beta_n = beta, .tilt_rad = S(0.05)});
+          const Vec3<S> wo = viewing_direction(static_cast<double>(theta), static_cast<double>(h)).template cast<S>();
+          const auto lobes = model.lobes_at(h, wo);
+          EXPECT_NEAR(static_cast<double>(lobes.probability.sum()), 1, 1e-5);
+          for (const Vec3<S>& wi : {Vec3<S>(1, 0, 0), Vec3<S>(-1, 0, 0), Vec3<S>(0, 0, 1), Vec3<S>(-wo)}) {
+            const auto value = lobes.evaluate(wi);
+            EXPECT_TRUE(value.f_cos.isFinite().all() && (value.f_cos >= 0).all());
+            EXPECT_TRUE(std::isfinite(value.pdf) && value.pdf >= 0);
+          }
+          const S last = std::nextafter(S(1), S(0));
+          for (S u : {S(0), last}) EXPECT_TRUE(lobes.sample(u, u, u, u).allFinite());
+        }
+      }
+    }
+  }
+}
+
+TEST(FiberTest, IsFiniteAtGrazingOffsetsInclinationsAndExtremeParameters) {
+  expect_finite_everywhere<double>();
+  expect_finite_everywhere<float>();
+}
+
+}  // namespace
+}  // namespace renderer

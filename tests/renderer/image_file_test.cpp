@@ -1,0 +1,132 @@
+#include "renderer/image_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+namespace renderer {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class ImageFileTest : public testing::Test {
+ protected:
+  ImageFileTest() {
+    std::string name = (fs::temp_directory_path() / "image_file_test_XXXXXX").string();
+    folder_ = ::mkdtemp(name.data());
+  }
+  ~ImageFileTest() override { fs::remove_all(folder_); }
+
+  fs::path folder_;
+};
+
+cv::Mat3f ramp() {
+  cv::Mat3f image(20, 30);
+  image.forEach([](cv::Vec3f& pixel, const int* at) {
+    pixel = {static_cast<float>(at[0]) * 0.37f, static_cast<float>(at[1]) * 1e4f, -1e-6f};
+  });
+  return image;
+}
+
+template <class Function>
+std::string error_of(const Function& function) {
+  try {
+    function();
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+void cut_in_half(const fs::path& file) {
+  fs::resize_file(file, fs::file_size(file) / 2);
+}
+
+TEST_F(ImageFileTest, ExrKeepsEveryBitOfFloats) {
+  write_exr(folder_ / "a.exr", ramp());
+  EXPECT_EQ(cv::norm(read_exr(folder_ / "a.exr"), ramp(), cv::NORM_INF), 0);
+}
+
+TEST_F(ImageFileTest, ExrKeepsRowsThatAreNotContiguous) {
+  const cv::Mat3f part = ramp()(cv::Rect(3, 4, 10, 8));
+  write_exr(folder_ / "a.exr", part);
+  EXPECT_EQ(cv::norm(read_exr(folder_ / "a.exr"), part, cv::NORM_INF), 0);
+}
+
+TEST_F(ImageFileTest, ExrKeepsItsHeader) {
+  const ImageHeader written{{"threadstation:unit", "radiance per second"}, {"threadstation:view", "r03"}};
+  write_exr(folder_ / "a.exr", ramp(), written);
+  ImageHeader read;
+  read_exr(folder_ / "a.exr", &read);
+  for (const auto& [name, text] : written) EXPECT_EQ(read[name], text);
+}
+
+TEST_F(ImageFileTest, PngKeepsMasksAndColours) {
+  cv::Mat1b mask(20, 30, uchar{0});
+  mask(3, 4) = 255;
+  write_png(folder_ / "mask.png", mask);
+  EXPECT_EQ(cv::norm(read_png_grey(folder_ / "mask.png"), mask, cv::NORM_INF), 0);
+  write_png(folder_ / "colour.png", cv::Mat3b(20, 30, cv::Vec3b(10, 20, 30)));
+  EXPECT_EQ(read_png_grey(folder_ / "colour.png")(5, 5), 10);  // the first channel is red
+  EXPECT_EQ(encode_png(cv::Mat3b(2, 2, cv::Vec3b(1, 2, 3))).substr(1, 3), "PNG");
+}
+
+TEST_F(ImageFileTest, NothingButTheFileIsLeftInTheFolder) {
+  write_exr(folder_ / "a.exr", ramp());
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(ImageFileTest, AMissingFileIsNamed) {
+  EXPECT_THAT(error_of([&] { read_exr(folder_ / "no.exr"); }), AllOf(HasSubstr("no.exr"), HasSubstr("no such file")));
+}
+
+TEST_F(ImageFileTest, AFileCutShortGivesOneClearLine) {
+  write_exr(folder_ / "a.exr", ramp());
+  cut_in_half(folder_ / "a.exr");
+  EXPECT_THAT(error_of([&] { read_exr(folder_ / "a.exr"); }),
+              AllOf(HasSubstr("a.exr"), HasSubstr("make it again"), Not(HasSubstr("\n"))));
+  cv::Mat1b noise(200, 200);
+  cv::randu(noise, 0, 255);
+  write_png(folder_ / "a.png", noise);
+  cut_in_half(folder_ / "a.png");
+  EXPECT_THAT(error_of([&] { read_png_grey(folder_ / "a.png"); }),
+              AllOf(HasSubstr("a.png"), HasSubstr("make it again"), Not(HasSubstr("\n"))));
+  std::ofstream(folder_ / "empty.exr").close();
+  EXPECT_THAT(error_of([&] { read_exr(folder_ / "empty.exr"); }), HasSubstr("empty.exr"));
+}
+
+TEST_F(ImageFileTest, AFolderThatDoesNotExistGivesOneClearLine) {
+  EXPECT_THAT(error_of([&] { write_exr(folder_ / "no" / "a.exr", ramp()); }),
+              AllOf(HasSubstr("a.exr"), HasSubstr("No such file"), HasSubstr("check that the folder")));
+}
+
+TEST_F(ImageFileTest, AFullDiskGivesOneClearLineAndLeavesTheOldFile) {
+  // The device that is always full stands in for the disk: the temporary file is a link to it.
+  const fs::path file = folder_ / "a.exr";
+  write_exr(file, ramp());
+  fs::create_symlink("/dev/full", file.string() + "." + std::to_string(::getpid()) + ".partial");
+  EXPECT_THAT(error_of([&] { write_exr(file, cv::Mat3f(5, 5)); }),
+              AllOf(HasSubstr("a.exr"), HasSubstr("No space left")));
+  EXPECT_EQ(cv::norm(read_exr(file), ramp(), cv::NORM_INF), 0);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+TEST(EncodeSrgbTest, MapsBlackMiddleGreyAndWhiteAsTheStandardDoes) {
+  const cv::Mat3f image = (cv::Mat_<cv::Vec3f>(1, 2) << cv::Vec3f(0, 0.5f, 1), cv::Vec3f(-1, 0.001f, 7));
+  const cv::Mat3b encoded = encode_srgb(image, 1);
+  EXPECT_EQ(encoded(0, 0), cv::Vec3b(0, 188, 255));
+  EXPECT_EQ(encoded(0, 1), cv::Vec3b(0, 3, 255));  // 0.001 is on the linear foot: 12.92 / 1000 * 255
+}
+
+TEST(EncodeSrgbTest, AppliesTheColourMatrixAndTheScale) {
+  const cv::Matx33f swap(0, 0, 1, 0, 1, 0, 1, 0, 0);
+  EXPECT_EQ(encode_srgb(cv::Mat3f(1, 1, cv::Vec3f(0.5f, 0.25f, 0)), 2, swap)(0, 0), cv::Vec3b(0, 188, 255));
+}
+
+}  // namespace
+}  // namespace renderer

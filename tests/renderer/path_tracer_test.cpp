@@ -1,0 +1,179 @@
+#include "renderer/path_tracer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <thread>
+
+namespace renderer {
+namespace {
+
+using Eigen::Vector3d;
+
+Camera small_camera(const Vector3d& eye, double frame_width_mm, int width = 24, int height = 16) {
+  Camera camera = look_at(eye, {0, 0, 0}, {0, 1, 0});
+  camera.width = width, camera.height = height;
+  camera.fx = camera.fy = width * eye.norm() / frame_width_mm;
+  camera.cx = (width - 1) / 2.0, camera.cy = (height - 1) / 2.0;
+  return camera;
+}
+
+// Threads across and along, so that light scatters many times before it leaves.
+CurveSet crossed_threads(const FiberParameters& fiber) {
+  CurveSet set{.scattering = fiber};
+  for (int i = -8; i <= 8; ++i) {
+    const float at = 0.35f * static_cast<float>(i);
+    set.add_clamped_curve({{-4, at, 0, 0.15f}, {4, at, 0, 0.15f}});
+    set.add_clamped_curve({{at, -4, 0.31f, 0.15f}, {at, 4, 0.31f, 0.15f}});
+  }
+  return set;
+}
+
+TriangleMesh white_floor(float albedo) {
+  return {.vertices = {{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}},
+          .triangles = {{0, 1, 2}, {0, 2, 3}},
+          .albedo = cv::Mat3f(1, 1, cv::Vec3f::all(albedo))};
+}
+
+double mean(const cv::Mat3f& image, int channel = 0) {
+  return cv::mean(image)[channel];
+}
+
+TEST(PathTracerTest, WhiteFibersInAUniformEnvironmentDisappear) {
+  const PathTracer tracer(
+      {.curves = {crossed_threads({.beta_m = 0.2, .beta_n = 0.3})}, .lights = {{.radius_mm = 500}}});
+  const cv::Mat3f image = tracer.render(small_camera({0, 2, 20}, 4), {.samples_per_pixel = 256});
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean(image, c), 1, 3e-3);  // about three standard errors
+}
+
+TEST(PathTracerTest, DiffuseFloorInAUniformEnvironmentShowsItsAlbedo) {
+  const PathTracer tracer({.meshes = {white_floor(0.6f)}, .lights = {{.radius_mm = 500}}});
+  EXPECT_NEAR(mean(tracer.render(small_camera({0, 2, 20}, 4), {.samples_per_pixel = 64})), 0.6, 3e-3);
+}
+
+TEST(PathTracerTest, IrradianceOfASphereFollowsTheInverseSquareLaw) {
+  for (double radius : {1.0, 60.0}) {  // the small one is found by light sampling, the large one by both strategies
+    const PathTracer tracer(
+        {.meshes = {white_floor(0.5f)},
+         .lights = {{.center = {0, 0, 100}, .radius_mm = radius, .radiance = {4, 4, 4}, .visible = false}}});
+    const cv::Mat3f image =
+        tracer.render(small_camera({0, 15, 20}, 0.5), {.samples_per_pixel = 128, .max_vertices = 1});
+    const double irradiance = 4 * kPi * radius * radius / (100 * 100);
+    EXPECT_NEAR(mean(image) / (0.5 / kPi * irradiance), 1, 3e-3)
+        << radius;  // three standard errors, 0.5 mm wide frame
+  }
+}
+
+TEST(PathTracerTest, TwoLightsAddUp) {
+  const SphereLight a{.center = {0, 40, 80}, .radius_mm = 30},
+      b{.center = {50, 0, 60}, .radius_mm = 2, .radiance = {90, 80, 70}};
+  const auto lit_by = [&](const std::vector<SphereLight>& lights) {
+    const PathTracer tracer({.curves = {crossed_threads({.sigma_a = {0.2, 0.2, 0.2}})}, .lights = lights});
+    return mean(tracer.render(small_camera({0, 2, 20}, 4), {.samples_per_pixel = 512}));
+  };
+  const double both = lit_by({a, b});
+  EXPECT_NEAR(lit_by({a}) + lit_by({b}), both, 0.01 * both);  // noise of three pictures
+}
+
+// One vertex on one convex thread: the light passes the thread's own far side, so the mean radiance across the thread
+// is the mean of f_cos over h. Fixes the signs of h and of all frames.
+TEST(PathTracerTest, SingleScatteringOfOneThreadIsTheMeanOverOffsets) {
+  const FiberParameters fiber{.sigma_a = {0.1, 0.3, 0.8}, .beta_m = 0.3, .beta_n = 0.2};
+  CurveSet set{.scattering = fiber};
+  set.add_clamped_curve({{-30, 0, 0, 0.1f}, {30, 0, 0, 0.1f}});
+  const FiberModel<double> model(fiber);
+  for (const Vector3d& toward_light :
+       {Vector3d(0.3, 0.8, 0.5), Vector3d(-0.2, -0.3, 0.9), Vector3d(0.1, 0.3, -0.9)}) {
+    const Vector3d light = toward_light.normalized();
+    const double omega = kPi * 1e-4;  // solid angle of a sphere of radius 40 at 4000
+    const PathTracer tracer(
+        {.curves = {set}, .lights = {{.center = 4000 * light, .radius_mm = 40, .visible = false}}});
+    Camera camera = small_camera({0, 0, 1000}, 0.2, 8, 8);
+    const cv::Mat3f image = tracer.render(camera, {.samples_per_pixel = 2000, .max_vertices = 1});
+    Eigen::Array3d expected = Eigen::Array3d::Zero();
+    constexpr int kSteps = 2000;
+    for (int i = 0; i < kSteps; ++i) {
+      const double y = 2 * (i + 0.5) / kSteps - 1;  // height on the thread, in radii
+      const Vector3d normal(0, y, std::sqrt(1 - y * y)), tangent = Vector3d::UnitX(), side = normal.cross(tangent);
+      const auto local = [&](const Vector3d& w) { return Vector3d(w.dot(tangent), w.dot(side), w.dot(normal)); };
+      const Vector3d wo = local(Vector3d::UnitZ());
+      expected += model.lobes_at(-wo.y(), wo).evaluate(local(light)).f_cos * (omega / kSteps);
+    }
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean(image, c) / expected[c], 1, 5e-3) << light.transpose();
+  }
+}
+
+TEST(PathTracerTest, ThePictureDoesNotDependOnTheNumberOfThreads) {
+  const PathTracer tracer({.curves = {crossed_threads({})}, .lights = {{.center = {0, 40, 80}, .radius_mm = 30}}});
+  const Camera camera = small_camera({0, 2, 20}, 6, 40, 40);
+  const cv::Mat3f one = tracer.render(camera, {.samples_per_pixel = 2, .threads = 1});
+  EXPECT_EQ(cv::norm(one, tracer.render(camera, {.samples_per_pixel = 2, .threads = 3}), cv::NORM_INF), 0);
+  EXPECT_GT(cv::norm(one, tracer.render(camera, {.samples_per_pixel = 2, .seed = 2}), cv::NORM_INF), 0);
+}
+
+TEST(PathTracerTest, LightsAreSeenByCamerasOnlyWhenVisible) {
+  SphereLight light{.radius_mm = 20, .radiance = {7, 6, 5}};
+  const Camera camera = small_camera({0, 0, 100}, 10);
+  EXPECT_NEAR(mean(PathTracer({.lights = {light}}).render(camera, {}), 2), 5, 1e-6);
+  light.visible = false;
+  EXPECT_EQ(mean(PathTracer({.lights = {light}}).render(camera, {})), 0);
+}
+
+TEST(PathTracerTest, AnOpaqueFloorHidesTheLightBehindIt) {
+  const PathTracer tracer({.meshes = {white_floor(0.5f)}, .lights = {{.center = {0, 0, -100}, .radius_mm = 20}}});
+  EXPECT_EQ(mean(tracer.render(small_camera({0, 0, 100}, 10), {})), 0);
+}
+
+TEST(PathTracerTest, ThinFibersFarAwayKeepTheirWidth) {
+  CurveSet set;
+  set.add_clamped_curve({{-30, 0, 0, 0.05f}, {30, 0, 0, 0.05f}});
+  const PathTracer tracer({.curves = {set}, .lights = {{.radius_mm = 2000}}});
+  // In a white furnace whose camera looks at a black fiber, darkness measures coverage: 0.1 mm of the 0.2 mm high
+  // frame.
+  CurveSet black = set;
+  black.scattering = FiberParameters{.sigma_a = {1e6, 1e6, 1e6}};
+  const Camera camera = small_camera({0, 0, 600}, 0.3, 30, 20);
+  const cv::Mat1b coverage = tracer.curve_coverage(camera, 1);
+  EXPECT_EQ(cv::countNonZero(coverage), 30 * 10);
+  EXPECT_EQ(coverage(4, 15), 0);
+  EXPECT_EQ(coverage(5, 15), 255);
+}
+
+TEST(PathTracerTest, CoverageOfSubPositionsIncludesPixelsThatAreOnlyTouched) {
+  CurveSet set;
+  set.add_clamped_curve({{-30, 0, 0, 0.052f}, {30, 0, 0, 0.052f}});
+  const PathTracer tracer({.curves = {set}});
+  const Camera camera = small_camera({0, 0, 600}, 0.3, 30, 20);
+  EXPECT_EQ(cv::countNonZero(tracer.curve_coverage(camera, 1)), 30 * 10);
+  EXPECT_EQ(cv::countNonZero(tracer.curve_coverage(camera, 64)), 30 * 12);
+}
+
+TEST(PathTracerTest, MeshesInFrontAreNotCoverage) {
+  CurveSet set;
+  set.add_clamped_curve({{-30, 0, -1, 0.05f}, {30, 0, -1, 0.05f}});
+  const PathTracer tracer({.curves = {set}, .meshes = {white_floor(0.5f)}});
+  EXPECT_EQ(cv::countNonZero(tracer.curve_coverage(small_camera({0, 0, 600}, 0.3), 1)), 0);
+}
+
+TEST(PathTracerTest, ProgressIsReportedFromTheCallingThreadAndCanStop) {
+  const PathTracer tracer({.lights = {{.radius_mm = 20}}});
+  const Camera camera = small_camera({0, 0, 100}, 10, 200, 200);
+  int calls = 0;
+  const auto caller = std::this_thread::get_id();
+  const auto count = [&](double fraction) {
+    EXPECT_EQ(std::this_thread::get_id(), caller);
+    EXPECT_TRUE(fraction > 0 && fraction <= 1);
+    ++calls;
+    return true;
+  };
+  tracer.render(camera, {.progress = count});
+  EXPECT_GT(calls, 0);
+  EXPECT_THROW(tracer.render(camera, {.progress = [](double) { return false; }}), std::runtime_error);
+}
+
+TEST(PathTracerTest, AnEmptySceneIsBlack) {
+  EXPECT_EQ(mean(PathTracer(Scene{}).render(small_camera({0, 0, 100}, 10), {})), 0);
+}
+
+}  // namespace
+}  // namespace renderer

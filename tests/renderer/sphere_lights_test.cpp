@@ -1,0 +1,66 @@
+#include "renderer/sphere_lights.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace renderer {
+namespace {
+
+using Eigen::Vector3d;
+
+const std::vector<SphereLight> kTwoLights{{.center = {0, 0, 100}, .radius_mm = 20},
+                                          {.center = {80, 0, 90}, .radius_mm = 35, .radiance = {3, 2, 1}}};
+
+// Solid angle in which light is seen, from the reciprocal density of sampled directions.
+TEST(SphereLightsTest, DensityIsThatOfTheSampledDirections) {
+  const SphereLights lights(kTwoLights);
+  double mean = 0;
+  constexpr int kSide = 40;
+  for (int i = 0; i < kSide * kSide * kSide; ++i) {
+    const Eigen::Vector3f u =
+        (Eigen::Vector3i(i % kSide, i / kSide % kSide, i / kSide / kSide).cast<float>().array() + 0.5f) / kSide;
+    const auto direction = lights.sample({1, 2, 3}, u.z(), u.head<2>());
+    ASSERT_TRUE(direction);
+    EXPECT_NEAR(direction->norm(), 1, 1e-9);
+    EXPECT_TRUE(lights.intersect({1, 2, 3}, *direction, false));
+    mean += 1 / lights.pdf({1, 2, 3}, *direction) / (kSide * kSide * kSide);
+  }
+  const auto solid_angle = [](const SphereLight& light) {
+    const double sine = light.radius_mm / (light.center - Vector3d(1, 2, 3)).norm();
+    return 2 * kPi * (1 - std::sqrt(1 - sine * sine));
+  };
+  // The two cones do not overlap, so the mean of 1 / density is the sum of their solid angles; the last light of a
+  // stratum of u_light adds an error of one part in forty at most.
+  EXPECT_NEAR(mean, solid_angle(kTwoLights[0]) + solid_angle(kTwoLights[1]), 0.05 * mean);
+}
+
+TEST(SphereLightsTest, TheNearestLightIsSeen) {
+  const SphereLights lights({{.center = {0, 0, 100}, .radius_mm = 5, .radiance = {1, 1, 1}},
+                             {.center = {0, 0, 50}, .radius_mm = 5, .radiance = {2, 2, 2}, .visible = false}});
+  const auto seen = lights.intersect(Vector3d::Zero(), Vector3d::UnitZ(), false);
+  EXPECT_NEAR(seen->distance, 45, 1e-9);
+  EXPECT_EQ(seen->radiance[0], 2);
+  EXPECT_EQ(lights.intersect(Vector3d::Zero(), Vector3d::UnitZ(), true)->radiance[0], 1);
+  EXPECT_FALSE(lights.intersect(Vector3d::Zero(), -Vector3d::UnitZ(), false));
+}
+
+TEST(SphereLightsTest, ASurroundingSphereIsSeenAndSampledInAllDirections) {
+  const SphereLights lights(std::vector<SphereLight>{{.radius_mm = 1000}});
+  EXPECT_NEAR(lights.pdf({10, 0, 0}, Vector3d::UnitX()), 1 / (4 * kPi), 1e-12);
+  EXPECT_NEAR(lights.intersect({10, 0, 0}, Vector3d::UnitX(), true)->distance, 990, 1e-9);
+  Vector3d mean = Vector3d::Zero();
+  for (int i = 0; i < 64; ++i)
+    mean += *lights.sample({10, 0, 0}, 0,
+                           {(static_cast<float>(i % 8) + 0.5f) / 8, (static_cast<float>(i / 8) + 0.5f) / 8});
+  EXPECT_LT(mean.norm(), 1e-5);  // a symmetric lattice of directions; single-precision input
+}
+
+TEST(SphereLightsTest, WithoutLightsThereIsNothingToSample) {
+  const SphereLights lights(std::vector<SphereLight>{});
+  EXPECT_FALSE(lights.sample(Vector3d::Zero(), 0.5f, {0.5f, 0.5f}));
+  EXPECT_EQ(lights.pdf(Vector3d::Zero(), Vector3d::UnitX()), 0);
+}
+
+}  // namespace
+}  // namespace renderer

@@ -1,0 +1,165 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "station/documents/draft_file.h"
+#include "station/documents/patch_file.h"
+#include "station/documents/reader.h"
+
+namespace station {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+const fs::path kDrafts = fs::path(FIXTURES_DIR) / "drafts";
+
+// The message of what `action` throws, which must be one line.
+template <typename Action>
+std::string refusal(Action&& action) {
+  try {
+    action();
+  } catch (const std::runtime_error& error) {
+    const std::string message = error.what();
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    return message;
+  }
+  ADD_FAILURE() << "nothing was refused";
+  return {};
+}
+
+void expect_refused(const json& document, bool is_draft, const std::string& named) {
+  const std::string line = refusal(
+      [&] { is_draft ? void(parse_draft(document, "file.json")) : void(parse_patch(document, "file.json")); });
+  EXPECT_EQ(line.rfind("file.json: ", 0), 0u) << line;
+  EXPECT_NE(line.find(named), std::string::npos) << "expected \"" << named << "\", found: " << line;
+}
+
+class WeaveDocuments : public testing::Test {
+ protected:
+  WeaveDocuments()
+      : folder_(fs::path(testing::TempDir()) /
+                (std::string("weave_") + testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~WeaveDocuments() override { fs::remove_all(folder_); }
+  fs::path folder_;
+};
+
+TEST_F(WeaveDocuments, ReadyDraftsAreTheWeavesTheyAreNamedAfterAndDoNotOverlap) {
+  const std::vector<std::pair<std::string, renderer::Draft>> ready{
+      {"plain", renderer::plain_draft()},         {"twill_2_2", renderer::twill_draft(2, 2)},
+      {"twill_3_1", renderer::twill_draft(3, 1)}, {"satin_5", renderer::satin_draft(5, 2)},
+      {"satin_8", renderer::satin_draft(8, 3)},   {"basket_2_2", renderer::basket_draft(2)}};
+  for (const auto& [file, made] : ready) {
+    const renderer::Draft draft = read_draft(kDrafts / (file + ".json"));
+    EXPECT_EQ(draft.name, made.name);
+    EXPECT_EQ(draft.warp_over, made.warp_over) << file;
+    EXPECT_EQ(draft.warp.diameter_mm, 0.5);  // the ready spools' threads
+    // 1.1 % of the radius: what splines miss of arcs and floats
+    EXPECT_GT(renderer::initial_patch(draft).least_gap_mm, -0.011 * 0.25) << file;
+  }
+}
+
+TEST_F(WeaveDocuments, ADraftThatIsWrittenAndReadIsTheSameDraft) {
+  renderer::Draft draft = renderer::satin_draft(8, 3);
+  draft.warp = {.diameter_mm = 0.1 + 0.2, .pitch_mm = 1.0 / 3, .threads = {0, 2, 1}};
+  draft.weft.pitch_mm = 0.77;
+  draft.height_scale = 0.9;
+  write_json_file(folder_ / "draft.json", to_json(draft));
+  const renderer::Draft read = read_draft(folder_ / "draft.json");
+  EXPECT_EQ(to_json(read), to_json(draft));
+  EXPECT_EQ(read.warp_over, draft.warp_over);
+  EXPECT_EQ(read.warp.threads, draft.warp.threads);
+  EXPECT_EQ(read.warp.pitch_mm, draft.warp.pitch_mm);  // all digits
+}
+
+TEST_F(WeaveDocuments, APatchThatIsWrittenAndReadIsTheSamePatchToTheLastDigit) {
+  renderer::Draft draft = read_draft(kDrafts / "satin_5.json");
+  draft.warp.threads = {0, 3};
+  const renderer::YarnPatch patch = renderer::initial_patch(draft);
+  write_json_file(folder_ / "patch.json", to_json(patch));
+  const renderer::YarnPatch read = read_patch(folder_ / "patch.json");
+  EXPECT_EQ(read.name, patch.name);
+  EXPECT_EQ(read.period_x_mm, patch.period_x_mm);
+  EXPECT_EQ(read.period_y_mm, patch.period_y_mm);
+  EXPECT_EQ(read.height_scale, patch.height_scale);
+  EXPECT_EQ(read.thickness_mm, patch.thickness_mm);
+  EXPECT_EQ(read.crimp_warp, patch.crimp_warp);
+  EXPECT_EQ(read.crimp_weft, patch.crimp_weft);
+  EXPECT_EQ(read.cover, patch.cover);
+  EXPECT_EQ(read.least_gap_mm, patch.least_gap_mm);
+  ASSERT_EQ(read.yarns.size(), patch.yarns.size());
+  for (std::size_t i = 0; i < patch.yarns.size(); ++i) {
+    EXPECT_EQ(read.yarns[i].warp, patch.yarns[i].warp);
+    EXPECT_EQ(read.yarns[i].thread, patch.yarns[i].thread);
+    EXPECT_EQ(read.yarns[i].radius_mm, patch.yarns[i].radius_mm);
+    EXPECT_EQ(read.yarns[i].control_points, patch.yarns[i].control_points);
+  }
+}
+
+TEST_F(WeaveDocuments, EachBadDraftFileIsRefusedInOneLineThatNamesTheKey) {
+  const json good = read_json_file(kDrafts / "plain.json");
+  const auto spoiled = [&](const char* pointer, const json& value) {
+    json document = good;
+    document[json::json_pointer(pointer)] = value;
+    return document;
+  };
+  expect_refused(spoiled("/colour", 1), true, "unknown key \"colour\"");
+  expect_refused(spoiled("/warp/sett", 1), true, "unknown key \"warp.sett\"");
+  expect_refused(spoiled("/version", 2), true, "version 2");
+  expect_refused(spoiled("/format", "threadstation/patch"), true, "threadstation/draft");
+  expect_refused(spoiled("/structure", "X."), true, "\"structure\"");
+  expect_refused(spoiled("/structure/1", 5), true, "pick 2 is not text");
+  expect_refused(spoiled("/structure/1", "x."), true, "pick 2 has a mark other than");
+  expect_refused(spoiled("/structure", json::array()), true, "empty");
+  expect_refused(spoiled("/structure/1", ".X."), true, "ragged");
+  expect_refused(spoiled("/structure/1", "X."), true, "never interlaces");
+  expect_refused(spoiled("/warp/pitch_mm", -1), true, "warp pitch is -1 mm");
+  expect_refused(spoiled("/weft/pitch_mm", 0.3), true, "weft pitch 0.3 mm is less than the yarn diameter");
+  expect_refused(spoiled("/weft/diameter_mm", "thin"), true, "\"weft.diameter_mm\"");
+  expect_refused(spoiled("/weft/threads", json::array({0.5})), true, "\"weft.threads\"");
+  expect_refused(spoiled("/weft/threads", json::array({1e300})), true, "\"weft.threads\"");
+  expect_refused(spoiled("/height_scale", 0), true, "height scale is 0");
+  json without = good;
+  without.erase("weft");
+  expect_refused(without, true, "\"weft\": is missing");
+}
+
+TEST_F(WeaveDocuments, EachBadPatchFileIsRefusedInOneLineThatNamesTheKey) {
+  const json good = to_json(renderer::initial_patch(renderer::plain_draft()));
+  const auto spoiled = [&](const char* pointer, const json& value) {
+    json document = good;
+    document[json::json_pointer(pointer)] = value;
+    return document;
+  };
+  expect_refused(spoiled("/tiles", 3), false, "unknown key \"tiles\"");
+  expect_refused(spoiled("/yarns/2/color", 3), false, "unknown key \"yarns[2].color\"");
+  expect_refused(spoiled("/yarns", json::array()), false, "\"yarns\": the list is empty");
+  expect_refused(spoiled("/yarns/0/system", "knit"), false, "\"yarns[0].system\"");
+  expect_refused(spoiled("/yarns/0/radius_mm", 0), false, "\"yarns[0].radius_mm\"");
+  expect_refused(spoiled("/yarns/1/thread", -1), false, "\"yarns[1].thread\"");
+  expect_refused(spoiled("/yarns/1/control_points_mm", json::array()), false, "at least 4 points");
+  expect_refused(spoiled("/yarns/1/control_points_mm/3", json::array({1, 2})), false, "point 4 is not [x, y, z]");
+  expect_refused(spoiled("/yarns/1/control_points_mm/3/0", nullptr), false, "point 4 is not [x, y, z]");
+  expect_refused(spoiled("/period_x_mm", 0), false, "\"period_x_mm\"");
+  expect_refused(spoiled("/measured/cover", 1.5), false, "\"measured.cover\"");
+}
+
+TEST_F(WeaveDocuments, FilesThatAreCutShortAreRefusedWhereverTheyAreCut) {
+  const std::string draft = to_json(renderer::plain_draft()).dump(2),
+                    patch = to_json(renderer::initial_patch(renderer::plain_draft())).dump(2);
+  for (const std::string& whole : {draft, patch}) {
+    for (std::size_t part = 0; part < 10; ++part) {
+      const fs::path file = folder_ / "cut.json";
+      std::ofstream(file, std::ios::binary) << whole.substr(0, whole.size() * part / 10);
+      const std::string line = refusal([&] { whole == draft ? void(read_draft(file)) : void(read_patch(file)); });
+      EXPECT_NE(line.find("ends too early"), std::string::npos) << line;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace station
