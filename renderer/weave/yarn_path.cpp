@@ -16,6 +16,23 @@ double bending_weight(const YarnSystem& own, double pitch_along_mm) {
   return std::pow(pitch_along_mm, 3) / (own.diameter_mm * own.diameter_mm);
 }
 
+// The half-wave whose arc has the share kLeastArcShare: with straight part = q * arc and a radius of 1 it ends at
+// (sin t + q t cos t, 1 - cos t + q t sin t), whose slope from the crown grows with the angle t and must be that of
+// the middle.
+HalfWave rounded_half_wave(double pitch_mm, double crown_mm) {
+  constexpr double q = 1 / kLeastArcShare - 1;
+  const double slope = 2 * crown_mm / pitch_mm;
+  const auto across = [](double t) { return std::sin(t) + q * t * std::cos(t); };
+  const auto drop = [](double t) { return 1 - std::cos(t) + q * t * std::sin(t); };
+  double low = 0, high = M_PI / 2;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = (low + high) / 2;
+    (drop(middle) < slope * across(middle) ? low : high) = middle;
+  }
+  const double radius = pitch_mm / 2 / across(high);
+  return {.crown_mm = crown_mm, .radius_mm = radius, .angle_rad = high, .straight_mm = q * radius * high};
+}
+
 }  // namespace
 
 CrownHeights split_heights(const YarnSystem& warp, const YarnSystem& weft) {
@@ -38,7 +55,7 @@ Eigen::Vector2d HalfWave::at(double arc_length_mm) const {
 // The path is symmetric about the middle M = (pitch / 2, 0). The crossing yarn's centre is (0, -crossing_crown) when
 // this yarn passes above it; the straight part is the tangent from M to the circle of the contact distance round that
 // centre.
-HalfWave half_wave(double pitch_mm, double crown_mm, double crossing_crown_mm) {
+HalfWave taut_half_wave(double pitch_mm, double crown_mm, double crossing_crown_mm) {
   const double half = pitch_mm / 2, contact = crown_mm + crossing_crown_mm;
   const double to_middle = std::hypot(half, crossing_crown_mm);
   if (to_middle >= contact) {
@@ -50,6 +67,12 @@ HalfWave half_wave(double pitch_mm, double crown_mm, double crossing_crown_mm) {
   }
   const double angle = 2 * std::atan2(crown_mm, half);  // two arcs that meet in M
   return {.crown_mm = crown_mm, .radius_mm = half / std::sin(angle), .angle_rad = angle, .straight_mm = 0};
+}
+
+HalfWave half_wave(double pitch_mm, double crown_mm, double crossing_crown_mm) {
+  const HalfWave taut = taut_half_wave(pitch_mm, crown_mm, crossing_crown_mm);
+  if (crown_mm <= 0 || taut.radius_mm * taut.angle_rad >= kLeastArcShare * taut.length_mm()) return taut;
+  return rounded_half_wave(pitch_mm, crown_mm);
 }
 
 std::vector<Eigen::Vector2d> yarn_path(const std::vector<bool>& on_top, double pitch_mm, const HalfWave& wave) {

@@ -1,10 +1,12 @@
-// The analytic path of a yarn in its own plane: Peirce's geometry of round, flexible, inextensible yarns.
+// The analytic path of a yarn in its own plane: Peirce's geometry of round yarns, rounded where the cloth is open.
 //
 // A yarn lies at +height where it is on top and at -height where it is below, flat along floats. Between a crossing
-// on top and one below it lies on the crossing yarn's section (a circle of radius d = contact distance = sum of the
-// two radii round that yarn's centre line), runs straight, and lies on the next section. This is the shortest path
-// that does not enter the crossing yarns: the tension-dominated limit of a relaxed cloth. Source: models.md
-// section 4.3 (Peirce 1937); there D = 2 d and h is twice our height.
+// on top and one below it turns in an arc, runs straight, and turns back. In tight cloth the arcs lie on the crossing
+// yarns' sections (circles of radius d = contact distance = sum of both radii round their centre lines): the shortest
+// path that does not enter them, the tension-dominated limit (Peirce 1937; there D = 2 d and h is twice our height).
+// In open cloth that path would bend sharply on the crossing yarn and no stiffness allows it; there the arcs take
+// kLeastArcShare of the path, which gives the crimp 0.6 (h/p)^2 of clamped beams of small slope. No arc is tighter
+// than contact, so neither shape enters the crossing yarns. Source: models.md section 4.3.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,8 +38,12 @@ struct HalfWave {
   Eigen::Vector2d at(double arc_length_mm) const;  // (distance from the crown, height)
 };
 
-// `pitch_mm` is the way to the next crossing. When round yarns jam, the arc is as wide as the pitch allows (no
-// straight part, radius below the contact distance) and cuts into the crossing yarns.
+// Peirce's half-wave; `pitch_mm` is the way to the next crossing. When round yarns jam, the arc is as wide as the
+// pitch allows (no straight part, radius below the contact distance) and cuts into the crossing yarns.
+HalfWave taut_half_wave(double pitch_mm, double crown_mm, double crossing_crown_mm);
+
+// The half-wave that is woven: the taut one, or where its arc is less than kLeastArcShare of it, the one of that
+// share.
 HalfWave half_wave(double pitch_mm, double crown_mm, double crossing_crown_mm);
 
 // One period, (along, height) at kPointsPerCrossing equal steps of arc length from one crossing to the next, starting
@@ -46,5 +52,8 @@ HalfWave half_wave(double pitch_mm, double crown_mm, double crossing_crown_mm);
 std::vector<Eigen::Vector2d> yarn_path(const std::vector<bool>& on_top, double pitch_mm, const HalfWave& wave);
 
 inline constexpr int kPointsPerCrossing = 8;
+
+// The arc's share a of a shallow half-wave has the crimp (1 - 2 a / 3) / (2 (1 - a / 2)^2) (h/p)^2; 0.6 at this a.
+inline constexpr double kLeastArcShare = 0.53752;
 
 }  // namespace renderer

@@ -21,17 +21,17 @@ const PeirceRow kPeirce[]{{0.8660254, 60.00, 1.0472}, {0.9, 47.18, 1.0684}, {1.0
 TEST(YarnPathTest, SquareClothHasTheAnglesAndLengthsOfPeircesTable) {
   for (const PeirceRow& row : kPeirce) {
     const double pitch = std::max(row.pitch_over_d, std::sqrt(0.75));
-    const HalfWave wave = half_wave(pitch, 0.25, 0.25);  // D = 1, so each system's crown is D / 4
+    const HalfWave wave = taut_half_wave(pitch, 0.25, 0.25);  // D = 1, so each system's crown is D / 4
     EXPECT_NEAR(wave.angle_rad / kRad, row.angle_deg, row.pitch_over_d < 0.87 ? 0.02 : 0.006)
         << pitch;                                                         // printed digits; at
     EXPECT_NEAR(2 * wave.length_mm(), row.length_over_d, 6e-5) << pitch;  // the jam the angle has an infinite slope
   }
 }
 
-TEST(YarnPathTest, TheHalfWaveObeysPeircesTwoEquations) {
+TEST(YarnPathTest, TheTautHalfWaveObeysPeircesTwoEquations) {
   for (double crown : {0.05, 0.2, 0.31}) {
     const double other = 0.4 - crown, pitch = 0.83;
-    const HalfWave wave = half_wave(pitch, crown, other);
+    const HalfWave wave = taut_half_wave(pitch, crown, other);
     const double l = 2 * wave.length_mm(), theta = wave.angle_rad, contact = 0.4;  // Peirce's D / 2
     EXPECT_NEAR(pitch, (l - 2 * contact * theta) * std::cos(theta) + 2 * contact * std::sin(theta), 1e-12);
     EXPECT_NEAR(2 * crown, (l - 2 * contact * theta) * std::sin(theta) + 2 * contact * (1 - std::cos(theta)), 1e-12);
@@ -69,11 +69,36 @@ TEST(YarnPathTest, ATightWarpLeavesTheWeftStraightEnoughThatNoYarnIsCutInto) {
   EXPECT_LT(crown.weft_mm, 0.07);
 }
 
-TEST(YarnPathTest, AThinYarnOfOpenClothHasTheCrimpOfATautString) {
-  const double pitch = 40, rise = 0.5;
-  const HalfWave wave = half_wave(pitch, rise / 2, rise / 2);
-  const double crimp = 2 * wave.length_mm() / pitch - 1;
-  EXPECT_NEAR(crimp / (rise * rise / (pitch * pitch)), 0.5, 0.01);  // next term of the series: D / (2 p) of it
+double crimp_of(const HalfWave& wave, double pitch) {
+  return 2 * wave.length_mm() / pitch - 1;
+}
+
+TEST(YarnPathTest, InOpenClothTheTautCrimpIsThatOfAStringAndTheWovenOneThatOfAClampedBeam) {
+  const double pitch = 40, rise = 0.5, unit = rise * rise / (pitch * pitch);
+  EXPECT_NEAR(crimp_of(taut_half_wave(pitch, rise / 2, rise / 2), pitch) / unit, 0.5,
+              0.01);  // plus about D / (2 p) of it
+  EXPECT_NEAR(crimp_of(half_wave(pitch, rise / 2, rise / 2), pitch) / unit, 0.6, 0.0002);  // plus (h / p)^2 of it
+}
+
+TEST(YarnPathTest, TheWovenPathIsNeverShorterNorMoreSharplyBentThanTheTautOne) {
+  double previous = 0;
+  for (double pitch = 0.87; pitch < 5; pitch *= 1.01) {
+    const HalfWave taut = taut_half_wave(pitch, 0.25, 0.25), woven = half_wave(pitch, 0.25, 0.25);
+    EXPECT_GE(woven.length_mm(), taut.length_mm() - 1e-12) << pitch;
+    EXPECT_GE(woven.radius_mm, taut.radius_mm - 1e-12) << pitch;
+    EXPECT_LE(crimp_of(woven, pitch), 1.2 * crimp_of(taut, pitch)) << pitch;  // 0.6 / 0.5
+    EXPECT_GT(woven.length_mm(), previous) << pitch;
+    previous = woven.length_mm();
+  }
+  EXPECT_EQ(half_wave(0.9, 0.25, 0.25).radius_mm, 0.5);  // tight cloth: on the crossing yarn's section
+  EXPECT_EQ(half_wave(1.0, 0.25, 0.25).radius_mm, 0.5);
+  EXPECT_GT(half_wave(1.25, 0.25, 0.25).radius_mm, 0.5);
+}
+
+TEST(YarnPathTest, AStraightYarnStaysStraight) {
+  const HalfWave wave = half_wave(1.2, 0, 0.5);
+  EXPECT_NEAR(wave.length_mm(), 0.6, 1e-12);
+  EXPECT_NEAR(wave.at(0.4).y(), 0, 1e-12);
 }
 
 TEST(YarnPathTest, FloatsAreFlatAndCrossingsAreEvenlySpaced) {
