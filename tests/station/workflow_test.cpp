@@ -1,0 +1,266 @@
+// The commands one after the other on the simulated bench, as a person types them: calibrate, capture, develop, report,
+// each alone from the files that the one before it left; pulled plugs, full disks and wrong files on the way.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <set>
+#include <thread>
+
+#include "station/documents/calibration_file.h"
+#include "station/documents/reader.h"
+#include "station/documents/session_file.h"
+#include "station/documents/views_file.h"
+#include "tests/station/program.h"
+
+namespace station_test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+void expect_success(const ProgramResult& result) { EXPECT_EQ(result.status, 0) << result.error; }
+
+// One clear line on standard error and exit status 1.
+void expect_one_line(const ProgramResult& result, const std::string& must_name) {
+  EXPECT_EQ(result.status, 1) << result.error;
+  EXPECT_EQ(result.error_lines(), 1) << result.error;
+  EXPECT_NE(result.error.find(must_name), std::string::npos) << result.error;
+}
+
+class Workflow : public ::testing::Test {
+ protected:
+  // One calibrated rig and one captured session for all tests; few samples a pixel, so that drawing takes little time.
+  static void SetUpTestSuite() {
+    folder_ = new TemporaryFolder;
+    json rig = station::read_json_file(std::string(FIXTURES_DIR) + "/rigs/simulated.json");
+    rig["simulation"]["samples_per_pixel"] = 1;
+    rig["simulation"]["target_samples_per_pixel"] = 4;
+    station::write_json_file(path("rig.json"), rig);
+    expect_success(run_threadstation({"calibrate", "--rig", path("rig.json"), "--out", path("calibration"), "--quiet"}));
+    expect_success(capture(path("session")));
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+
+  static std::string path(const std::string& name) { return *folder_ / name; }
+  static std::vector<std::string> capture_arguments(const std::string& session) {
+    return {"capture", "--rig", path("rig.json"), "--calibration", path("calibration"), "--spool",
+            std::string(FIXTURES_DIR) + "/spools/silk_red.json", "--out", session, "--unattended", "--quiet"};
+  }
+  static ProgramResult capture(const std::string& session) { return run_threadstation(capture_arguments(session)); }
+
+  static TemporaryFolder* folder_;
+};
+TemporaryFolder* Workflow::folder_ = nullptr;
+
+TEST_F(Workflow, CalibrationFindsTheBenchAsItIs) {
+  const station::RigCalibration found = station::read_calibration(path("calibration"));
+  const rig::BenchTruth truth = station::read_rig(path("rig.json")).simulation->truth;
+  const calibration::Lens& lens = found.lens.lens;
+  // 0.5 %: focal length and distance trade off in a lens of 14 degrees; what counts at the spool is checked below.
+  EXPECT_NEAR(lens.fx_px, truth.lens.fx_px, 0.005 * truth.lens.fx_px);
+  EXPECT_LT(found.lens.rms_px, 0.3);
+  EXPECT_NEAR(found.platform.scale, truth.turntable.scale, 5e-4);
+  // A point at the spool must fall where the true camera sees it: 1 px = 0.25 mm.
+  const auto camera = [](const calibration::Lens& l, const Eigen::Isometry3d& pose) {
+    return renderer::Camera{.width = l.width_px, .height = l.height_px, .fx = l.fx_px, .fy = l.fy_px, .cx = l.cx_px,
+                            .cy = l.cy_px, .distortion = l.distortion, .world_from_camera = pose};
+  };
+  const calibration::Lens true_lens{truth.lens.width_px, truth.lens.height_px, truth.lens.fx_px, truth.lens.fy_px,
+                                    truth.lens.cx_px, truth.lens.cy_px, truth.lens.distortion};
+  for (const Eigen::Vector3d& point : {Eigen::Vector3d(0, 0, 64), Eigen::Vector3d(10, 30, 80), Eigen::Vector3d(-10, -30, 50)}) {
+    const Eigen::Vector2d seen = renderer::project(camera(lens, found.platform.world_from_camera), point);
+    const Eigen::Vector2d true_seen = renderer::project(camera(true_lens, truth.lens.world_from_camera), point);
+    EXPECT_LT((seen - true_seen).norm(), 1.5) << point.transpose();
+  }
+  // Lamp: 10 mm of some 450; the irradiance at the spool is what the fit uses.
+  EXPECT_LT((found.light.positions[0] - truth.front.position).norm(), 10);
+  EXPECT_LT((found.light.positions[1] - truth.back.position).norm(), 12);
+  const Eigen::Vector3d spool(0, 0, 64);
+  for (int channel = 0; channel < 3; ++channel) {
+    const double irradiance = found.light.intensity[channel] / (found.light.positions[0] - spool).squaredNorm();
+    const double true_irradiance = truth.front.intensity[channel] / (truth.front.position - spool).squaredNorm();
+    EXPECT_NEAR(irradiance / true_irradiance, 1, 0.03) << "channel " << channel;
+  }
+}
+
+TEST_F(Workflow, CalibrationIsSolvedAgainFromItsPicturesAlone) {
+  const json before = station::read_json_file(path("calibration/calibration.json"));
+  expect_success(run_threadstation({"calibrate", "--rig", path("rig.json"), "--out", path("calibration"), "--solve", "--quiet"}));
+  json after = station::read_json_file(path("calibration/calibration.json"));
+  after["utc"] = before["utc"];
+  EXPECT_EQ(after, before);
+}
+
+TEST_F(Workflow, SessionHasEveryFileUpToMasksAndEachStageRunsAgainAlone) {
+  const fs::path session = path("session");
+  expect_success(run_threadstation({"develop", session, "--quiet"}));
+  const station::DevelopedViews developed = station::read_views(session);
+  ASSERT_EQ(developed.views.size(), 17U);
+  for (const char* file : {"session.json", "journal.jsonl", "calibration/calibration.json", "linear/views.json"})
+    EXPECT_TRUE(fs::exists(session / file)) << file;
+  for (const station::DevelopedView& view : developed.views) {
+    EXPECT_TRUE(fs::exists(session / "raw" / (view.view.id + ".arw"))) << view.view.id;
+    EXPECT_TRUE(fs::exists(session / view.image_file) && fs::exists(session / view.mask_file)) << view.view.id;
+    EXPECT_GT(view.masked_pixels, 2000) << view.view.id;
+  }
+  const std::string first = run_shell("cd '" + session.string() + "' && sha256sum linear/* masks/*").out;
+  expect_success(run_threadstation({"develop", session, "--quiet"}));
+  EXPECT_EQ(run_shell("cd '" + session.string() + "' && sha256sum linear/* masks/*").out, first) << "developing again gives the same files";
+  expect_success(run_threadstation({"verify", session}));
+}
+
+TEST_F(Workflow, MasksLieOnTheThreads) {
+  const fs::path session = path("session");
+  expect_success(run_threadstation({"develop", session, "--quiet"}));
+  station::DevelopedViews developed = station::read_views(session);
+  station::read_view_pictures(session, developed);
+  for (const station::DevelopedView& view : developed.views) {
+    if (view.view.transmission || std::abs(view.platform_angle_rad) > 0.6) continue;  // grazing light: threads are dark
+    // Red silk on a black frame: inside the mask the red channel leads; a ring just outside it is grey.
+    double inside_red = 0, inside_blue = 0;
+    for (int row = 0; row < view.view.mask.rows; ++row)
+      for (int column = 0; column < view.view.mask.cols; ++column)
+        if (view.view.mask(row, column)) {
+          inside_red += view.view.image(row, column)[0];
+          inside_blue += view.view.image(row, column)[2];
+        }
+    EXPECT_GT(inside_red, 1.25 * inside_blue) << view.view.id;
+    // The sheet is 68 x 25 mm, about 4 pixels to the millimetre and foreshortened: a mask much larger or smaller is wrong.
+    EXPECT_GT(view.masked_pixels, 0.5 * 68 * 25 * 16 * 0.5) << view.view.id;
+    EXPECT_LT(view.masked_pixels, 1.2 * 68 * 25 * 16) << view.view.id;
+  }
+}
+
+TEST_F(Workflow, ReportOpensInABrowserWithoutAConsoleError) {
+  const fs::path session = path("session");
+  expect_success(run_threadstation({"develop", session, "--quiet"}));
+  expect_success(run_threadstation({"report", session}));
+  const std::string profile = path("browser");
+  const ProgramResult browser = run_shell(
+      "chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
+      "--disable-component-update --disable-sync --user-data-dir='" + profile + "' --enable-logging=stderr --dump-dom 'file://" +
+      (session / "report.html").string() + "'");
+  EXPECT_EQ(browser.status, 0) << browser.error;
+  EXPECT_EQ(browser.error.find("CONSOLE"), std::string::npos) << browser.error;
+  std::size_t pictures = 0;
+  for (std::size_t at = browser.out.find("<img"); at != std::string::npos; at = browser.out.find("<img", at + 1)) ++pictures;
+  EXPECT_GE(pictures, 34U) << "a picture and a mask for each of the 17 views";
+  EXPECT_EQ(browser.out.find("src=\"http"), std::string::npos) << "the page needs no network";
+}
+
+TEST_F(Workflow, APulledPlugAtTwentyRandomMomentsLosesAndDoublesNothing) {
+  using Seconds = std::chrono::duration<double>;
+  const std::string timed = path("timed");
+  const auto start = std::chrono::steady_clock::now();
+  expect_success(capture(timed));
+  const double whole_s = Seconds(std::chrono::steady_clock::now() - start).count();
+  std::mt19937 random(20260);
+  std::uniform_real_distribution<double> moment_s(0, whole_s);
+  int killed = 0;
+  for (int run = 0; run < 20; ++run) {
+    const std::string session = path("killed-" + std::to_string(run));
+    const pid_t process = start_threadstation(capture_arguments(session));
+    std::this_thread::sleep_for(Seconds(moment_s(random)));  // the moment of the kill is what is tested
+    ::kill(process, SIGKILL);
+    killed += wait_for(process) == 128 + SIGKILL;
+    const bool begun = fs::exists(session + "/session.json");
+    expect_success(begun ? run_threadstation({"capture", "--resume", "--out", session, "--quiet"}) : capture(session));
+    const ProgramResult verified = run_threadstation({"verify", session, "--json"});
+    expect_success(verified);
+    EXPECT_TRUE(json::parse(verified.out)["complete"]) << verified.out;
+    std::set<std::string> views;
+    int files = 0;
+    for (const auto& entry : fs::directory_iterator(session + "/raw")) {
+      const std::string name = entry.path().filename();
+      EXPECT_EQ(entry.path().extension(), ".arw") << name << " is left over";
+      if (name.starts_with("reflection") || name.starts_with("transmission")) ++files, views.insert(name);
+    }
+    EXPECT_EQ(files, 17);
+    EXPECT_EQ(views.size(), 17U);
+    fs::remove_all(session);
+  }
+  EXPECT_GE(killed, 10) << "most runs must have been killed before their end";
+}
+
+TEST_F(Workflow, CtrlCStopsThePlatformAndLeavesASessionThatResumes) {
+  const std::string session = path("interrupted");
+  const pid_t process = start_threadstation(capture_arguments(session));
+  while (!fs::exists(session + "/raw/reflection-horizontal-1.arw")) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  ::kill(process, SIGINT);
+  EXPECT_EQ(wait_for(process), 1);
+  std::ifstream journal(session + "/journal.jsonl");
+  std::string line, last;
+  while (std::getline(journal, line)) last = line;
+  EXPECT_NE(last.find("\"interrupted\""), std::string::npos) << last;
+  expect_success(run_threadstation({"capture", "--resume", "--out", session, "--quiet"}));
+  expect_success(run_threadstation({"verify", session}));
+}
+
+TEST_F(Workflow, AFullDiskAndAReadOnlyFolderGetOneLineAndTheSessionResumes) {
+  // A private mount namespace, so that the small file system goes away with the command.
+  const std::string mount = path("mount");
+  fs::create_directory(mount);
+  const std::string arguments = " capture --rig '" + path("rig.json") + "' --calibration '" + path("calibration") + "' --spool '" +
+                                FIXTURES_DIR + "/spools/silk_red.json' --unattended --quiet --out '" + mount + "/session'";
+  const auto on_file_system = [&](const std::string& options) {
+    const std::string unshare = ::geteuid() == 0 ? "unshare -m" : "unshare -rm";
+    return run_shell(unshare + " sh -c \"mount -t tmpfs -o " + options + " tmpfs '" + mount + "' && exec '" + THREADSTATION_PROGRAM + "'" +
+                     arguments + "\"");
+  };
+  expect_one_line(on_file_system("size=1500k"), "No space left on device");
+  expect_one_line(on_file_system("ro"), "Read-only file system");
+}
+
+TEST_F(Workflow, WrongUseEndsWithTwoAndOneLine) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"capture", "--out", "x"}, {"nonsense"}, {}, {"calibrate"}, {"develop"}, {"demo", "--fast"},
+        {"capture", "--resume", "--rig", "r", "--out", "x"}, {"calibrate", "--rig", "r", "--out", "o", "--only", "everything"}}) {
+    const ProgramResult result = run_threadstation(arguments);
+    EXPECT_EQ(result.status, 2) << result.error;
+    EXPECT_EQ(result.error_lines(), 1) << result.error;
+  }
+  EXPECT_EQ(run_threadstation({"--help"}).status, 0);
+  EXPECT_EQ(run_threadstation({"capture", "--help"}).status, 0);
+}
+
+TEST_F(Workflow, WrongFilesGetOneLineThatNamesThem) {
+  const std::string out = path("never");
+  const auto with_rig = [&](const std::string& rig) { return run_threadstation({"calibrate", "--rig", rig, "--out", out}); };
+  expect_one_line(with_rig(path("no_such.json")), "no_such.json");
+  expect_one_line(with_rig(std::string(FIXTURES_DIR) + "/spools/silk_red.json"), "threadstation/spool");
+  json rig = station::read_json_file(path("rig.json"));
+  rig["colour"] = "red";
+  station::write_json_file(path("unknown_key.json"), rig);
+  expect_one_line(with_rig(path("unknown_key.json")), "\"colour\"");
+  const std::string text = rig.dump();
+  std::ofstream(path("cut.json")) << text.substr(0, text.size() / 3);
+  expect_one_line(with_rig(path("cut.json")), "cut.json");
+  expect_one_line(run_threadstation({"verify", path("calibration")}), "session");
+  expect_one_line(run_threadstation({"develop", path("nowhere")}), "nowhere");
+  expect_one_line(capture(path("session")), "already");
+  EXPECT_FALSE(fs::exists(out)) << "a refused command leaves nothing behind";
+}
+
+TEST_F(Workflow, ADamagedSessionIsNamedByVerifyAndRefusedByDevelop) {
+  const fs::path session = path("damaged");
+  fs::copy(path("session"), session, fs::copy_options::recursive);
+  const fs::path picture = session / "raw" / "transmission-3.arw";
+  fs::resize_file(picture, fs::file_size(picture) / 2);
+  expect_one_line(run_threadstation({"develop", session, "--quiet"}), "transmission-3.arw");
+  const ProgramResult verified = run_threadstation({"verify", session});
+  EXPECT_EQ(verified.status, 1);
+  EXPECT_NE(verified.error.find("transmission-3.arw"), std::string::npos) << verified.error;
+}
+
+}  // namespace
+}  // namespace station_test
