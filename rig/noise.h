@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <utility>
 
 namespace rig {
@@ -25,11 +24,16 @@ class NoiseStream {
     return (static_cast<double>(mixed(state_) >> 12) + 0.5) * 0x1p-52;
   }
 
-  // Two independent standard normal numbers (Box, Muller 1958).
+  // Two independent standard normal numbers: Box and Muller's (1958) by Marsaglia's polar method (1964).
   std::pair<double, double> normals() {
-    const double radius = std::sqrt(-2 * std::log(uniform()));
-    const double angle = 2 * std::numbers::pi * uniform();
-    return {radius * std::cos(angle), radius * std::sin(angle)};
+    double x = 0, y = 0, square = 0;
+    do {
+      x = 2 * uniform() - 1;
+      y = 2 * uniform() - 1;
+      square = x * x + y * y;
+    } while (square >= 1 || square == 0);
+    const double stretch = std::sqrt(-2 * std::log(square) / square);
+    return {x * stretch, y * stretch};
   }
 
   // Poisson by inversion: as many steps as the answer, and exp(-mean) must not vanish: for means below about 100.

@@ -48,8 +48,8 @@ Conversion conversion(const TrueSensor& sensor, const ExposureSettings& settings
 // Gain at a pixel, 1 at the centre of the image.
 double vignetting(const TrueLens& lens, int row, int column) {
   const double x = column - (lens.width_px - 1) / 2.0, y = row - (lens.height_px - 1) / 2.0;
-  const double half_diagonal = std::hypot(lens.width_px, lens.height_px) / 2;
-  const double r2 = (x * x + y * y) / (half_diagonal * half_diagonal);
+  const double width = lens.width_px, height = lens.height_px;
+  const double r2 = 4 * (x * x + y * y) / (width * width + height * height);
   return 1 + (lens.vignetting[0] + lens.vignetting[1] * r2) * r2;
 }
 
@@ -64,7 +64,7 @@ std::uint16_t exposed_dn(const Conversion& convert, double radiance, NoiseStream
   const double counted_e =
       mean_e < kCountedElectrons ? noise.small_poisson(mean_e) : mean_e + std::sqrt(mean_e) * shot;
   const double dn = convert.black_dn + (counted_e + convert.read_noise_e * read) * convert.dn_per_electron;
-  return static_cast<std::uint16_t>(std::lround(std::clamp(dn, 0.0, convert.white_dn)));
+  return static_cast<std::uint16_t>(std::clamp(dn, 0.0, convert.white_dn) + 0.5);
 }
 
 void check_drawing(const cv::Mat3f& radiance, const TrueLens& lens) {

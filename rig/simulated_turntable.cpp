@@ -24,7 +24,7 @@ class SimulatedTurntable final : public Turntable {
 
   void home() override {
     const double from_rad = bench_.state().platform_angle_rad / truth().scale;
-    state_ = TurntableState::moving;
+    begin_moving();
     if (!travel(from_rad, 0.0)) {
       state_ = TurntableState::unknown_position;
       throw std::runtime_error("the platform was stopped while it looked for its home; home it again");
@@ -39,7 +39,7 @@ class SimulatedTurntable final : public Turntable {
     }
     require_known_position("turn to " + degrees(wanted_rad));
     const double target_rad = nearest_step(wanted_rad);
-    state_ = TurntableState::moving;
+    begin_moving();
     const bool arrived = travel(reading_rad_, target_rad);
     state_ = arrived ? TurntableState::idle : TurntableState::stopped;
     if (!arrived) {
@@ -80,9 +80,14 @@ class SimulatedTurntable final : public Turntable {
     bench_.turn_platform(truth().scale * reading_rad);
   }
 
+  // In this order: whoever sees the platform moving and stops it must be heard.
+  void begin_moving() {
+    stop_asked_ = false;
+    state_ = TurntableState::moving;
+  }
+
   // Turns in slices of time; false when it was stopped on the way.
   bool travel(double from_rad, double to_rad) {
-    stop_asked_ = false;
     const double duration_s = std::abs(to_rad - from_rad) / truth().speed_rad_s;
     for (double done_s = 0; done_s < duration_s;) {
       const double slice_s = std::min(kSliceS, duration_s - done_s);
