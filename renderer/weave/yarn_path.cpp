@@ -71,7 +71,7 @@ HalfWave taut_half_wave(double pitch_mm, double crown_mm, double crossing_crown_
 
 HalfWave half_wave(double pitch_mm, double crown_mm, double crossing_crown_mm) {
   const HalfWave taut = taut_half_wave(pitch_mm, crown_mm, crossing_crown_mm);
-  if (crown_mm <= 0 || taut.radius_mm * taut.angle_rad >= kLeastArcShare * taut.length_mm()) return taut;
+  if (taut.radius_mm * taut.angle_rad >= kLeastArcShare * taut.length_mm()) return taut;
   return rounded_half_wave(pitch_mm, crown_mm);
 }
 

@@ -14,6 +14,7 @@ Draft two_colours() {
   Draft draft = twill_draft(2, 2);
   draft.warp.threads = {0, 1};
   draft.weft.threads = {2};
+  draft.weft.pitch_mm = 1.1;
   return draft;
 }
 

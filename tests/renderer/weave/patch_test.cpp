@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "renderer/weave/patch_measures.h"
 
@@ -105,6 +106,55 @@ TEST(PatchTest, TheLeastGapIsThatOfAllPairsOfPoints) {
     const YarnPatch patch = initial_patch(scaled);
     EXPECT_EQ(patch.least_gap_mm > 0, scale > 1);
     EXPECT_NEAR(patch.least_gap_mm, gap_by_all_pairs(patch), 1e-3) << scale;
+  }
+}
+
+// In an irregular cloth one pair of yarns is the closest, wherever it lies: across a border, among parallel yarns.
+TEST(PatchTest, TheLeastGapOfAnIrregularClothIsThatOfAllPairsOfPoints) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    const bool small = seed % 2 == 0;
+    YarnPatch patch =
+        initial_patch(small ? with_sett(plain_draft(), 1.1, 1.0) : with_sett(twill_draft(2, 1), 1.0, 1.1));
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> side(-0.3, 0.3), height(-0.05, 0.05);
+    for (Yarn& yarn : patch.yarns) {
+      const Vector3d move = (yarn.warp ? Vector3d::UnitX() : Vector3d::UnitY()) * side(random);
+      for (Vector3d& point : yarn.control_points) point += move + Vector3d(0, 0, height(random));
+    }
+    EXPECT_NEAR(least_gap(patch), gap_by_all_pairs(patch), 1e-3) << seed;
+  }
+}
+
+// Straight yarns of radius 0.25 mm at the given x (warp) or y (weft) in a cell of `size`. Far above and below lie
+// others, many of the same system, so that yarns are expected close to each other and the search looks no farther
+// than it must.
+YarnPatch straight_yarns(const std::vector<double>& places, bool warp, double size) {
+  YarnPatch patch;
+  patch.period_x_mm = patch.period_y_mm = size;
+  const auto add = [&](bool is_warp, double place, double height) {
+    Yarn yarn{.warp = is_warp, .control_points = {}};
+    for (int k = 0; k < 32; ++k) {
+      const double along = k * size / 32;
+      yarn.control_points.push_back(is_warp ? Vector3d(place, along, height) : Vector3d(along, place, height));
+    }
+    patch.yarns.push_back(yarn);
+  };
+  for (double place : places) add(warp, place, 0);
+  for (int i = 0; i < 8; ++i) add(warp, size * i / 8, 3 + i);
+  add(!warp, size / 2, -3);
+  return patch;
+}
+
+TEST(PatchTest, TheLeastGapIsSeenAcrossTheBordersOfTheCellInWhicheverOrderTheYarnsAreListed) {
+  for (bool warp : {true, false}) {
+    for (double size : {1.2, 2.0, 10.0}) {
+      EXPECT_NEAR(least_gap(straight_yarns({0.3, size - 0.1}, warp, size)), -0.1, 1e-9) << size;
+      EXPECT_NEAR(least_gap(straight_yarns({size - 0.1, 0.3}, warp, size)), -0.1, 1e-9) << size;
+    }
+    for (double x = 1; x < 9; x += 0.37) {
+      EXPECT_NEAR(least_gap(straight_yarns({x, x + 0.6}, warp, 10)), 0.1, 1e-9) << x;
+      EXPECT_NEAR(least_gap(straight_yarns({x + 0.6, x}, warp, 10)), 0.1, 1e-9) << x;
+    }
   }
 }
 

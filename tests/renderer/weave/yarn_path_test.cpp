@@ -69,6 +69,15 @@ TEST(YarnPathTest, ATightWarpLeavesTheWeftStraightEnoughThatNoYarnIsCutInto) {
   EXPECT_LT(crown.weft_mm, 0.07);
 }
 
+TEST(YarnPathTest, WhereCrimpInterchangeWouldPressYarnsIntoEachOtherTheNearestFreeSplitIsTaken) {
+  const YarnSystem thick{.diameter_mm = 0.7, .pitch_mm = 0.7}, thin{.diameter_mm = 0.3, .pitch_mm = 1.0};
+  const CrownHeights crown = split_heights(thick, thin);  // interchange alone: 0.174 mm for the warp
+  EXPECT_NEAR(crown.warp_mm, std::sqrt(0.5 * 0.5 - 0.35 * 0.35), 1e-12);
+  EXPECT_NEAR(half_wave(0.7, crown.weft_mm, crown.warp_mm).straight_mm, 0, 1e-6);  // at the jam; a root of rounding
+  EXPECT_NEAR(half_wave(0.7, crown.weft_mm, crown.warp_mm).radius_mm, 0.5, 1e-6);
+  EXPECT_DOUBLE_EQ(split_heights(thin, thick).weft_mm, crown.warp_mm);
+}
+
 double crimp_of(const HalfWave& wave, double pitch) {
   return 2 * wave.length_mm() / pitch - 1;
 }
