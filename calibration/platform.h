@@ -19,16 +19,25 @@ struct PlatformView {
 
 struct PlatformFit {
   Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
-  std::vector<double> angles_rad;        // measured, one per view, 0 at reading 0 (by the fitted line)
-  double scale = 1.0, offset_rad = 0.0;  // measured angle = scale * reading + offset, least squares
-  double angle_rms_rad = 0.0;            // about that line
-  double rms_px = 0.0;                   // per axis
-  Eigen::Matrix<double, 4, 4>
-      axis_covariance;  // direction tilts about camera-facing axes x, y (rad), position across in x, y (mm)
+  Eigen::Isometry3d world_from_board = Eigen::Isometry3d::Identity();  // of the turning board at angle 0
+  std::vector<double>
+      angles_rad;  // measured, one per view, counter-clockwise from above, 0 at reading 0 (by the fitted line)
+  // Measured angle counted from the first view = scale * reading + offset, least squares; the offset is already taken
+  // out of angles_rad. A turntable that counts clockwise has a scale near -1.
+  double scale = 1.0, offset_rad = 0.0;
+  double angle_rms_rad = 0.0;             // about that line
+  double rms_px = 0.0;                    // per axis
+  double axis_to_table_normal_rad = 0.0;  // the axis against the table's normal
+  // Tilts of the axis about the world's x and y (rad), then where it meets the table along x and y (mm), relative to
+  // the camera, for the corner noise that the residuals show.
+  Eigen::Matrix<double, 4, 4> axis_covariance = Eigen::Matrix<double, 4, 4>::Zero();
   bool converged = false;
 };
 
-// `table_views`: the same board lying flat on the table (its plane is the table's, `board_thickness_mm` above it).
+// `table_views`: the same board lying flat on the table (its plane is the table's, `board_thickness_mm` above it),
+// facing up. Each angle is a free unknown: nothing is believed of the turntable. Throws std::runtime_error when fewer
+// than three turning views or no table view were given, a view does not show the board, or the views do not turn by
+// 20 degrees.
 PlatformFit fit_platform(const Lens& lens, const TagLayout& board, const std::vector<PlatformView>& turning,
                          const std::vector<TagObservation>& table_views, double board_thickness_mm);
 

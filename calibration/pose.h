@@ -13,10 +13,15 @@ struct PoseFit {
   Eigen::Isometry3d camera_from_object = Eigen::Isometry3d::Identity();
   double rms_px = 0.0;  // per axis
   int tags_used = 0;
-  Eigen::Matrix<double, 6, 6> covariance;  // rotation vector (rad) then translation (mm), for `sigma_px` = rms
+  // Of a small rotation (rad) about the camera's axes through the object's origin, then of that origin's position
+  // (mm, camera frame), for the corner noise that the residuals show (degrees of freedom taken out).
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  bool converged = false;
 };
 
-// std::nullopt when no tag of the layout was seen.
+// All tags of the layout that were seen, in one least squares fit with a Huber loss at 1 px; of the two poses that a
+// flat object allows, the one that fits better. std::nullopt when no tag of the layout was seen. Throws
+// std::runtime_error on corners that are not finite numbers.
 std::optional<PoseFit> fit_pose(const Lens& lens, const TagLayout& layout, const TagObservation& seen);
 
 }  // namespace calibration
