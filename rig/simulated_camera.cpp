@@ -64,7 +64,7 @@ std::uint16_t exposed_dn(const Conversion& convert, double radiance, NoiseStream
   const double counted_e =
       mean_e < kCountedElectrons ? noise.small_poisson(mean_e) : mean_e + std::sqrt(mean_e) * shot;
   const double dn = convert.black_dn + (counted_e + convert.read_noise_e * read) * convert.dn_per_electron;
-  return static_cast<std::uint16_t>(std::clamp(dn, 0.0, convert.white_dn) + 0.5);
+  return static_cast<std::uint16_t>(std::lround(std::clamp(dn, 0.0, convert.white_dn)));
 }
 
 void check_drawing(const cv::Mat3f& radiance, const TrueLens& lens) {
