@@ -32,6 +32,12 @@ std::string last_name(const fs::path& folder) {
   return (normal.has_filename() ? normal : normal.parent_path()).filename().string();
 }
 
+// A person may call the whole session by a link; within it links are refused.
+fs::path true_place(const fs::path& folder) {
+  const fs::path place = (folder / "").parent_path();  // without a slash at its end
+  return fs::is_symlink(place) ? fs::weakly_canonical(place) : place;
+}
+
 // A link in the place of a folder would lead the pictures elsewhere.
 bool is_true_folder(const fs::path& path) {
   std::error_code ignored;
@@ -118,9 +124,10 @@ bool is_session(const fs::path& folder) {
   return fs::is_regular_file(folder / kSessionFile, ignored);
 }
 
-SessionFolder SessionFolder::create(const fs::path& folder, const json& session, const CalibrationFiles& calibration,
+SessionFolder SessionFolder::create(const fs::path& asked, const json& session, const CalibrationFiles& calibration,
                                     rig::Clock& clock, FileSystem& file_system) {
-  require_name(last_name(folder));
+  require_name(last_name(asked));
+  const fs::path folder = true_place(asked);
   plan_of(session, folder / kSessionFile);
   OpenFile lock;
   try {
@@ -138,7 +145,8 @@ SessionFolder SessionFolder::create(const fs::path& folder, const json& session,
   return SessionFolder(folder, std::move(lock), clock, file_system);
 }
 
-SessionFolder SessionFolder::open(const fs::path& folder, rig::Clock& clock, FileSystem& file_system) {
+SessionFolder SessionFolder::open(const fs::path& asked, rig::Clock& clock, FileSystem& file_system) {
+  const fs::path folder = true_place(asked);
   require_whole(folder);
   OpenFile lock = lock_folder(folder, file_system);
   return SessionFolder(folder, std::move(lock), clock, file_system);

@@ -52,7 +52,7 @@ std::string write_problem(const fs::path& file, const std::error_code& code) {
 
 std::string store_file(FileSystem& file_system, const fs::path& file, std::span<const std::byte> bytes) {
   const fs::path temporary = temporary_name(file);
-  const std::string hash = sha256_hex(bytes);
+  std::string hash = sha256_hex(bytes);
   std::error_code ignored;
   bool renamed = false;
   try {

@@ -102,6 +102,23 @@ TEST_F(JournalTest, ARemovedLineIsNoticed) {
   EXPECT_THAT(message_of([&] { open(); }), HasSubstr("line 1 "));
 }
 
+// A line as journal.h describes it, the first of its file.
+std::string first_line(const std::string& content) {
+  std::string line = content;
+  line += R"(,"sha256":")" + sha256_hex(std::string(64, '0') + content) + "\"}\n";
+  return line;
+}
+
+TEST_F(JournalTest, ALineThatChecksButIsNotTheNextRecordIsAnErrorEvenAtTheEnd) {
+  const std::string record = R"(,"utc":"2027-01-15T08:00:00.000Z","event":"stop","data":{})";
+  write_text(file, first_line(R"({"seq":1)" + record));
+  EXPECT_EQ(open().records().size(), 1U);
+  write_text(file, first_line(R"({"seq":2)" + record));
+  EXPECT_THAT(message_of([&] { open(); }), HasSubstr("line 1 counts 2"));
+  write_text(file, first_line(R"({"number":1)"));
+  EXPECT_THAT(message_of([&] { open(); }), HasSubstr("line 1 is not a record"));
+}
+
 TEST_F(JournalTest, AFailedAppendLeavesTheJournalAsItWas) {
   Journal journal = open();
   journal.append("start", nlohmann::json::object());

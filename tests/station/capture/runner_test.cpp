@@ -220,6 +220,17 @@ TEST_F(RunnerTest, TakesAgainWhatWasDamagedOrLostAndWhatNobodyNamed) {
   }
 }
 
+TEST_F(RunnerTest, WhatWasDiscardedCountsAsNotTakenUntilItIsTakenAgain) {
+  fake.run(path, small_plan());
+  fs::remove(path / "raw/transmission-1.arw");
+  FakeStation stopped;
+  stopped.options.should_stop = [] { return true; };
+  EXPECT_EQ(stopped.run(path, small_plan()), RunOutcome::interrupted);
+  EXPECT_FALSE(pictures_of(path).contains("transmission-1"));
+  expect_resume_completes(small_plan());
+  EXPECT_EQ(count_events(path, "discarded"), 1U);
+}
+
 TEST_F(RunnerTest, AViewTakenAgainAtAnotherExposureGetsItsOwnDark) {
   fake.run(path, small_plan());
   fs::remove(path / "raw/reflection-horizontal-1.arw");

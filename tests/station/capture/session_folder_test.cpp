@@ -74,6 +74,20 @@ TEST_F(SessionFolderTest, DoesNotFollowALinkInThePlaceOfItsPictures) {
   EXPECT_THAT(message_of([&] { fake.open(path); }), HasSubstr("has no folder raw/"));
 }
 
+TEST_F(SessionFolderTest, DoesNotWriteItsJournalThroughALink) {
+  fake.create(path, small_plan());
+  fs::rename(path / "journal.jsonl", folder / "elsewhere");
+  fs::create_symlink(folder / "elsewhere", path / "journal.jsonl");
+  EXPECT_THAT(message_of([&] { fake.open(path); }), HasSubstr("could not write"));
+}
+
+TEST_F(SessionFolderTest, MayItselfBeCalledByALink) {
+  fs::create_directory(folder / "disk");
+  fs::create_directory_symlink(folder / "disk", path);
+  fake.create(path, small_plan()).store_picture("a.arw", bytes_of("abc"));
+  EXPECT_EQ(text_of(folder / "disk/raw/a.arw"), "abc");
+}
+
 TEST_F(SessionFolderTest, StoresAPictureOnceAndReturnsItsHash) {
   SessionFolder session = fake.create(path, small_plan());
   EXPECT_EQ(session.store_picture("a.arw", bytes_of("abc")), sha256_hex("abc"));
