@@ -8,11 +8,12 @@
 #include "renderer/ray_scene.h"
 #include "renderer/sampler.h"
 #include "renderer/scattering/fiber.h"
+#include "renderer/scattering/thread.h"
 
 namespace renderer {
 
 // The scattering models of a scene's curve sets, in float and with everything precomputed.
-using CurveModel = std::variant<FiberModel<float>>;
+using CurveModel = std::variant<FiberModel<float>, ThreadModel<float>>;
 std::vector<CurveModel> prepare_curve_models(const std::vector<CurveSet>& curves);
 
 class PathVertex {

@@ -9,12 +9,13 @@
 #include <vector>
 
 #include "renderer/scattering/fiber.h"
+#include "renderer/scattering/thread.h"
 
 namespace renderer {
 
 // Closed set: how a curve scatters. Every alternative is a plain struct with free evaluate / sample / density
 // functions.
-using ScatteringModel = std::variant<FiberParameters>;
+using ScatteringModel = std::variant<FiberParameters, ThreadParameters>;
 
 // Round uniform cubic B-spline curves that share one scattering model.
 struct CurveSet {

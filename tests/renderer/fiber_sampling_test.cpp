@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <vector>
 
 #include "renderer/scattering/fiber.h"
@@ -8,11 +7,6 @@
 
 namespace renderer {
 namespace {
-
-Vec3<double> viewing_direction(double theta, double h) {
-  const double phi = kPi / 2 + std::asin(h);
-  return {std::sin(theta), std::cos(theta) * std::cos(phi), std::cos(theta) * std::sin(phi)};
-}
 
 const std::vector<FiberParameters> kFibers{
     {},

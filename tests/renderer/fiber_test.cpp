@@ -8,19 +8,12 @@
 #include <sstream>
 #include <vector>
 
+#include "scattering_statistics.h"
+
 namespace renderer {
 namespace {
 
 using Eigen::Vector3d;
-
-Vector3d direction(double theta, double phi) {
-  return {std::sin(theta), std::cos(theta) * std::cos(phi), std::cos(theta) * std::sin(phi)};
-}
-
-// Direction o of the local frame: phi_o = pi/2 + asin(h).
-Vector3d viewing_direction(double theta, double h) {
-  return direction(theta, kPi / 2 + std::asin(h));
-}
 
 std::vector<std::vector<double>> reference_rows() {
   std::ifstream file(FIXTURES_DIR "/reference/single_fiber_bcsdf.csv");
@@ -74,18 +67,6 @@ TEST(FiberTest, ScaledBesselFunctionAgreesWithTheStandardLibrary) {
     const float single = bessel_i0e(Eigen::Array4f(Eigen::Array4f::Constant(static_cast<float>(x))))[0];
     EXPECT_NEAR(static_cast<double>(single) / expected, 1, 1e-6) << x;  // the polynomials' own error is 4e-7
   }
-}
-
-// The lobes are products of a longitudinal and an azimuthal factor, so the integral over the sphere is one of sums.
-double energy(const CurveLobes<double>& lobes, int channel) {
-  constexpr int kSteps = 4000;  // a step is below the narrowest width of the grid below (0.0036 rad)
-  Lanes<double> m = Lanes<double>::Zero(), n = Lanes<double>::Zero();
-  for (int k = 0; k < kSteps; ++k) {
-    const double theta = kPi * ((k + 0.5) / kSteps - 0.5), phi = 2 * kPi * (k + 0.5) / kSteps - kPi;
-    m += lobes.longitudinal(std::sin(theta), std::cos(theta)) * (std::cos(theta) * kPi / kSteps);
-    n += lobes.azimuthal(phi) * (2 * kPi / kSteps);
-  }
-  return (m * n * lobes.attenuation.col(channel)).sum();
 }
 
 TEST(FiberTest, WhiteFurnaceIsOneForEveryRoughnessOffsetAndInclination) {

@@ -19,8 +19,8 @@ Camera small_camera(const Vector3d& eye, double frame_width_mm, int width = 24, 
 }
 
 // Threads across and along, so that light scatters many times before it leaves.
-CurveSet crossed_threads(const FiberParameters& fiber) {
-  CurveSet set{.scattering = fiber};
+CurveSet crossed_threads(const ScatteringModel& scattering) {
+  CurveSet set{.scattering = scattering};
   for (int i = -8; i <= 8; ++i) {
     const float at = 0.35f * static_cast<float>(i);
     set.add_clamped_curve({{-4, at, 0, 0.15f}, {4, at, 0, 0.15f}});
@@ -41,9 +41,18 @@ double mean(const cv::Mat3f& image, int channel = 0) {
 
 TEST(PathTracerTest, WhiteFibersInAUniformEnvironmentDisappear) {
   const PathTracer tracer(
-      {.curves = {crossed_threads({.beta_m = 0.2, .beta_n = 0.3})}, .lights = {{.radius_mm = 500}}});
+      {.curves = {crossed_threads(FiberParameters{.beta_m = 0.2, .beta_n = 0.3})}, .lights = {{.radius_mm = 500}}});
   const cv::Mat3f image = tracer.render(small_camera({0, 2, 20}, 4), {.samples_per_pixel = 256});
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean(image, c), 1, 3e-3);  // about three standard errors
+}
+
+TEST(PathTracerTest, ThreadsThatKeepAllEnergyInAUniformEnvironmentDisappear) {
+  // Every lambda constant or linear in c such that their sum is 1; sampled with the floor.
+  const ThreadParameters thread{
+      .r0a = 0, .r0b = -0.5, .r0c = 0.9, .r1a = 0.5, .r2a = 0, .r2b = 10, .r2c = 0, .limit_energy = false};
+  const PathTracer tracer({.curves = {crossed_threads(thread)}, .lights = {{.radius_mm = 500}}});
+  const cv::Mat3f image = tracer.render(small_camera({0, 2, 20}, 4), {.samples_per_pixel = 256});
+  EXPECT_NEAR(mean(image), 1, 3e-3);  // about three standard errors
 }
 
 TEST(PathTracerTest, DiffuseFloorInAUniformEnvironmentShowsItsAlbedo) {
@@ -68,7 +77,8 @@ TEST(PathTracerTest, TwoLightsAddUp) {
   const SphereLight a{.center = {0, 40, 80}, .radius_mm = 30},
       b{.center = {50, 0, 60}, .radius_mm = 2, .radiance = {90, 80, 70}};
   const auto lit_by = [&](const std::vector<SphereLight>& lights) {
-    const PathTracer tracer({.curves = {crossed_threads({.sigma_a = {0.2, 0.2, 0.2}})}, .lights = lights});
+    const PathTracer tracer(
+        {.curves = {crossed_threads(FiberParameters{.sigma_a = {0.2, 0.2, 0.2}})}, .lights = lights});
     return mean(tracer.render(small_camera({0, 2, 20}, 4), {.samples_per_pixel = 512}));
   };
   const double both = lit_by({a, b});
@@ -104,7 +114,8 @@ TEST(PathTracerTest, SingleScatteringOfOneThreadIsTheMeanOverOffsets) {
 }
 
 TEST(PathTracerTest, ThePictureDoesNotDependOnTheNumberOfThreads) {
-  const PathTracer tracer({.curves = {crossed_threads({})}, .lights = {{.center = {0, 40, 80}, .radius_mm = 30}}});
+  const PathTracer tracer(
+      {.curves = {crossed_threads(FiberParameters{})}, .lights = {{.center = {0, 40, 80}, .radius_mm = 30}}});
   const Camera camera = small_camera({0, 2, 20}, 6, 40, 40);
   const cv::Mat3f one = tracer.render(camera, {.samples_per_pixel = 2, .threads = 1});
   EXPECT_EQ(cv::norm(one, tracer.render(camera, {.samples_per_pixel = 2, .threads = 3}), cv::NORM_INF), 0);

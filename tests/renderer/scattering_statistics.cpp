@@ -1,5 +1,6 @@
 #include "scattering_statistics.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -50,6 +51,26 @@ double chi_square_tail(double statistic, int degrees) {
 }
 
 }  // namespace
+
+Vec3<double> direction(double theta, double phi) {
+  return {std::sin(theta), std::cos(theta) * std::cos(phi), std::cos(theta) * std::sin(phi)};
+}
+
+Vec3<double> viewing_direction(double theta, double h) {
+  return direction(theta, kPi / 2 + std::asin(h));
+}
+
+// The lobes are products of a longitudinal and an azimuthal factor, so the integral over the sphere is one of sums.
+double energy(const CurveLobes<double>& lobes, int channel) {
+  constexpr int kSteps = 4000;  // a step is below the narrowest width of the grid below (0.0036 rad)
+  Lanes<double> m = Lanes<double>::Zero(), n = Lanes<double>::Zero();
+  for (int k = 0; k < kSteps; ++k) {
+    const double theta = kPi * ((k + 0.5) / kSteps - 0.5), phi = 2 * kPi * (k + 0.5) / kSteps - kPi;
+    m += lobes.longitudinal(std::sin(theta), std::cos(theta)) * (std::cos(theta) * kPi / kSteps);
+    n += lobes.azimuthal(phi) * (2 * kPi / kSteps);
+  }
+  return (m * n * lobes.attenuation.col(channel)).sum();
+}
 
 double sampling_p_value(const CurveLobes<double>& lobes, int samples, std::uint64_t seed) {
   std::mt19937_64 engine(seed);

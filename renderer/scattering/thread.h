@@ -1,0 +1,121 @@
+// Scattering of a whole thread seen as one cylinder (Xia et al. 2025, equations 4 and 5): three lobes whose widths
+// and energies are free, because they stand for everything that happens between the thread's many fibers.
+//
+//   f_cos = sum over p = R, TT, TRT of  M(theta_o, theta_i; v(alpha_p)) N(phi; s(beta_p), Phi_p) A_p        (RGB)
+//   A_R = lambda_0(c),  A_TT = lambda_1(c) T,  A_TRT = lambda_2(c) T,  T = exp(-sigma_a 2 cos gamma_t / cos theta_t)
+//   lambda_0 = r0a c^2 + r0b c + r0c,   lambda_1 = r1a c,   lambda_2 = 1 / (r2a c + r2b) + r2c,   c = |cos theta_o|
+//
+//   parameter  | unit              | count | differentiable
+//   sigma_a    | 1 / thread radius | 3     | yes   absorption, RGB
+//   alpha      | 0.02 .. 1         | 3     | yes   longitudinal roughness of each lobe (perceptual, mapped as for
+//   fibers) beta       | 0.02 .. 1         | 3     | yes   azimuthal roughness of each lobe (perceptual, mapped as
+//   for fibers) r          | -                 | 7     | yes   energies of the lobes, shared by all colours; each
+//   lambda must stay >= 0
+//
+// f_cos includes the cosine (lobes.h). theta_o, h and the attenuations belong to the known direction o, as for
+// fibers. Lobe centres Phi_p are a fiber's, with the refractive index fixed at kThreadEta. The transmittance T enters
+// TRT to the first power, as printed. Nothing in the paper bounds lambda_0 + lambda_1 + lambda_2, the albedo without
+// absorption, and fits exceed 1 near grazing angles; `limit_energy` scales the three down to kMostEnergy where their
+// sum exceeds it. Fits of parameters leave it off and penalise the excess instead.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+
+#include "renderer/scattering/lobes.h"
+
+namespace renderer {
+
+inline constexpr double kThreadEta = 1.55;
+inline constexpr double kMostEnergy = 0.999;
+// Each lobe is sampled at least this often, so that derivatives with respect to a lobe without energy can be
+// estimated.
+inline constexpr double kLobeFloor = 0.05;
+
+template <class S>
+struct BasicThreadParameters {
+  Eigen::Matrix<S, 3, 1> sigma_a{S(0.0), S(0.0), S(0.0)};  // absorption per thread radius, RGB
+  std::array<S, 3> alpha{S(0.3), S(0.3), S(0.3)};          // longitudinal roughness of R, TT, TRT
+  std::array<S, 3> beta{S(0.55), S(0.6), S(0.15)};         // azimuthal roughness of R, TT, TRT
+  S r0a = S(-0.4), r0b = S(0.15), r0c = S(0.55);           // lambda_0
+  S r1a = S(0.6);                                          // lambda_1
+  S r2a = S(10.0), r2b = S(2.5), r2c = S(0.0);             // lambda_2
+  bool limit_energy = true;
+};
+using ThreadParameters = BasicThreadParameters<double>;
+
+// The 16 parameters in the order sigma_a, alpha, beta, r0a r0b r0c, r1a, r2a r2b r2c.
+inline constexpr int kThreadParameterCount = 16;
+template <class S>
+BasicThreadParameters<S> thread_parameters(const std::array<S, kThreadParameterCount>& p, bool limit_energy) {
+  return {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}, {p[6], p[7], p[8]}, p[9], p[10], p[11], p[12], p[13], p[14], p[15],
+          limit_energy};
+}
+
+// lambda_0, lambda_1, lambda_2 at c = |cos theta_o|, limited when the parameters say so.
+template <class S>
+std::array<S, 3> thread_lobe_energies(const BasicThreadParameters<S>& p, const Geometry<S>& c) {
+  const S cosine(c);
+  std::array<S, 3> lambda{(p.r0a * cosine + p.r0b) * cosine + p.r0c, p.r1a * cosine,
+                          S(1.0) / (p.r2a * cosine + p.r2b) + p.r2c};
+  const S sum = lambda[0] + lambda[1] + lambda[2];
+  if (p.limit_energy && sum > S(kMostEnergy)) {
+    const S scale = S(kMostEnergy) / sum;
+    for (S& energy : lambda) energy *= scale;
+  }
+  return lambda;
+}
+
+// Parameters with everything computed that does not depend on directions.
+template <class S>
+class ThreadModel {
+ public:
+  explicit ThreadModel(const BasicThreadParameters<S>& parameters) : parameters_(parameters) {
+    for (int p = 0; p < 3; ++p) {
+      const auto i = static_cast<std::size_t>(p);
+      widths_.set(p, longitudinal_variance(parameters.alpha[i]), azimuthal_scale(parameters.beta[i]));
+    }
+    widths_.set(3, S(1.0), S(1.0));  // has no energy and is never sampled
+  }
+
+  // The lobes seen from unit direction wo (local frame) at offset h = sin(gamma_o) in [-1, 1].
+  CurveLobes<S> lobes_at(const Geometry<S>& h, const Vec3<Geometry<S>>& wo) const {
+    using std::asin, std::sqrt;
+    const Geometry<S> sin_o = wo.x(), cos_o = sqrt(wo.y() * wo.y() + wo.z() * wo.z());
+    CurveLobes<S> lobes;
+    lobes.widths = &widths_;
+    lobes.set_azimuth(wo);
+    lobes.sin_theta_o = Lanes<S>::Constant(S(sin_o));
+    lobes.cos_theta_o = Lanes<S>::Constant(S(cos_o));
+    const InnerChord<S> chord(h, sin_o, cos_o, S(kThreadEta));
+    for (int p = 0; p < 3; ++p) lobes.center[p] = lobe_center<S>(p, S(asin(h)), chord.gamma_t);
+    lobes.center[3] = S(0.0);
+
+    const std::array<S, 3> lambda = thread_lobe_energies<S>(parameters_, cos_o);
+    const Rgb<S> transmittance = (parameters_.sigma_a.array() * -chord.length).exp();
+    lobes.attenuation.row(0).setConstant(lambda[0]);
+    lobes.attenuation.row(1) = (transmittance * lambda[1]).transpose();
+    lobes.attenuation.row(2) = (transmittance * lambda[2]).transpose();
+    lobes.attenuation.row(3).setConstant(S(0.0));
+    set_probabilities(lobes);
+    return lobes;
+  }
+
+ private:
+  // In proportion to the lobes' mean energies, mixed with the floor.
+  static void set_probabilities(CurveLobes<S>& lobes) {
+    const Lanes<S> energy = lobes.attenuation.rowwise().sum().max(S(0.0));
+    const S total = energy.sum();
+    const S share = S(1.0 - 3 * kLobeFloor);
+    for (int p = 0; p < 3; ++p) {
+      lobes.probability[p] = S(kLobeFloor) + share * (total > S(0.0) ? S(energy[p] / total) : S(1.0 / 3));
+    }
+    lobes.probability[3] = S(0.0);
+  }
+
+  BasicThreadParameters<S> parameters_;
+  LobeWidths<S> widths_;
+};
+
+}  // namespace renderer
