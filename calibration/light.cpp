@@ -36,16 +36,19 @@ T falloff(const T* position, const Eigen::Vector3d& point, const Eigen::Vector3d
   return to_light.dot(normal.cast<T>()) / (d2 * sqrt(d2));
 }
 
+// Intensities are of the order of 1e6 beside positions of 1e2 and vignetting of 1e-1; the fit sees them as factors of
+// their first guess, or the covariance would look singular.
 struct PatchResidual {
   LightPatch patch;
   double albedo;
   double r2;
+  Eigen::Vector3d seed_intensity;
 
   template <typename T>
-  bool operator()(const T* position, const T* intensity, const T* vignetting, T* residual) const {
+  bool operator()(const T* position, const T* factor, const T* vignetting, T* residual) const {
     const T irradiance = falloff(position, patch.point, patch.normal);
     const T scale = gain_at(r2, vignetting[0], vignetting[1]) * (albedo / M_PI) * irradiance;
-    for (int c = 0; c < 3; ++c) residual[c] = (scale * intensity[c] - patch.radiance[c]) / patch.sigma[c];
+    for (int c = 0; c < 3; ++c) residual[c] = (scale * (factor[c] * seed_intensity[c]) - patch.radiance[c]) / patch.sigma[c];
     return true;
   }
 };
@@ -139,12 +142,13 @@ Eigen::Vector3d seed_intensity(const std::vector<LightPatch>& used, const std::v
 
 struct Unknowns {
   std::vector<Eigen::Vector3d> positions;
-  Eigen::Vector3d intensity = Eigen::Vector3d::Zero();
+  Eigen::Vector3d factor = Eigen::Vector3d::Ones();  // of the intensity's first guess
   std::array<double, 2> vignetting{};
 };
 
-void take_covariances(ceres::Problem& problem, const Unknowns& unknowns, double variance, LightFit& fit) {
-  std::vector<const double*> blocks{unknowns.intensity.data(), unknowns.vignetting.data()};
+void take_covariances(ceres::Problem& problem, const Unknowns& unknowns, const Eigen::Vector3d& seed, double variance,
+                      LightFit& fit) {
+  std::vector<const double*> blocks{unknowns.factor.data(), unknowns.vignetting.data()};
   for (const Eigen::Vector3d& position : unknowns.positions) blocks.push_back(position.data());
   ceres::Covariance::Options options;
   options.algorithm_type = ceres::DENSE_SVD;
@@ -163,7 +167,7 @@ void take_covariances(ceres::Problem& problem, const Unknowns& unknowns, double 
   };
   for (std::size_t i = 0; i < unknowns.positions.size(); ++i)
     fit.position_covariances[i] = block3(unknowns.positions[i].data());
-  fit.intensity_covariance = block3(unknowns.intensity.data());
+  fit.intensity_covariance = seed.asDiagonal() * block3(unknowns.factor.data()) * seed.asDiagonal();
   Eigen::Matrix<double, 2, 2, Eigen::RowMajor> vignetting;
   covariance.GetCovarianceBlock(blocks[1], blocks[1], vignetting.data());
   fit.vignetting_covariance = variance * vignetting;
@@ -181,16 +185,17 @@ LightFit fit_light(const std::vector<LightPatch>& patches, const std::vector<Eig
   const std::vector<LightPatch> used = usable(patches, guesses);
   require_enough(used, guesses.size());
 
-  Unknowns unknowns{.positions = guesses, .intensity = seed_intensity(used, guesses, albedo)};
+  const Eigen::Vector3d seed = seed_intensity(used, guesses, albedo);
+  Unknowns unknowns{.positions = guesses};
   ceres::Problem problem;
   std::vector<PatchResidual*> residuals;  // owned by the problem
   for (const LightPatch& patch : used) {
     residuals.push_back(
-        new PatchResidual{patch, albedo, radius_squared(patch.pixel.x(), patch.pixel.y(), image_size)});
+        new PatchResidual{patch, albedo, radius_squared(patch.pixel.x(), patch.pixel.y(), image_size), seed});
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PatchResidual, 3, 3, 3, 2>(residuals.back()),
                              new ceres::HuberLoss(4.0),
                              unknowns.positions[static_cast<std::size_t>(patch.light)].data(),
-                             unknowns.intensity.data(), unknowns.vignetting.data());
+                             unknowns.factor.data(), unknowns.vignetting.data());
   }
   problem.AddResidualBlock(new ceres::AutoDiffCostFunction<VignettingPrior, 2, 2>(new VignettingPrior), nullptr,
                            unknowns.vignetting.data());
@@ -203,15 +208,15 @@ LightFit fit_light(const std::vector<LightPatch>& patches, const std::vector<Eig
   ceres::Solve(options, &problem, &summary);
 
   LightFit fit;
-  fit.converged = summary.termination_type == ceres::CONVERGENCE && unknowns.intensity.minCoeff() > 0.0;
+  fit.converged = summary.termination_type == ceres::CONVERGENCE && unknowns.factor.minCoeff() > 0.0;
   fit.positions = unknowns.positions;
-  fit.intensity = unknowns.intensity;
+  fit.intensity = unknowns.factor.cwiseProduct(seed);
   fit.vignetting = {.v0 = unknowns.vignetting[0], .v1 = unknowns.vignetting[1]};
   fit.patches_used = static_cast<int>(used.size());
   double weighted = 0.0, relative = 0.0;
   for (const PatchResidual* residual : residuals) {
     Eigen::Vector3d r;
-    (*residual)(unknowns.positions[static_cast<std::size_t>(residual->patch.light)].data(), unknowns.intensity.data(),
+    (*residual)(unknowns.positions[static_cast<std::size_t>(residual->patch.light)].data(), unknowns.factor.data(),
                 unknowns.vignetting.data(), r.data());
     weighted += r.squaredNorm();
     relative += (r.array() * residual->patch.sigma.array() / residual->patch.radiance.array()).square().sum();
@@ -220,7 +225,7 @@ LightFit fit_light(const std::vector<LightPatch>& patches, const std::vector<Eig
   const double parameters = 3.0 * static_cast<double>(guesses.size()) + 5.0;
   fit.relative_rms = std::sqrt(relative / count);
   // Scatter beyond the given standard errors widens the covariance; less than them does not narrow it.
-  take_covariances(problem, unknowns, std::max(1.0, weighted / (count - parameters)), fit);
+  take_covariances(problem, unknowns, seed, std::max(1.0, weighted / (count - parameters)), fit);
   return fit;
 }
 

@@ -1,5 +1,6 @@
 #include "station/bench/bench_picture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -12,7 +13,7 @@ namespace station {
 namespace {
 
 constexpr int kPiecesPerFiber = 10;
-constexpr int kPackingAttempts = 20000;
+constexpr int kPackingAttempts = 3000, kPackingTries = 40;
 constexpr double kRoomLampRadius_mm = 250;
 const Eigen::Vector3d kRoomLampPosition(900, 350, 1100);  // above and beside the camera: upright targets are lit too
 
@@ -82,24 +83,32 @@ struct Painter {
   }
 };
 
+// Random sequential placement may end a fiber short of what another order of the same circles would hold: try again.
+std::vector<Eigen::Vector2d> fiber_centres(const Spool& spool, std::uint64_t seed) {
+  const SimulatedFibers& fibers = *spool.simulation;
+  std::size_t most = 0;
+  for (int attempt = 0; attempt < kPackingTries; ++attempt) {
+    const auto centres = renderer::pack_fibers(spool.wrapping.thread_diameter_mm / 2, fibers.fiber_radius_mm, fibers.min_gap_mm,
+                                               kPackingAttempts, fibers.fibers_per_thread, seed + static_cast<std::uint64_t>(attempt));
+    if (static_cast<int>(centres.size()) == fibers.fibers_per_thread) return centres;
+    most = std::max(most, centres.size());
+  }
+  throw std::runtime_error("spool \"" + spool.name + "\": at most " + std::to_string(most) + " of " +
+                           std::to_string(fibers.fibers_per_thread) +
+                           " fibers fit into a thread at random; make fibers_per_thread or fiber_radius_mm smaller");
+}
+
 }  // namespace
 
 renderer::CurveSet spool_fibers(const Spool& spool) {
   if (!spool.simulation)
     throw std::runtime_error("spool \"" + spool.name + "\" has no \"simulation\" part; the simulated bench cannot draw it");
   const SimulatedFibers& fibers = *spool.simulation;
-  const double thread_radius = spool.wrapping.thread_diameter_mm / 2;
   renderer::CurveSet curves;
   curves.scattering = fibers.scattering;
-  std::uint64_t seed = fibers.seed * 1000003;
+  std::uint64_t seed = fibers.seed * 1000;  // a stream of its own for every thread of every spool
   for (const inversion::Segment3& line : inversion::thread_lines(spool.wrapping)) {
-    const auto centres = renderer::pack_fibers(thread_radius, fibers.fiber_radius_mm, fibers.min_gap_mm,
-                                               kPackingAttempts, fibers.fibers_per_thread, ++seed);
-    if (static_cast<int>(centres.size()) < fibers.fibers_per_thread)
-      throw std::runtime_error("spool \"" + spool.name + "\": only " + std::to_string(centres.size()) + " of " +
-                               std::to_string(fibers.fibers_per_thread) +
-                               " fibers fit into a thread at random; make fibers_per_thread or fiber_radius_mm smaller");
-    for (const Eigen::Vector2d& centre : centres) {
+    for (const Eigen::Vector2d& centre : fiber_centres(spool, ++seed * 1000003)) {
       const Eigen::Vector3d offset(centre.x(), 0, centre.y());  // threads run along y
       inversion::add_straight_curve(curves, {line.from + offset, line.to + offset}, fibers.fiber_radius_mm, kPiecesPerFiber);
     }

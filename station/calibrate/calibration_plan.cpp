@@ -120,17 +120,18 @@ std::vector<CalibrationStep> make_calibration_plan(const RigFile& rig) {
   std::vector<CalibrationStep> plan;
   add_lens_steps(rig, plan);
   add_platform_steps(rig, plan);
-  const double z = rig.platform_height_mm + 34;
+  // High enough that no tilted plate dips into the platform or its shadow.
+  const double z = rig.platform_height_mm + rig.spectralon.plate_mm / 2 + 2;
   // Tilts about both axes, two depths and the picture's corners: they separate position, intensity and vignetting.
   add_panel_steps(CalibrationRole::front_light, rig::Lamp::front,
-                  {{15, 35, {0, 0, z}},        {-25, 25, {0, 10, z}},     {50, 25, {0, -10, z + 5}}, {15, 65, {0, 0, z - 10}},
-                   {15, 5, {10, 0, z}},        {-15, 55, {50, 15, z}},    {45, 55, {-50, -15, z}},   {15, 35, {60, -25, z + 30}},
-                   {15, 35, {-60, 25, z - 20}}, {0, 30, {0, -38, z + 22}}, {0, 30, {0, 38, z - 22}},  {30, 40, {0, 36, z + 24}}},
+                  {{15, 35, {0, 0, z - 4}},     {-25, 25, {0, 10, z}},    {50, 25, {0, -10, z}},      {15, 65, {0, 0, z - 10}},
+                   {15, 8, {20, 0, z + 4}},     {-15, 55, {50, 15, z}},   {45, 55, {-30, -15, z}},    {15, 35, {60, -25, z + 10}},
+                   {15, 35, {-40, 25, z}},      {0, 40, {70, -38, z}},    {0, 40, {70, 38, z}},       {30, 40, {-10, 36, z + 4}}},
                   plan);
   // Behind, one face must be seen by the camera and lit from the back: the panel lies nearly flat.
   add_panel_steps(CalibrationRole::back_light, rig::Lamp::back,
-                  {{0, 80, {0, 0, z}},       {90, 72, {0, 0, z}},     {-90, 74, {0, 0, z - 10}}, {180, 88, {15, 0, z + 5}},
-                   {0, 84, {-40, 20, z - 15}}, {45, 76, {35, -20, z + 20}}, {-45, 76, {0, 25, z + 15}}, {0, 82, {20, -25, z - 25}}},
+                  {{0, 80, {0, 0, z - 10}},     {90, 72, {0, 0, z - 10}},  {-90, 74, {0, 0, z - 15}},  {180, 88, {15, 0, z - 5}},
+                   {0, 84, {-40, 20, z - 30}},  {45, 76, {35, -20, z}},    {-45, 76, {0, 25, z - 5}},  {0, 82, {20, -25, z - 25}}},
                   plan);
   return plan;
 }

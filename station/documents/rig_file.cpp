@@ -53,8 +53,8 @@ rig::TrueSensor parse_sensor(ObjectReader sensor, rig::TrueLens& lens) {
   rig::TrueSensor truth;
   lens.width_px = sensor.integer("width_px", 16, 20000);
   lens.height_px = sensor.integer("height_px", 16, 20000);
-  truth.black_level_dn = sensor.number("black_level_dn", 0, 4000);
-  truth.white_level_dn = sensor.number("white_level_dn", truth.black_level_dn + 100, 16383);
+  truth.black_level_dn = sensor.integer("black_level_dn", 0, 4000);
+  truth.white_level_dn = sensor.integer("white_level_dn", 16383, 16383);  // what raw readers take for this camera
   truth.full_well_e = sensor.number("full_well_e", 100, 1e7);
   truth.read_noise_e = sensor.number("read_noise_e", 0, 1000);
   truth.dark_current_e_s = sensor.number("dark_current_e_s", 0, 1e5);
