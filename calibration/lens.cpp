@@ -63,9 +63,10 @@ struct BoardResidual {
 
 // What each distortion term may move in the image's corner, px; the 1-sigma width of a prior about 0. Priors on the
 // coefficients themselves would not do: what a coefficient means depends on the field of view (a regularisation that
-// is harmless on a 90 mm lens puts the focal length of a 137 mm one 0.1 % wrong). k3 moves 0.004 px per unit in the
-// corner of the narrow lens that this is for (14 degrees): it cannot be told from k2, and is held at 0. See the test
-// "TheLensIsGoodWhereItIsUsed".
+// is harmless on a 90 mm lens puts the focal length of a 137 mm one 0.1 % wrong). k3 is held at 0: in the
+// corner of the narrow lens that this is for (14 degrees) it moves 0.004 px per unit. With a true k3 of 5 and without
+// one, 15 views at 0.1 px leave the same 0.012 px of projection error (30 draws), while k2 itself is known to 1.5
+// only.
 struct DistortionPrior {
   Eigen::Vector4d weight;  // of k1 k2 p1 p2
 

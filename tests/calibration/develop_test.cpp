@@ -83,6 +83,9 @@ TEST(Develop, TheMasterDarkIsTheMean) {
     darks.back().mosaic += i;
   }
   EXPECT_FLOAT_EQ(master_dark(darks)(2, 3), 513.5F);
+  darks[1].iso = 400;
+  EXPECT_THROW(master_dark(darks), std::runtime_error);
+  darks[1].iso = 100;
   darks[1].exposure_s = 2.0;
   EXPECT_THROW(master_dark(darks), std::runtime_error);
   darks[1] = photographed([](double, double, int) { return 0.0; }, {6, 4}, 1.0);

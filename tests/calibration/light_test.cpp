@@ -136,6 +136,20 @@ TEST(Light, ThePredictedUncertaintyIsTheObservedSpread) {
   }
 }
 
+TEST(Light, TheCovarianceDoesNotDependOnTheUnitOfRadiance) {
+  const Truth dim;
+  Truth bright;
+  bright.intensity *= 1e6;
+  std::mt19937 random(4), same_random(4);
+  const LightFit a = fit_light(pictures(dim, 0.003, random), guesses(dim), kAlbedo, kSize);
+  const LightFit b = fit_light(pictures(bright, 0.003, same_random), guesses(bright), kAlbedo, kSize);
+  EXPECT_TRUE(b.converged);
+  // the same noise; 1 % for where the two iterations end
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_TRUE(b.position_covariances[i].isApprox(a.position_covariances[i], 0.01));
+  EXPECT_TRUE((b.intensity_covariance * 1e-12).isApprox(a.intensity_covariance, 0.01));
+}
+
 TEST(Light, AStainOnThePanelDoesNotPullTheLight) {
   const Truth t;
   std::mt19937 random(4);

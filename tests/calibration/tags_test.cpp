@@ -79,6 +79,15 @@ TEST(Tags, TagsOfTheHoldersSizeAreFound) {
       corner_errors(make_tag_board("small", 3, 5, 12.0, 24.0, 40), facing(600, 10 * kDegree, 20 * kDegree, 0), 0.7));
 }
 
+TEST(Tags, TagsTooSmallForStraightEdgesKeepTheDetectorsCornersInOurPixelConvention) {
+  const auto errors =
+      corner_errors(make_tag_board("small", 3, 5, 12.0, 24.0, 40), facing(600, 0, -55 * kDegree, 25 * kDegree), 0.5);
+  ASSERT_GE(errors.size(), 40U);
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const auto& e : errors) mean += e / static_cast<double>(errors.size());
+  EXPECT_LT(mean.cwiseAbs().maxCoeff(), 0.1);  // half a pixel if the library's convention were taken for ours
+}
+
 TEST(Tags, ABoardLitFromOneSideIsFoundInItsDarkHalf) {
   expect_accurate(corner_errors(synthetic::board(), facing(600, 0, 0, 0), 0.7, 0.06));
 }
