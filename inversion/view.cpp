@@ -1,6 +1,7 @@
 #include "inversion/view.h"
 
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 #include "renderer/path_tracer.h"
 
@@ -8,6 +9,7 @@ namespace inversion {
 namespace {
 
 constexpr double kFrameAlbedo = 0.0;          // matt black; what it reflects is below the camera's noise
+constexpr int kLargestHole_px = 5;
 constexpr std::uint64_t kMaskSeed = 20250801;
 
 }  // namespace
@@ -31,13 +33,18 @@ cv::Mat1b thread_mask(const WrappedSpool& spool, const renderer::Camera& camera,
   // A white, rough thread scatters into every direction, so wherever a lit thread is seen the rendering is not zero.
   const renderer::FiberParameters white{.beta_m = 0.5, .beta_n = 0.5};
   const renderer::PathTracer tracer(view_scene(spool, white, light));
-  const cv::Mat3f initial = tracer.render(camera, {.samples_per_pixel = samples_per_pixel, .seed = kMaskSeed});
+  renderer::RenderOptions options{.samples_per_pixel = samples_per_pixel, .seed = kMaskSeed};
+  options.only = tracer.curve_coverage(camera, samples_per_pixel);
+  const cv::Mat3f initial = tracer.render(camera, options);
   cv::Mat1b mask(initial.size(), 0);
   for (int row = 0; row < mask.rows; ++row)
     for (int column = 0; column < mask.cols; ++column) {
       const cv::Vec3f& pixel = initial(row, column);
       if (pixel[0] > 0 || pixel[1] > 0 || pixel[2] > 0) mask(row, column) = 255;
     }
+  // Where light grazes the sheet a few samples may all find shadow; holes smaller than this are not threads in the dark.
+  cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, cv::getStructuringElement(cv::MORPH_ELLIPSE, {kLargestHole_px, kLargestHole_px}));
+  cv::bitwise_and(mask, options.only, mask);
   return mask;
 }
 

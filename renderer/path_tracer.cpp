@@ -161,9 +161,12 @@ void for_each_pixel(const Camera& camera, int threads, const std::function<bool(
 }  // namespace
 
 cv::Mat3f PathTracer::render(const Camera& camera, const RenderOptions& options) const {
-  cv::Mat3f image(camera.height, camera.width);
+  cv::Mat3f image(camera.height, camera.width, cv::Vec3f(0, 0, 0));
+  if (!options.only.empty() && options.only.size() != image.size())
+    throw std::runtime_error("the region to render has another size than the picture; make it height x width");
   const int max_vertices = options.max_vertices > 0 ? options.max_vertices : kMostVertices;
   const auto draw = [&](const PixelRays& rays, int column, int row) {
+    if (!options.only.empty() && options.only(row, column) == 0) return;
     Sampler sampler(options.seed, static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(camera.width) +
                                       static_cast<std::uint64_t>(column));
     Eigen::Array3d sum = Eigen::Array3d::Zero();

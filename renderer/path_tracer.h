@@ -16,8 +16,9 @@ struct RenderOptions {
   int samples_per_pixel = 16;
   std::uint64_t seed = 1;
   int max_vertices =
-      0;            // scattering vertices allowed (1 = direct light only); 0 = no limit, Russian roulette ends paths
-  int threads = 0;  // 0 = all cores
+      0;             // scattering vertices allowed (1 = direct light only); 0 = no limit, Russian roulette ends paths
+  int threads = 0;   // 0 = all cores
+  cv::Mat1b only{};  // when not empty: pixels that are 0 here are left black; height x width
   // Called now and then from one thread with the finished fraction; returning false stops the rendering.
   std::function<bool(double)> progress{};
 };

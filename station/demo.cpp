@@ -16,8 +16,8 @@ constexpr const char* kFixtures = THREADSTATION_FIXTURES;
 nlohmann::json demo_rig(bool quick) {
   nlohmann::json rig = read_json_file(std::filesystem::path(kFixtures) / "rigs" / "simulated.json");
   if (quick) {
-    rig["simulation"]["samples_per_pixel"] = 6;
-    rig["simulation"]["target_samples_per_pixel"] = 4;
+    rig["simulation"]["samples_per_pixel"] = 10;
+    rig["simulation"]["target_samples_per_pixel"] = 3;
   }
   return rig;
 }

@@ -11,7 +11,7 @@ namespace station {
 struct ExposureAim {
   double level = 0.6;         // of the range black..white that the brightest pixels should reach
   double tolerance = 1.5;     // accepted ratio of found to wanted level, either way
-  double percentile = 99.5;   // "brightest": this percentile of the region
+  double percentile = 99.8;   // "brightest": this percentile of the region
 };
 
 // The level (0 = black, 1 = white) that `percentile` per cent of the region's raw pixels stay below. `region`: 255 inside, sensor size;

@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
   station::add_verify_command(app);
   station::add_develop_command(app);
   station::add_report_command(app);
+  station::add_weave_command(app);
   try {
     app.parse(argc, argv);
     std::cout.flush();

@@ -13,5 +13,6 @@ void add_develop_command(CLI::App& app);
 void add_devices_command(CLI::App& app);
 void add_report_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
+void add_weave_command(CLI::App& app);
 
 }  // namespace station

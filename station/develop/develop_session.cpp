@@ -67,7 +67,7 @@ DevelopedView place_view(const PlanStep& step, const PictureRecord& picture, con
   const Eigen::Isometry3d holder_from_world = world_from_holder.inverse();
   DevelopedView developed;
   developed.mounting = step.mounting;
-  developed.platform_angle_rad = calibration.platform.scale * picture.read_angle_rad + calibration.platform.offset_rad;
+  developed.platform_angle_rad = calibration.platform.scale * picture.read_angle_rad;
   developed.pose_rms_px = mounted.rms_px;
   developed.image_file = "linear/" + step.id + ".exr";
   developed.mask_file = "masks/" + step.id + ".png";

@@ -9,7 +9,8 @@ namespace station {
 // The scale that brings the 99th percentile of the masked pixels' brightest channel to `white`.
 double display_scale(const cv::Mat3f& linear, const cv::Mat1b& mask, double white = 0.85);
 
-// The mask's bounding box, grown by `margin_px`, inside the picture; the whole picture when the mask is empty.
+// The mask's bounding box, grown by `margin_px` and then to the picture's own aspect ratio, inside the picture; the whole
+// picture when the mask is empty.
 cv::Rect threads_box(const cv::Mat1b& mask, int margin_px);
 
 cv::Mat3b display(const cv::Mat3f& linear, double scale, const std::array<double, 9>& linear_srgb_from_camera);

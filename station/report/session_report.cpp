@@ -23,32 +23,29 @@ std::string caption(const DevelopedView& developed) {
 }
 
 // One tile: the developed picture and, under it, the same with the mask's outline.
-std::string tile(const DevelopedView& developed, double scale, const std::array<double, 9>& colour) {
+std::string tile(const DevelopedView& developed, const std::array<double, 9>& colour) {
+  const double scale = display_scale(developed.view.image, developed.view.mask);
   const cv::Rect box = threads_box(developed.view.mask, kMargin_px);
   const cv::Mat3b picture = display(developed.view.image, scale, colour);
   cv::Mat3b outlined = picture.clone();
   draw_outline(outlined, developed.view.mask);
   return "<figure>" + embedded_image(picture(box).clone(), developed.view.id) +
          embedded_image(outlined(box).clone(), developed.view.id + " with its mask") + "<figcaption>" + caption(developed) +
-         "</figcaption></figure>\n";
+         "<br>shown at " +
+         number_text(scale, 2) + " × its radiance</figcaption></figure>\n";
 }
 
-// Reflection views share one brightness scale and transmission views another, so that tiles can be compared.
 std::string contact_sheet(const DevelopedViews& developed, bool transmission) {
-  double scale = 0;
+  std::string tiles;
   int count = 0;
   for (const DevelopedView& view : developed.views)
     if (view.view.transmission == transmission) {
-      scale += std::log(display_scale(view.view.image, view.view.mask));
+      tiles += tile(view, developed.linear_srgb_from_camera);
       ++count;
     }
   if (count == 0) return {};
-  scale = std::exp(scale / count);
-  std::string tiles;
-  for (const DevelopedView& view : developed.views)
-    if (view.view.transmission == transmission) tiles += tile(view, scale, developed.linear_srgb_from_camera);
   return "<h2>" + std::string(transmission ? "Transmission" : "Reflection") + ", " + std::to_string(count) +
-         " views (shown at " + number_text(scale, 3) + " times their radiance)</h2>\n<div class=\"sheet\">\n" + tiles + "</div>\n";
+         " views</h2>\n<div class=\"sheet\">\n" + tiles + "</div>\n";
 }
 
 std::string position_text(const Eigen::Vector3d& position, const Eigen::Matrix3d& covariance) {

@@ -107,7 +107,7 @@ TEST(Platform, TheFittedFrameIsTheWorldFrameOfItsDefinition) {
   EXPECT_GT(eye.z(), 0.0);
 }
 
-TEST(Platform, TheAxisIsFoundToAHundredthOfADegreeAndATwentiethOfAMillimetre) {
+TEST(Platform, TheAxisIsFoundToAFiftiethOfADegreeAndATenthOfAMillimetre) {
   // Six views of a 110 mm board, 0.1 px: the published simulation has 0.001 degree and 5 um with 8400 px of focal
   // length and an 85 mm ring; 2400 px and a third of the lever give ten times that. Accepted on a bench: 0.02 degree,
   // 0.1 mm.
