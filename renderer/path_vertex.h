@@ -23,6 +23,7 @@ class PathVertex {
 
   ScatteringValue<float> evaluate(const Eigen::Vector3f& wi) const;
   Eigen::Vector3f sample(Sampler& sampler) const;
+  bool is_curve() const { return is_curve_; }
   const Eigen::Vector3f& position() const { return position_; }  // where scattered rays start
 
  private:
