@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -42,6 +43,24 @@ RTCRayHit nearest(RTCScene scene, const Ray& ray) {
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(scene, &context, &query);
   return query;
+}
+
+Vector3f across(const Vector3f& v, const Vector3f& unit_axis) {
+  return v - v.dot(unit_axis) * unit_axis;
+}
+
+// Embree's iteration for round curves stops up to 0.002 radii early. This finishes it on the cylinder that touches
+// the curve there: the outward normal where a ray, already close to the surface at `point` (relative to the axis),
+// enters it.
+std::optional<Vector3f> cylinder_normal(const Vector3f& point, const Vector3f& direction, const Vector3f& axis,
+                                        float radius) {
+  const Vector3f o = across(point, axis), d = across(direction, axis);
+  const float a = d.squaredNorm(), b = o.dot(d), c = o.squaredNorm() - radius * radius;
+  const float root2 = b * b - a * c;
+  if (!(root2 >= 0 && a > 0)) return std::nullopt;  // rounding at the silhouette, or a ray along the axis
+  const float step = (-b - std::sqrt(root2)) / a;
+  if (std::abs(step) > 0.5f * radius) return std::nullopt;
+  return (o + step * d).normalized();
 }
 
 void attach(RTCScene scene, RTCGeometry geometry) {
@@ -100,7 +119,8 @@ std::optional<SurfaceHit> RayScene::intersect(const Ray& ray) const {
   const auto curve_sets = static_cast<std::uint32_t>(scene_.curves.size());
   if (found.hit.geomID < curve_sets) {
     const Vector3f normal(found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z);
-    return SurfaceHit{found.ray.tfar, curve_point(found.hit.geomID, found.hit.primID, found.hit.u, normal)};
+    return SurfaceHit{found.ray.tfar,
+                      curve_point(found.hit.geomID, found.hit.primID, found.hit.u, normal, ray, found.ray.tfar)};
   }
   return SurfaceHit{found.ray.tfar,
                     mesh_point(found.hit.geomID - curve_sets, found.hit.primID, found.hit.u, found.hit.v, ray)};
@@ -119,8 +139,8 @@ bool RayScene::meets_curve_first(const Ray& ray) const {
   return found.hit.geomID != RTC_INVALID_GEOMETRY_ID && found.hit.geomID < scene_.curves.size();
 }
 
-CurvePoint RayScene::curve_point(std::uint32_t set, std::uint32_t segment, float u,
-                                 const Vector3f& hit_normal) const {
+CurvePoint RayScene::curve_point(std::uint32_t set, std::uint32_t segment, float u, const Vector3f& hit_normal,
+                                 const Ray& ray, float distance) const {
   const CurveSet& curves = scene_.curves[set];
   const Eigen::Vector4f* p = &curves.control_points[curves.segments[segment]];
   const float w = 1 - u;
@@ -131,7 +151,10 @@ CurvePoint RayScene::curve_point(std::uint32_t set, std::uint32_t segment, float
   CurvePoint point;
   point.curve_set = set;
   point.tangent = derivative.normalized();
-  point.normal = (hit_normal - hit_normal.dot(point.tangent) * point.tangent).normalized();
+  point.normal = across(hit_normal, point.tangent).normalized();
+  const Vector3f from_center = ray.origin + distance * ray.direction - center.head<3>();
+  if (const auto exact = cylinder_normal(from_center, ray.direction, point.tangent, center.w()))
+    point.normal = *exact;
   point.position = center.head<3>() + center.w() * (1 - kStartDepth) * point.normal;
   return point;
 }

@@ -57,7 +57,8 @@ class RayScene {
  private:
   void add_curves(const CurveSet& curves);
   void add_mesh(const TriangleMesh& mesh);
-  CurvePoint curve_point(std::uint32_t set, std::uint32_t segment, float u, const Eigen::Vector3f& hit_normal) const;
+  CurvePoint curve_point(std::uint32_t set, std::uint32_t segment, float u, const Eigen::Vector3f& hit_normal,
+                         const Ray& ray, float distance) const;
   MeshPoint mesh_point(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Ray& ray) const;
 
   Scene scene_;
