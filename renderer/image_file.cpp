@@ -129,6 +129,7 @@ float srgb_encoded(float linear) {
 void write_exr(const fs::path& file, const cv::Mat3f& linear, const ImageHeader& header) {
   OIIO::ImageSpec spec(linear.cols, linear.rows, 3, OIIO::TypeDesc::FLOAT);
   spec.attribute("compression", "zip");
+  spec.attribute("DateTime", "    :  :     :  :  ");  // unknown; the time of writing would make equal pictures differ
   for (const auto& [name, text] : header) spec.attribute(name, text);
   write_atomically(file, encode("exr", spec, linear.data, linear.step));
 }

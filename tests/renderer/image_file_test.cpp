@@ -52,6 +52,13 @@ TEST_F(ImageFileTest, ExrKeepsEveryBitOfFloats) {
   EXPECT_EQ(cv::norm(read_exr(folder_ / "a.exr"), ramp(), cv::NORM_INF), 0);
 }
 
+TEST_F(ImageFileTest, ExrSaysNothingAboutWhenItWasWritten) {
+  write_exr(folder_ / "a.exr", ramp());
+  ImageHeader header;
+  read_exr(folder_ / "a.exr", &header);
+  EXPECT_THAT(header["DateTime"], Not(HasSubstr("20"))) << "pictures made again must be the same files";
+}
+
 TEST_F(ImageFileTest, ExrKeepsRowsThatAreNotContiguous) {
   const cv::Mat3f part = ramp()(cv::Rect(3, 4, 10, 8));
   write_exr(folder_ / "a.exr", part);

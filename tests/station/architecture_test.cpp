@@ -60,8 +60,9 @@ TEST(Architecture, EachOfTheseLibrariesIsMetInOneFolder) {
   for (const auto& [folder, unused] : kAllowed)
     for (const Include& include : includes_in(kRoot / folder))
       for (const auto& [library, owner] : home)
-        if (include.target == library || include.target.starts_with(library + "/"))
+        if (include.target == library || include.target.starts_with(library + "/")) {
           EXPECT_EQ(folder, owner) << fs::relative(include.file, kRoot) << " includes " << include.target;
+        }
 }
 
 TEST(Architecture, TheTopLevelHasTheAgreedFoldersAndNothingElse) {
