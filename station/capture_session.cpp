@@ -51,6 +51,14 @@ ChooseExposure exposure_chooser(const RigFile& rig, const Spool& spool, const Ri
   };
 }
 
+void require_same_sensor(rig::Camera& camera, const calibration::Lens& lens) {
+  const rig::CameraIdentity found = camera.identity();
+  if (found.width_px != lens.width_px || found.height_px != lens.height_px)
+    throw std::runtime_error("the calibration is for pictures of " + std::to_string(lens.width_px) + " x " +
+                             std::to_string(lens.height_px) + " pixels, this camera makes " + std::to_string(found.width_px) +
+                             " x " + std::to_string(found.height_px) + "; calibrate the rig with this camera");
+}
+
 RunOutcome run(SessionFolder& session, RigDevices& devices, const SessionFile& asked, const RigCalibration& calibration,
                ProgressStyle progress_style) {
   ProgressDisplay display("capture", progress_style);
@@ -91,6 +99,7 @@ RunOutcome capture_session(const CaptureRequest& request) {
   const Plan plan = make_capture_plan({.reflection_angles_deg = rig.reflection_angles_deg,
                                        .transmission_angles_deg = rig.transmission_angles_deg});
   RigDevices devices = open_rig(rig, spool, request.unattended);
+  require_same_sensor(*devices.camera, calibration.lens.lens);
   FileSystem disk;
   const std::filesystem::path calibration_folder =
       std::filesystem::is_directory(request.calibration) ? request.calibration : request.calibration.parent_path();
@@ -104,6 +113,7 @@ RunOutcome resume_session(const std::filesystem::path& folder, bool unattended, 
   const SessionFile asked = read_session_file(folder);
   const RigCalibration calibration = read_calibration(folder / "calibration");
   RigDevices devices = open_rig(asked.rig, asked.spool, unattended);
+  require_same_sensor(*devices.camera, calibration.lens.lens);
   FileSystem disk;
   SessionFolder session = SessionFolder::open(folder, *devices.clock, disk);
   return run(session, devices, asked, calibration, progress_style);

@@ -43,6 +43,8 @@ class Workflow : public ::testing::Test {
     rig["simulation"]["samples_per_pixel"] = 1;
     rig["simulation"]["target_samples_per_pixel"] = 4;
     station::write_json_file(path("rig.json"), rig);
+    rig["simulation"]["target_samples_per_pixel"] = 1;
+    station::write_json_file(path("hasty_rig.json"), rig);
     expect_success(run_threadstation({"calibrate", "--rig", path("rig.json"), "--out", path("calibration"), "--quiet"}));
     expect_success(capture(path("session")));
   }
@@ -52,8 +54,8 @@ class Workflow : public ::testing::Test {
   }
 
   static std::string path(const std::string& name) { return *folder_ / name; }
-  static std::vector<std::string> capture_arguments(const std::string& session) {
-    return {"capture", "--rig", path("rig.json"), "--calibration", path("calibration"), "--spool",
+  static std::vector<std::string> capture_arguments(const std::string& session, const std::string& rig = "rig.json") {
+    return {"capture", "--rig", path(rig), "--calibration", path("calibration"), "--spool",
             std::string(FIXTURES_DIR) + "/spools/silk_red.json", "--out", session, "--unattended", "--quiet"};
   }
   static ProgramResult capture(const std::string& session) { return run_threadstation(capture_arguments(session)); }
@@ -162,19 +164,20 @@ TEST_F(Workflow, APulledPlugAtTwentyRandomMomentsLosesAndDoublesNothing) {
   using Seconds = std::chrono::duration<double>;
   const std::string timed = path("timed");
   const auto start = std::chrono::steady_clock::now();
-  expect_success(capture(timed));
+  const std::vector<std::string> hasty = capture_arguments(timed, "hasty_rig.json");
+  expect_success(run_threadstation(hasty));
   const double whole_s = Seconds(std::chrono::steady_clock::now() - start).count();
   std::mt19937 random(20260);
   std::uniform_real_distribution<double> moment_s(0, whole_s);
   int killed = 0;
   for (int run = 0; run < 20; ++run) {
     const std::string session = path("killed-" + std::to_string(run));
-    const pid_t process = start_threadstation(capture_arguments(session));
+    const pid_t process = start_threadstation(capture_arguments(session, "hasty_rig.json"));
     std::this_thread::sleep_for(Seconds(moment_s(random)));  // the moment of the kill is what is tested
     ::kill(process, SIGKILL);
     killed += wait_for(process) == 128 + SIGKILL;
     const bool begun = fs::exists(session + "/session.json");
-    expect_success(begun ? run_threadstation({"capture", "--resume", "--out", session, "--quiet"}) : capture(session));
+    expect_success(begun ? run_threadstation({"capture", "--resume", "--out", session, "--quiet"}) : run_threadstation(capture_arguments(session, "hasty_rig.json")));
     const ProgramResult verified = run_threadstation({"verify", session, "--json"});
     expect_success(verified);
     EXPECT_TRUE(json::parse(verified.out)["complete"]) << verified.out;
@@ -194,7 +197,7 @@ TEST_F(Workflow, APulledPlugAtTwentyRandomMomentsLosesAndDoublesNothing) {
 
 TEST_F(Workflow, CtrlCStopsThePlatformAndLeavesASessionThatResumes) {
   const std::string session = path("interrupted");
-  const pid_t process = start_threadstation(capture_arguments(session));
+  const pid_t process = start_threadstation(capture_arguments(session, "hasty_rig.json"));
   while (!fs::exists(session + "/raw/reflection-horizontal-1.arw")) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   ::kill(process, SIGINT);
   EXPECT_EQ(wait_for(process), 1);
@@ -248,6 +251,10 @@ TEST_F(Workflow, WrongFilesGetOneLineThatNamesThem) {
   expect_one_line(run_threadstation({"verify", path("calibration")}), "session");
   expect_one_line(run_threadstation({"develop", path("nowhere")}), "nowhere");
   expect_one_line(capture(path("session")), "already");
+  rig = station::read_json_file(path("rig.json"));
+  rig["simulation"]["sensor"]["width_px"] = 300;
+  station::write_json_file(path("other_sensor.json"), rig);
+  expect_one_line(run_threadstation(capture_arguments(out, "other_sensor.json")), "300 x 400");
   EXPECT_FALSE(fs::exists(out)) << "a refused command leaves nothing behind";
 }
 
