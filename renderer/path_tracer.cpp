@@ -25,8 +25,8 @@ using Eigen::Vector3f;
 constexpr int kTile = 16;                // pixels
 constexpr int kFirstRouletteVertex = 4;  // earlier vertices always go on
 // Shadow rays are traced with a probability in proportion to f_cos below this value, a quarter of what a uniformly
-// scattering white fiber has: most faint lobes are skipped, at 2 % more variance and 15 % less work. Diffuse surfaces are
-// never faint in this sense: a black one would come out grainy.
+// scattering white fiber has: most faint lobes of curves are skipped, at 2 % more variance and 15 % less work.
+// Diffuse surfaces are never faint in this sense: a black one would come out grainy.
 constexpr float kFaintScattering = 0.02f;
 constexpr int kMostVertices = 1000;  // a guard; roulette ends paths long before
 
@@ -78,6 +78,7 @@ Array3f PathTracer::Impl::direct_light(const PathVertex& vertex, Sampler& sample
   if (!light) return Array3f::Zero();  // rounding at the rim of the cone
   const Vector3f wi = direction->cast<float>();
   const ScatteringValue<float> scattering = vertex.evaluate(wi);
+  if (!(scattering.f_cos.maxCoeff() > 0)) return Array3f::Zero();
   const float chance = vertex.is_curve() ? std::min(1.0f, scattering.f_cos.maxCoeff() / kFaintScattering) : 1.0f;
   if (!(sampler.next_1d() < chance)) return Array3f::Zero();
   if (rays.occluded({vertex.position(), wi}, static_cast<float>(light->distance))) return Array3f::Zero();
@@ -112,6 +113,7 @@ Array3f PathTracer::Impl::radiance(CameraRay camera_ray, Sampler& sampler, int m
     const ScatteringValue<float> scattering = vertex.evaluate(wi);
     if (!(scattering.pdf > 0)) break;
     throughput *= scattering.f_cos / scattering.pdf;
+    if (!(throughput.maxCoeff() > 0)) break;  // black surfaces
     scattering_pdf = scattering.pdf;
     if (vertices + 1 >= kFirstRouletteVertex) {
       const float survival = std::min(0.97f, throughput.maxCoeff());
