@@ -8,7 +8,7 @@
 namespace inversion {
 namespace {
 
-constexpr double kFrameAlbedo = 0.0;          // matt black; what it reflects is below the camera's noise
+constexpr double kFrameAlbedo = 0.0;  // matt black; what it reflects is below the camera's noise
 constexpr int kLargestHole_px = 5;
 constexpr std::uint64_t kMaskSeed = 20250801;
 
@@ -21,7 +21,8 @@ renderer::SphereLight sphere_light(const NearLight& light) {
           .visible = false};
 }
 
-renderer::Scene view_scene(const WrappedSpool& spool, const renderer::ScatteringModel& scattering, const NearLight& light) {
+renderer::Scene view_scene(const WrappedSpool& spool, const renderer::ScatteringModel& scattering,
+                           const NearLight& light) {
   renderer::Scene scene;
   scene.curves.push_back(aligned_threads(spool, scattering));
   scene.meshes.push_back(holder_frame(spool, kFrameAlbedo));
@@ -29,7 +30,8 @@ renderer::Scene view_scene(const WrappedSpool& spool, const renderer::Scattering
   return scene;
 }
 
-cv::Mat1b thread_mask(const WrappedSpool& spool, const renderer::Camera& camera, const NearLight& light, int samples_per_pixel) {
+cv::Mat1b thread_mask(const WrappedSpool& spool, const renderer::Camera& camera, const NearLight& light,
+                      int samples_per_pixel) {
   // A white, rough thread scatters into every direction, so wherever a lit thread is seen the rendering is not zero.
   const renderer::FiberParameters white{.beta_m = 0.5, .beta_n = 0.5};
   const renderer::PathTracer tracer(view_scene(spool, white, light));
@@ -43,7 +45,8 @@ cv::Mat1b thread_mask(const WrappedSpool& spool, const renderer::Camera& camera,
       if (pixel[0] > 0 || pixel[1] > 0 || pixel[2] > 0) mask(row, column) = 255;
     }
   // Where light grazes the sheet a few samples may all find shadow; holes smaller than this are not threads in the dark.
-  cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, cv::getStructuringElement(cv::MORPH_ELLIPSE, {kLargestHole_px, kLargestHole_px}));
+  cv::morphologyEx(mask, mask, cv::MORPH_CLOSE,
+                   cv::getStructuringElement(cv::MORPH_ELLIPSE, {kLargestHole_px, kLargestHole_px}));
   cv::bitwise_and(mask, options.only, mask);
   return mask;
 }

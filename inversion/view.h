@@ -12,8 +12,9 @@
 namespace inversion {
 
 struct NearLight {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();   // mm, holder frame
-  Eigen::Vector3d intensity = Eigen::Vector3d::Ones();  // RGB, radiance unit x mm^2: irradiance at distance d facing it is I / d^2
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // mm, holder frame
+  Eigen::Vector3d intensity =
+      Eigen::Vector3d::Ones();  // RGB, radiance unit x mm^2: irradiance at distance d facing it is I / d^2
   double radius_mm = 4;
 };
 
@@ -29,11 +30,13 @@ struct View {
 renderer::SphereLight sphere_light(const NearLight& light);
 
 // Holder, threads with the given scattering and the view's light; the lamp itself is not seen by the camera.
-renderer::Scene view_scene(const WrappedSpool& spool, const renderer::ScatteringModel& scattering, const NearLight& light);
+renderer::Scene view_scene(const WrappedSpool& spool, const renderer::ScatteringModel& scattering,
+                           const NearLight& light);
 
 // Mask of the threads: the non-zero region of a rendering of the threads from this view before anything is fitted
 // [Xia 2025, section 4]. 255 inside. `samples_per_pixel` rays per pixel decide.
-cv::Mat1b thread_mask(const WrappedSpool& spool, const renderer::Camera& camera, const NearLight& light, int samples_per_pixel);
+cv::Mat1b thread_mask(const WrappedSpool& spool, const renderer::Camera& camera, const NearLight& light,
+                      int samples_per_pixel);
 
 // Radiance of a perfect diffuser at the holder frame's origin facing the light: I / (pi d^2). Pictures are divided by its
 // mean in the objective of eq. 6.

@@ -45,8 +45,8 @@ void add_straight_curve(renderer::CurveSet& curves, const Segment3& line, double
   const Eigen::Vector3d step = (line.to - line.from) / pieces;
   for (int i = -1; i <= pieces + 1; ++i) {
     const Eigen::Vector3d p = line.from + i * step;
-    curves.control_points.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()),
-                                       static_cast<float>(radius_mm));
+    curves.control_points.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()),
+                                       static_cast<float>(p.z()), static_cast<float>(radius_mm));
   }
   for (int i = 0; i < pieces; ++i) curves.segments.push_back(first + static_cast<std::uint32_t>(i));
 }
@@ -63,8 +63,8 @@ renderer::TriangleMesh holder_frame(const WrappedSpool& spool, double albedo) {
   renderer::TriangleMesh mesh;
   const double w = spool.frame_width_mm / 2, h = spool.frame_height_mm / 2, d = spool.frame_depth_mm;
   const double iw = spool.window_width_mm / 2, ih = spool.window_height_mm / 2;
-  add_box(mesh, {-d, -w, ih}, {0, w, h});     // above the window
-  add_box(mesh, {-d, -w, -h}, {0, w, -ih});   // below
+  add_box(mesh, {-d, -w, ih}, {0, w, h});      // above the window
+  add_box(mesh, {-d, -w, -h}, {0, w, -ih});    // below
   add_box(mesh, {-d, -w, -ih}, {0, -iw, ih});  // left and right
   add_box(mesh, {-d, iw, -ih}, {0, w, ih});
   const auto grey = static_cast<float>(albedo);

@@ -16,7 +16,7 @@ struct WrappedSpool {
   double frame_width_mm = 68, frame_height_mm = 68, frame_depth_mm = 3;
   double window_width_mm = 30, window_height_mm = 22;
   int turns = 50;
-  double thread_diameter_mm = 0.5;   // = pitch: the turns touch
+  double thread_diameter_mm = 0.5;  // = pitch: the turns touch
   bool front_and_back = false;
 };
 

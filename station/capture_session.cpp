@@ -15,7 +15,8 @@ namespace station {
 namespace {
 
 // Where the holder should stand: upright on the platform, its front over the axis; turned a quarter for vertical threads.
-Eigen::Isometry3d nominal_holder_pose(const RigFile& rig, const inversion::WrappedSpool& spool, rig::Mounting mounting) {
+Eigen::Isometry3d nominal_holder_pose(const RigFile& rig, const inversion::WrappedSpool& spool,
+                                      rig::Mounting mounting) {
   const bool vertical = mounting == rig::Mounting::vertical;
   const double half_height_mm = (vertical ? spool.frame_width_mm : spool.frame_height_mm) / 2;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -25,7 +26,8 @@ Eigen::Isometry3d nominal_holder_pose(const RigFile& rig, const inversion::Wrapp
 }
 
 // 255 over the holder's window, where the exposure is measured; raw pixels.
-cv::Mat1b window_region(const RigFile& rig, const Spool& spool, const RigCalibration& calibration, const PlanStep& step) {
+cv::Mat1b window_region(const RigFile& rig, const Spool& spool, const RigCalibration& calibration,
+                        const PlanStep& step) {
   const Eigen::Isometry3d world_from_holder = Eigen::AngleAxisd(step.platform_angle_rad, Eigen::Vector3d::UnitZ()) *
                                               nominal_holder_pose(rig, spool.wrapping, step.mounting);
   const renderer::Camera camera =
@@ -44,10 +46,12 @@ cv::Mat1b window_region(const RigFile& rig, const Spool& spool, const RigCalibra
 // Views are metered on the threads; pose pictures on the whole frame, for the tags.
 ChooseExposure exposure_chooser(const RigFile& rig, const Spool& spool, const RigCalibration& calibration) {
   return [rig, spool, calibration](const PlanStep& step, const rig::Picture& test) -> ExposureChoice {
-    const calibration::SensorPicture picture = calibration::read_sensor_bytes(test.bytes, "test picture of " + step.id);
+    const calibration::SensorPicture picture =
+        calibration::read_sensor_bytes(test.bytes, "test picture of " + step.id);
     const cv::Mat1b region = step.kind == StepKind::view ? window_region(rig, spool, calibration, step) : cv::Mat1b();
     const auto next = next_exposure_s(picture, region, {.level = rig.target_level});
-    return next ? ExposureChoice{.exposure_s = *next} : ExposureChoice{.exposure_s = picture.exposure_s, .done = true};
+    return next ? ExposureChoice{.exposure_s = *next}
+                : ExposureChoice{.exposure_s = picture.exposure_s, .done = true};
   };
 }
 
@@ -55,17 +59,20 @@ void require_same_sensor(rig::Camera& camera, const calibration::Lens& lens) {
   const rig::CameraIdentity found = camera.identity();
   if (found.width_px != lens.width_px || found.height_px != lens.height_px)
     throw std::runtime_error("the calibration is for pictures of " + std::to_string(lens.width_px) + " x " +
-                             std::to_string(lens.height_px) + " pixels, this camera makes " + std::to_string(found.width_px) +
-                             " x " + std::to_string(found.height_px) + "; calibrate the rig with this camera");
+                             std::to_string(lens.height_px) + " pixels, this camera makes " +
+                             std::to_string(found.width_px) + " x " + std::to_string(found.height_px) +
+                             "; calibrate the rig with this camera");
 }
 
-RunOutcome run(SessionFolder& session, RigDevices& devices, const SessionFile& asked, const RigCalibration& calibration,
-               ProgressStyle progress_style) {
+RunOutcome run(SessionFolder& session, RigDevices& devices, const SessionFile& asked,
+               const RigCalibration& calibration, ProgressStyle progress_style) {
   ProgressDisplay display("capture", progress_style);
   RunOptions options;
   options.settings.exposure_s = 0.125;
   options.choose_exposure = exposure_chooser(asked.rig, asked.spool, calibration);
-  options.nominal_holder_pose = [&](rig::Mounting mounting) { return nominal_holder_pose(asked.rig, asked.spool.wrapping, mounting); };
+  options.nominal_holder_pose = [&](rig::Mounting mounting) {
+    return nominal_holder_pose(asked.rig, asked.spool.wrapping, mounting);
+  };
   options.progress = [&](const Progress& p) {
     display.show(static_cast<int>(p.done), static_cast<int>(p.total), p.step, devices.bench ? -1 : p.seconds_left);
   };
@@ -73,8 +80,9 @@ RunOutcome run(SessionFolder& session, RigDevices& devices, const SessionFile& a
   options.should_stop = interrupted;
   const RunDevices run_devices{*devices.camera, *devices.turntable, *devices.person, *devices.clock};
   const RunOutcome outcome = run_plan(asked.plan, run_devices, session, options);
-  display.finish(outcome == RunOutcome::complete ? "complete: " + session.path().string()
-                                                 : "interrupted; go on with capture --resume --out " + session.path().string());
+  display.finish(outcome == RunOutcome::complete
+                     ? "complete: " + session.path().string()
+                     : "interrupted; go on with capture --resume --out " + session.path().string());
   return outcome;
 }
 
@@ -92,20 +100,21 @@ RunOutcome capture_session(const CaptureRequest& request) {
   const Spool spool = parse_spool(spool_document, request.spool.string());
   const RigCalibration calibration = read_calibration(request.calibration);
   if (calibration.rig_name != rig.name)
-    throw std::runtime_error("the calibration was made on rig \"" + calibration.rig_name + "\", this is \"" + rig.name +
-                             "\"; calibrate this rig");
+    throw std::runtime_error("the calibration was made on rig \"" + calibration.rig_name + "\", this is \"" +
+                             rig.name + "\"; calibrate this rig");
   if (is_session(request.out))
-    throw std::runtime_error(request.out.string() + " is a session already; choose another folder, or go on with capture --resume");
-  const Plan plan = make_capture_plan({.reflection_angles_deg = rig.reflection_angles_deg,
-                                       .transmission_angles_deg = rig.transmission_angles_deg});
+    throw std::runtime_error(request.out.string() +
+                             " is a session already; choose another folder, or go on with capture --resume");
+  const Plan plan = make_capture_plan(
+      {.reflection_angles_deg = rig.reflection_angles_deg, .transmission_angles_deg = rig.transmission_angles_deg});
   RigDevices devices = open_rig(rig, spool, request.unattended);
   require_same_sensor(*devices.camera, calibration.lens.lens);
   FileSystem disk;
   const std::filesystem::path calibration_folder =
       std::filesystem::is_directory(request.calibration) ? request.calibration : request.calibration.parent_path();
-  SessionFolder session =
-      SessionFolder::create(request.out, make_session_document(devices.clock->utc(), rig_document, spool_document, plan),
-                            calibration_files(calibration_folder), *devices.clock, disk);
+  SessionFolder session = SessionFolder::create(
+      request.out, make_session_document(devices.clock->utc(), rig_document, spool_document, plan),
+      calibration_files(calibration_folder), *devices.clock, disk);
   return run(session, devices, read_session_file(request.out), calibration, request.progress_style);
 }
 

@@ -35,7 +35,9 @@ void prepare_folder(const std::filesystem::path& out, const nlohmann::json& rig)
     std::filesystem::remove_all(out / "session", code);
   }
   std::filesystem::create_directories(out, code);
-  if (code) throw std::runtime_error("cannot make " + out.string() + ": " + code.message() + "; choose a writable folder with --out");
+  if (code)
+    throw std::runtime_error("cannot make " + out.string() + ": " + code.message() +
+                             "; choose a writable folder with --out");
   write_json_file(mark, rig);
 }
 
@@ -53,7 +55,8 @@ DemoResult run_demo(const DemoRequest& request) {
                                              .out = session,
                                              .unattended = true,
                                              .progress_style = request.progress_style});
-  if (outcome == RunOutcome::interrupted) throw std::runtime_error("the demo was interrupted; the same command goes on from here");
+  if (outcome == RunOutcome::interrupted)
+    throw std::runtime_error("the demo was interrupted; the same command goes on from here");
   develop_session(session, request.progress_style);
   return {.session = session, .report = write_session_report(session)};
 }

@@ -9,9 +9,9 @@
 namespace station {
 
 struct ExposureAim {
-  double level = 0.6;         // of the range black..white that the brightest pixels should reach
-  double tolerance = 1.5;     // accepted ratio of found to wanted level, either way
-  double percentile = 99.8;   // "brightest": this percentile of the region
+  double level = 0.6;        // of the range black..white that the brightest pixels should reach
+  double tolerance = 1.5;    // accepted ratio of found to wanted level, either way
+  double percentile = 99.8;  // "brightest": this percentile of the region
 };
 
 // The level (0 = black, 1 = white) that `percentile` per cent of the region's raw pixels stay below. `region`: 255 inside, sensor size;
@@ -20,6 +20,7 @@ double bright_level(const calibration::SensorPicture& picture, const cv::Mat1b& 
 
 // The exposure to try next, or nothing when the picture is exposed well. A saturated picture asks for an eighth; a change
 // is at most a factor of 64, so that a test picture's noise cannot run away.
-std::optional<double> next_exposure_s(const calibration::SensorPicture& picture, const cv::Mat1b& region, const ExposureAim& aim);
+std::optional<double> next_exposure_s(const calibration::SensorPicture& picture, const cv::Mat1b& region,
+                                      const ExposureAim& aim);
 
 }  // namespace station

@@ -3,7 +3,7 @@
 
 namespace station {
 
-void watch_interrupts();   // from now on a first ctrl-C only sets the flag; a second one ends the program as usual
+void watch_interrupts();  // from now on a first ctrl-C only sets the flag; a second one ends the program as usual
 bool interrupted();
 
 }  // namespace station

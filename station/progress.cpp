@@ -17,13 +17,17 @@ std::string duration(double seconds) {
 std::string bar(int done, int total) {
   constexpr int kWidth = 24;
   const int filled = total > 0 ? kWidth * done / total : kWidth;
-  return "[" + std::string(static_cast<std::size_t>(filled), '#') + std::string(static_cast<std::size_t>(kWidth - filled), '.') + "]";
+  return "[" + std::string(static_cast<std::size_t>(filled), '#') +
+         std::string(static_cast<std::size_t>(kWidth - filled), '.') + "]";
 }
 
 }  // namespace
 
 ProgressDisplay::ProgressDisplay(std::string task, ProgressStyle style)
-    : task_(std::move(task)), style_(style), terminal_(::isatty(STDERR_FILENO) == 1), start_(std::chrono::steady_clock::now()) {}
+    : task_(std::move(task)),
+      style_(style),
+      terminal_(::isatty(STDERR_FILENO) == 1),
+      start_(std::chrono::steady_clock::now()) {}
 
 ProgressDisplay::~ProgressDisplay() {
   if (open_line_) std::fputc('\n', stderr);
@@ -42,7 +46,8 @@ void ProgressDisplay::show(int done, int total, const std::string& label, double
   const std::string left = seconds_left >= 0 ? ", " + duration(seconds_left) + " left" : "";
   const std::string count = std::to_string(done) + "/" + std::to_string(total);
   if (terminal_) {
-    std::fprintf(stderr, "\r\033[K%s %s %s %s%s", task_.c_str(), bar(done, total).c_str(), count.c_str(), label.c_str(), left.c_str());
+    std::fprintf(stderr, "\r\033[K%s %s %s %s%s", task_.c_str(), bar(done, total).c_str(), count.c_str(),
+                 label.c_str(), left.c_str());
     open_line_ = true;
   } else {
     std::fprintf(stderr, "%s %s %s%s\n", task_.c_str(), count.c_str(), label.c_str(), left.c_str());

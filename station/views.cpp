@@ -4,7 +4,8 @@
 
 namespace station {
 
-renderer::Camera camera_of(const calibration::Lens& lens, const Eigen::Isometry3d& frame_from_camera, bool undistorted) {
+renderer::Camera camera_of(const calibration::Lens& lens, const Eigen::Isometry3d& frame_from_camera,
+                           bool undistorted) {
   renderer::Camera camera{.width = lens.width_px,
                           .height = lens.height_px,
                           .fx = lens.fx_px,

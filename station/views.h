@@ -11,7 +11,8 @@
 namespace station {
 
 // The renderer's camera for a calibrated lens; `undistorted` for pictures whose distortion has been removed.
-renderer::Camera camera_of(const calibration::Lens& lens, const Eigen::Isometry3d& frame_from_camera, bool undistorted);
+renderer::Camera camera_of(const calibration::Lens& lens, const Eigen::Isometry3d& frame_from_camera,
+                           bool undistorted);
 
 // Tags in a raw picture (linear grey of the demosaiced picture, distortion left in).
 calibration::TagObservation tags_in(const calibration::SensorPicture& picture);

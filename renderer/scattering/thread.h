@@ -7,10 +7,9 @@
 //
 //   parameter  | unit              | count | differentiable
 //   sigma_a    | 1 / thread radius | 3     | yes   absorption, RGB
-//   alpha      | 0.02 .. 1         | 3     | yes   longitudinal roughness of each lobe (perceptual, mapped as for
-//   fibers) beta       | 0.02 .. 1         | 3     | yes   azimuthal roughness of each lobe (perceptual, mapped as
-//   for fibers) r          | -                 | 7     | yes   energies of the lobes, shared by all colours; each
-//   lambda must stay >= 0
+//   alpha      | 0.02 .. 1         | 3     | yes   longitudinal roughness of each lobe (perceptual, mapped as fibers')
+//   beta       | 0.02 .. 1         | 3     | yes   azimuthal roughness of each lobe (perceptual, mapped as fibers')
+//   r          | -                 | 7     | yes   energies of the lobes, all colours alike; each lambda must stay >= 0
 //
 // f_cos includes the cosine (lobes.h). theta_o, h and the attenuations belong to the known direction o, as for
 // fibers. Lobe centres Phi_p are a fiber's, with the refractive index fixed at kThreadEta. The transmittance T enters

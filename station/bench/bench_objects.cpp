@@ -9,11 +9,12 @@ constexpr float kPaperAlbedo = 0.85F, kInkAlbedo = 0.04F, kBlackPaintAlbedo = 0.
 constexpr double kPaperLift_mm = 0.02;  // a printed tag lies this far above what carries it
 
 // A flat rectangle centred at the frame's origin, in its xy plane, +y up; texture upright seen from +z.
-renderer::TriangleMesh rectangle(const Eigen::Isometry3d& frame, double width, double height, const cv::Mat3f& albedo) {
+renderer::TriangleMesh rectangle(const Eigen::Isometry3d& frame, double width, double height,
+                                 const cv::Mat3f& albedo) {
   renderer::TriangleMesh mesh;
   const double x = width / 2, y = height / 2;
-  for (const Eigen::Vector3d& corner : {Eigen::Vector3d(-x, y, 0), Eigen::Vector3d(x, y, 0), Eigen::Vector3d(x, -y, 0),
-                                        Eigen::Vector3d(-x, -y, 0)})
+  for (const Eigen::Vector3d& corner :
+       {Eigen::Vector3d(-x, y, 0), Eigen::Vector3d(x, y, 0), Eigen::Vector3d(x, -y, 0), Eigen::Vector3d(-x, -y, 0)})
     mesh.vertices.push_back((frame * corner).cast<float>());
   mesh.texture_coordinates = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   mesh.triangles = {{0, 2, 1}, {0, 3, 2}};
@@ -21,7 +22,9 @@ renderer::TriangleMesh rectangle(const Eigen::Isometry3d& frame, double width, d
   return mesh;
 }
 
-cv::Mat3f plain(float albedo) { return cv::Mat3f(1, 1, cv::Vec3f(albedo, albedo, albedo)); }
+cv::Mat3f plain(float albedo) {
+  return cv::Mat3f(1, 1, cv::Vec3f(albedo, albedo, albedo));
+}
 
 // The tag as printed on paper: 10 x 10 cells, the black square being 8 cells wide.
 renderer::TriangleMesh printed_tag(const calibration::Tag& tag) {
@@ -47,7 +50,8 @@ renderer::TriangleMesh disc(double radius, double height) {
   mesh.vertices.emplace_back(0.F, 0.F, static_cast<float>(height));
   for (int i = 0; i < kSides; ++i) {
     const double angle = 2 * M_PI * i / kSides;
-    mesh.vertices.push_back(Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), height).cast<float>());
+    mesh.vertices.push_back(
+        Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), height).cast<float>());
   }
   for (std::uint32_t i = 0; i < kSides; ++i) mesh.triangles.push_back({0, 1 + i, 1 + (i + 1) % kSides});
   mesh.albedo = plain(kBlackPaintAlbedo);
@@ -81,7 +85,8 @@ std::vector<renderer::TriangleMesh> spectralon_meshes(const SpectralonPanel& pan
   return meshes;
 }
 
-std::vector<renderer::TriangleMesh> holder_meshes(const inversion::WrappedSpool& spool, const calibration::TagLayout& tags) {
+std::vector<renderer::TriangleMesh> holder_meshes(const inversion::WrappedSpool& spool,
+                                                  const calibration::TagLayout& tags) {
   std::vector<renderer::TriangleMesh> meshes{inversion::holder_frame(spool, kBlackPaintAlbedo)};
   add_tags(meshes, tags);
   return meshes;

@@ -19,11 +19,13 @@ const Eigen::Vector3d kRoomLampPosition(900, 350, 1100);  // above and beside th
 
 renderer::SphereLight flashlight(const rig::TrueLamp& lamp, const Eigen::Isometry3d& object_from_world) {
   const double area = M_PI * lamp.radius_mm * lamp.radius_mm;
-  return {.center = object_from_world * lamp.position, .radius_mm = lamp.radius_mm, .radiance = lamp.intensity / area};
+  return {
+      .center = object_from_world * lamp.position, .radius_mm = lamp.radius_mm, .radiance = lamp.intensity / area};
 }
 
 // A ceiling lamp that gives a white diffuser at the origin, facing it, the asked radiance.
-renderer::SphereLight room_lamp(const Eigen::Vector3d& diffuser_radiance, const Eigen::Isometry3d& object_from_world) {
+renderer::SphereLight room_lamp(const Eigen::Vector3d& diffuser_radiance,
+                                const Eigen::Isometry3d& object_from_world) {
   const double ratio = kRoomLampPosition.norm() / kRoomLampRadius_mm;
   return {.center = object_from_world * kRoomLampPosition,
           .radius_mm = kRoomLampRadius_mm,
@@ -51,11 +53,17 @@ struct Painter {
   renderer::Scene scene(const rig::BenchState& state, const Eigen::Isometry3d& object_from_world) {
     renderer::Scene scene;
     switch (state.arrangement.object) {
-      case rig::BenchObject::nothing: break;
-      case rig::BenchObject::board: scene.meshes = board_meshes(rig.board); break;
-      case rig::BenchObject::spectralon: scene.meshes = spectralon_meshes(rig.spectralon); break;
+      case rig::BenchObject::nothing:
+        break;
+      case rig::BenchObject::board:
+        scene.meshes = board_meshes(rig.board);
+        break;
+      case rig::BenchObject::spectralon:
+        scene.meshes = spectralon_meshes(rig.spectralon);
+        break;
       case rig::BenchObject::holder:
-        if (!spool) throw std::runtime_error("the simulated bench was asked for a spool, but none was given; give --spool");
+        if (!spool)
+          throw std::runtime_error("the simulated bench was asked for a spool, but none was given; give --spool");
         if (fibers.segments.empty()) fibers = spool_fibers(*spool);
         scene.curves.push_back(fibers);
         scene.meshes = holder_meshes(spool->wrapping, rig.holder_tags);
@@ -95,8 +103,9 @@ std::vector<Eigen::Vector2d> fiber_centres(const Spool& spool, std::uint64_t see
   const SimulatedFibers& fibers = *spool.simulation;
   std::size_t most = 0;
   for (int attempt = 0; attempt < kPackingTries; ++attempt) {
-    const auto centres = renderer::pack_fibers(spool.wrapping.thread_diameter_mm / 2, fibers.fiber_radius_mm, fibers.min_gap_mm,
-                                               kPackingAttempts, fibers.fibers_per_thread, seed + static_cast<std::uint64_t>(attempt));
+    const auto centres =
+        renderer::pack_fibers(spool.wrapping.thread_diameter_mm / 2, fibers.fiber_radius_mm, fibers.min_gap_mm,
+                              kPackingAttempts, fibers.fibers_per_thread, seed + static_cast<std::uint64_t>(attempt));
     if (static_cast<int>(centres.size()) == fibers.fibers_per_thread) return centres;
     most = std::max(most, centres.size());
   }
@@ -109,7 +118,8 @@ std::vector<Eigen::Vector2d> fiber_centres(const Spool& spool, std::uint64_t see
 
 renderer::CurveSet spool_fibers(const Spool& spool) {
   if (!spool.simulation)
-    throw std::runtime_error("spool \"" + spool.name + "\" has no \"simulation\" part; the simulated bench cannot draw it");
+    throw std::runtime_error("spool \"" + spool.name +
+                             "\" has no \"simulation\" part; the simulated bench cannot draw it");
   const SimulatedFibers& fibers = *spool.simulation;
   renderer::CurveSet curves;
   curves.scattering = fibers.scattering;
@@ -117,14 +127,16 @@ renderer::CurveSet spool_fibers(const Spool& spool) {
   for (const inversion::Segment3& line : inversion::thread_lines(spool.wrapping)) {
     for (const Eigen::Vector2d& centre : fiber_centres(spool, ++seed * 1000003)) {
       const Eigen::Vector3d offset(centre.x(), 0, centre.y());  // threads run along y
-      inversion::add_straight_curve(curves, {line.from + offset, line.to + offset}, fibers.fiber_radius_mm, kPiecesPerFiber);
+      inversion::add_straight_curve(curves, {line.from + offset, line.to + offset}, fibers.fiber_radius_mm,
+                                    kPiecesPerFiber);
     }
   }
   return curves;
 }
 
 rig::DrawPicture make_bench_picture(const RigFile& rig, const std::optional<Spool>& spool) {
-  if (!rig.simulation) throw std::runtime_error("rig \"" + rig.name + "\" has no \"simulation\" part; there is no bench to draw");
+  if (!rig.simulation)
+    throw std::runtime_error("rig \"" + rig.name + "\" has no \"simulation\" part; there is no bench to draw");
   auto painter = std::make_shared<Painter>(Painter{.rig = rig, .spool = spool, .fibers = {}});
   return [painter](const rig::BenchState& state) { return painter->paint(state); };
 }

@@ -10,11 +10,14 @@ namespace {
 
 bool belongs_to(CalibrationRole role, const std::string& part) {
   switch (role) {
-    case CalibrationRole::lens: return part == "camera";
+    case CalibrationRole::lens:
+      return part == "camera";
     case CalibrationRole::turning:
-    case CalibrationRole::flat: return part == "platform";
+    case CalibrationRole::flat:
+      return part == "platform";
     case CalibrationRole::front_light:
-    case CalibrationRole::back_light: return part == "light";
+    case CalibrationRole::back_light:
+      return part == "light";
   }
   return false;
 }

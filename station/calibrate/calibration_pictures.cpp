@@ -20,7 +20,11 @@ constexpr int kMaxTestPictures = 6;
 void write_list(const std::filesystem::path& folder, const std::vector<CalibrationPicture>& pictures) {
   nlohmann::json list = nlohmann::json::array();
   for (const CalibrationPicture& p : pictures)
-    list.push_back({{"id", p.id}, {"role", to_text(p.role)}, {"file", p.file}, {"sha256", p.sha256}, {"reading_deg", p.reading_rad * kDegPerRad}});
+    list.push_back({{"id", p.id},
+                    {"role", to_text(p.role)},
+                    {"file", p.file},
+                    {"sha256", p.sha256},
+                    {"reading_deg", p.reading_rad * kDegPerRad}});
   write_json_file(folder / "pictures.json",
                   {{"format", "threadstation/calibration_pictures"}, {"version", 1}, {"pictures", list}});
 }
@@ -71,7 +75,9 @@ std::vector<CalibrationPicture> record_calibration(const std::vector<Calibration
                                                    const std::function<bool()>& should_stop) {
   std::error_code code;
   std::filesystem::create_directories(folder / "pictures", code);
-  if (code) throw std::runtime_error("cannot make " + (folder / "pictures").string() + ": " + code.message() + "; choose a writable folder");
+  if (code)
+    throw std::runtime_error("cannot make " + (folder / "pictures").string() + ": " + code.message() +
+                             "; choose a writable folder");
   std::vector<CalibrationPicture> pictures;
   if (std::filesystem::exists(folder / "pictures.json")) pictures = read_list(folder);
   std::erase_if(pictures, [&](const CalibrationPicture& p) { return !intact(folder, p); });
@@ -93,7 +99,8 @@ std::vector<CalibrationPicture> record_calibration(const std::vector<Calibration
     devices.person->arrange(step.arrangement);
     devices.turntable->move_to(step.platform_angle_rad);
     const rig::Picture picture = well_exposed_picture(*devices.camera, exposure_s);
-    CalibrationPicture entry{.id = step.id, .role = step.role, .file = "pictures/" + step.id + "." + picture.extension};
+    CalibrationPicture entry{
+        .id = step.id, .role = step.role, .file = "pictures/" + step.id + "." + picture.extension};
     entry.reading_rad = devices.turntable->angle_rad();
     entry.sha256 = store_file(disk, folder / entry.file, picture.bytes);
     pictures.push_back(entry);
@@ -103,7 +110,8 @@ std::vector<CalibrationPicture> record_calibration(const std::vector<Calibration
   return pictures;
 }
 
-void forget_calibration_pictures(const std::filesystem::path& folder, const std::function<bool(CalibrationRole)>& forget) {
+void forget_calibration_pictures(const std::filesystem::path& folder,
+                                 const std::function<bool(CalibrationRole)>& forget) {
   if (!std::filesystem::exists(folder / "pictures.json")) return;
   std::vector<CalibrationPicture> pictures = read_list(folder);
   std::erase_if(pictures, [&](const CalibrationPicture& p) { return forget(p.role); });

@@ -17,9 +17,9 @@ namespace station {
 struct CalibrationPicture {
   std::string id;
   CalibrationRole role = CalibrationRole::lens;
-  std::string file;           // relative to the folder
+  std::string file;  // relative to the folder
   std::string sha256;
-  double reading_rad = 0.0;   // of the turntable
+  double reading_rad = 0.0;  // of the turntable
 };
 
 using StepProgress = std::function<void(int done, int total, const std::string& label)>;
@@ -31,7 +31,8 @@ std::vector<CalibrationPicture> record_calibration(const std::vector<Calibration
                                                    const std::function<bool()>& should_stop);
 
 // Takes pictures of these roles off the list, so that record_calibration takes them again. No list: nothing to do.
-void forget_calibration_pictures(const std::filesystem::path& folder, const std::function<bool(CalibrationRole)>& forget);
+void forget_calibration_pictures(const std::filesystem::path& folder,
+                                 const std::function<bool(CalibrationRole)>& forget);
 
 // Errors: std::runtime_error when the list or a picture is missing or a picture's hash differs.
 std::vector<CalibrationPicture> read_calibration_pictures(const std::filesystem::path& folder);

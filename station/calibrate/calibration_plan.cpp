@@ -52,7 +52,8 @@ void add_lens_steps(const RigFile& rig, std::vector<CalibrationStep>& plan) {
   for (const HandPose& hand : kHandPoses) {
     Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
     camera_from_board.linear() = facing * turn(hand.tilt_x, Eigen::Vector3d::UnitX()) *
-                                 turn(hand.tilt_y, Eigen::Vector3d::UnitY()) * turn(hand.spin, Eigen::Vector3d::UnitZ());
+                                 turn(hand.tilt_y, Eigen::Vector3d::UnitY()) *
+                                 turn(hand.spin, Eigen::Vector3d::UnitZ());
     camera_from_board.translation() = Eigen::Vector3d(hand.across, -hand.up, hand.distance * distance);
     plan.push_back(step(CalibrationRole::lens, ++number,
                         {.object = rig::BenchObject::board, .pose = camera * camera_from_board, .room_light = true}));
@@ -68,8 +69,9 @@ void add_platform_steps(const RigFile& rig, std::vector<CalibrationStep>& plan) 
   standing.translation().z() = rig.platform_height_mm + half_height_mm;
   int number = 0;
   for (int angle_deg = -60; angle_deg <= 60; angle_deg += 15) {
-    CalibrationStep turning = step(CalibrationRole::turning, ++number,
-                                   {.object = rig::BenchObject::board, .on_platform = true, .pose = standing, .room_light = true});
+    CalibrationStep turning =
+        step(CalibrationRole::turning, ++number,
+             {.object = rig::BenchObject::board, .on_platform = true, .pose = standing, .room_light = true});
     turning.platform_angle_rad = angle_deg * kRadPerDeg;
     plan.push_back(turning);
   }
@@ -108,7 +110,9 @@ void add_panel_steps(CalibrationRole role, rig::Lamp lamp, const std::vector<Pan
 
 }  // namespace
 
-std::string to_text(CalibrationRole role) { return kRoleWords.at(static_cast<std::size_t>(role)); }
+std::string to_text(CalibrationRole role) {
+  return kRoleWords.at(static_cast<std::size_t>(role));
+}
 
 CalibrationRole calibration_role(const std::string& text) {
   for (std::size_t i = 0; i < kRoleWords.size(); ++i)
@@ -124,14 +128,29 @@ std::vector<CalibrationStep> make_calibration_plan(const RigFile& rig) {
   const double z = rig.platform_height_mm + rig.spectralon.plate_mm / 2 + 2;
   // Tilts about both axes, two depths and the picture's corners: they separate position, intensity and vignetting.
   add_panel_steps(CalibrationRole::front_light, rig::Lamp::front,
-                  {{15, 35, {0, 0, z - 4}},     {-25, 25, {0, 10, z}},    {50, 25, {0, -10, z}},      {15, 65, {0, 0, z - 10}},
-                   {15, 8, {20, 0, z + 4}},     {-15, 55, {50, 15, z}},   {45, 55, {-30, -15, z}},    {15, 35, {60, -25, z + 10}},
-                   {15, 35, {-40, 25, z}},      {0, 40, {70, -38, z}},    {0, 40, {70, 38, z}},       {30, 40, {-10, 36, z + 4}}},
+                  {{15, 35, {0, 0, z - 4}},
+                   {-25, 25, {0, 10, z}},
+                   {50, 25, {0, -10, z}},
+                   {15, 65, {0, 0, z - 10}},
+                   {15, 8, {20, 0, z + 4}},
+                   {-15, 55, {50, 15, z}},
+                   {45, 55, {-30, -15, z}},
+                   {15, 35, {60, -25, z + 10}},
+                   {15, 35, {-40, 25, z}},
+                   {0, 40, {70, -38, z}},
+                   {0, 40, {70, 38, z}},
+                   {30, 40, {-10, 36, z + 4}}},
                   plan);
   // Behind, one face must be seen by the camera and lit from the back: the panel lies nearly flat.
   add_panel_steps(CalibrationRole::back_light, rig::Lamp::back,
-                  {{0, 80, {0, 0, z - 10}},     {90, 72, {0, 0, z - 10}},  {-90, 74, {0, 0, z - 15}},  {180, 88, {15, 0, z - 5}},
-                   {0, 84, {-40, 20, z - 30}},  {45, 76, {35, -20, z}},    {-45, 76, {0, 25, z - 5}},  {0, 82, {20, -25, z - 25}}},
+                  {{0, 80, {0, 0, z - 10}},
+                   {90, 72, {0, 0, z - 10}},
+                   {-90, 74, {0, 0, z - 15}},
+                   {180, 88, {15, 0, z - 5}},
+                   {0, 84, {-40, 20, z - 30}},
+                   {45, 76, {35, -20, z}},
+                   {-45, 76, {0, 25, z - 5}},
+                   {0, 82, {20, -25, z - 25}}},
                   plan);
   return plan;
 }

@@ -10,9 +10,9 @@
 namespace station {
 namespace {
 
-constexpr int kCells = 5;                // across the white square, each way
-constexpr double kUsedFraction = 0.84;   // of the square's edge: away from its border, which blurs into the plate
-constexpr int kMinPixels = 30;           // per cell, for a mean and its error
+constexpr int kCells = 5;               // across the white square, each way
+constexpr double kUsedFraction = 0.84;  // of the square's edge: away from its border, which blurs into the plate
+constexpr int kMinPixels = 30;          // per cell, for a mean and its error
 // Tag pose, flat panel and demosaicing are not known better than this; keeps bright cells from dominating.
 constexpr double kRelativeFloor = 2e-3;
 
@@ -29,7 +29,8 @@ std::optional<CellMean> mean_inside(const calibration::Developed& picture, const
   int count = 0;
   for (int row = box.y; row < box.y + box.height; ++row)
     for (int column = box.x; column < box.x + box.width; ++column) {
-      if (cv::pointPolygonTest(outline, cv::Point2f(static_cast<float>(column), static_cast<float>(row)), false) < 0) continue;
+      if (cv::pointPolygonTest(outline, cv::Point2f(static_cast<float>(column), static_cast<float>(row)), false) < 0)
+        continue;
       if (picture.saturated(row, column)) return std::nullopt;
       const cv::Vec3f& p = picture.radiance(row, column);
       const Eigen::Vector3d value(p[0], p[1], p[2]);
@@ -45,10 +46,11 @@ std::optional<CellMean> mean_inside(const calibration::Developed& picture, const
 
 }  // namespace
 
-std::vector<calibration::LightPatch> panel_patches(const calibration::SensorPicture& picture, const calibration::Lens& lens,
+std::vector<calibration::LightPatch> panel_patches(const calibration::SensorPicture& picture,
+                                                   const calibration::Lens& lens,
                                                    const Eigen::Isometry3d& world_from_camera,
-                                                   const Eigen::Isometry3d& camera_from_panel, const SpectralonPanel& panel,
-                                                   int light) {
+                                                   const Eigen::Isometry3d& camera_from_panel,
+                                                   const SpectralonPanel& panel, int light) {
   const calibration::Developed developed = calibration::develop(picture, {});
   const Eigen::Isometry3d panel_from_camera = camera_from_panel.inverse();
   const renderer::Camera camera = camera_of(lens, panel_from_camera, false);

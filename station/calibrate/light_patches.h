@@ -11,9 +11,10 @@
 namespace station {
 
 // `light`: 0 front, 1 back. Cells that leave the picture or are saturated are left out.
-std::vector<calibration::LightPatch> panel_patches(const calibration::SensorPicture& picture, const calibration::Lens& lens,
+std::vector<calibration::LightPatch> panel_patches(const calibration::SensorPicture& picture,
+                                                   const calibration::Lens& lens,
                                                    const Eigen::Isometry3d& world_from_camera,
-                                                   const Eigen::Isometry3d& camera_from_panel, const SpectralonPanel& panel,
-                                                   int light);
+                                                   const Eigen::Isometry3d& camera_from_panel,
+                                                   const SpectralonPanel& panel, int light);
 
 }  // namespace station

@@ -31,15 +31,16 @@ std::vector<Loaded> load(const std::filesystem::path& folder, const std::vector<
   return loaded;
 }
 
-calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& lens, const Eigen::Isometry3d& world_from_camera,
-                                  const std::vector<Loaded>& loaded) {
+calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& lens,
+                                  const Eigen::Isometry3d& world_from_camera, const std::vector<Loaded>& loaded) {
   std::vector<calibration::LightPatch> patches;
   for (const Loaded& entry : loaded) {
     const bool front = entry.picture.role == CalibrationRole::front_light;
     if (!front && entry.picture.role != CalibrationRole::back_light) continue;
     const auto pose = calibration::fit_pose(lens, rig.spectralon.tags, entry.tags);
     if (!pose) continue;  // a panel without a seen tag says nothing; the fit refuses when too few are left
-    const auto cells = panel_patches(entry.raw, lens, world_from_camera, pose->camera_from_object, rig.spectralon, front ? 0 : 1);
+    const auto cells =
+        panel_patches(entry.raw, lens, world_from_camera, pose->camera_from_object, rig.spectralon, front ? 0 : 1);
     patches.insert(patches.end(), cells.begin(), cells.end());
   }
   return calibration::fit_light(patches, {rig.front_lamp_mm, rig.back_lamp_mm}, rig.spectralon.albedo,
@@ -51,7 +52,8 @@ calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& l
 RigCalibration solve_calibration(const RigFile& rig, const std::filesystem::path& folder,
                                  const std::vector<CalibrationPicture>& pictures, const StepProgress& progress) {
   const std::vector<Loaded> loaded = load(folder, pictures, progress);
-  if (loaded.empty()) throw std::runtime_error("no calibration pictures in " + folder.string() + "; run calibrate with the rig first");
+  if (loaded.empty())
+    throw std::runtime_error("no calibration pictures in " + folder.string() + "; run calibrate with the rig first");
   std::vector<calibration::TagObservation> lens_views, flat_views;
   std::vector<calibration::PlatformView> turning;
   RigCalibration result;
@@ -71,8 +73,9 @@ RigCalibration solve_calibration(const RigFile& rig, const std::filesystem::path
                                               rig.platform_height_mm + rig.board_thickness_mm);
   result.light = solve_light(rig, result.lens.lens, result.platform.world_from_camera, loaded);
   if (!result.lens.converged || !result.platform.converged || !result.light.converged)
-    throw std::runtime_error(std::string("the calibration did not converge (") + (result.lens.converged ? "" : "lens ") +
-                             (result.platform.converged ? "" : "platform ") + (result.light.converged ? "" : "light ") +
+    throw std::runtime_error(std::string("the calibration did not converge (") +
+                             (result.lens.converged ? "" : "lens ") + (result.platform.converged ? "" : "platform ") +
+                             (result.light.converged ? "" : "light ") +
                              "); take its pictures again with calibrate --only");
   progress(static_cast<int>(pictures.size()), static_cast<int>(pictures.size()), "solved");
   return result;
@@ -81,15 +84,18 @@ RigCalibration solve_calibration(const RigFile& rig, const std::filesystem::path
 std::string describe(const RigCalibration& calibration) {
   const calibration::Lens& lens = calibration.lens.lens;
   const Eigen::Vector3d camera = calibration.platform.world_from_camera.translation();
-  const auto sigma_mm = [&](std::size_t i) { return std::sqrt(calibration.light.position_covariances.at(i).trace()); };
+  const auto sigma_mm = [&](std::size_t i) {
+    return std::sqrt(calibration.light.position_covariances.at(i).trace());
+  };
   char text[900];
   std::snprintf(text, sizeof text,
                 "lens      f %.1f / %.1f px, centre %.1f / %.1f px, %d corners, rms %.3f px\n"
                 "platform  camera at %.1f, %.1f, %.1f mm; angle scale %.5f; angles rms %.4f deg; rms %.3f px\n"
                 "light     front %.1f, %.1f, %.1f mm (+-%.1f), back %.1f, %.1f, %.1f mm (+-%.1f), rms %.2f %%\n",
-                lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, calibration.lens.corners_used, calibration.lens.rms_px, camera.x(),
-                camera.y(), camera.z(), calibration.platform.scale, calibration.platform.angle_rms_rad * kDegPerRad,
-                calibration.platform.rms_px, calibration.light.positions[0].x(), calibration.light.positions[0].y(),
+                lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, calibration.lens.corners_used,
+                calibration.lens.rms_px, camera.x(), camera.y(), camera.z(), calibration.platform.scale,
+                calibration.platform.angle_rms_rad * kDegPerRad, calibration.platform.rms_px,
+                calibration.light.positions[0].x(), calibration.light.positions[0].y(),
                 calibration.light.positions[0].z(), sigma_mm(0), calibration.light.positions[1].x(),
                 calibration.light.positions[1].y(), calibration.light.positions[1].z(), sigma_mm(1),
                 100 * calibration.light.relative_rms);

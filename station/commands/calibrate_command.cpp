@@ -18,7 +18,8 @@ void run(Arguments& arguments) {
   if (arguments.output.json)
     std::cout << to_json(calibration).dump() << "\n";
   else if (!arguments.output.quiet)
-    std::cout << describe(calibration) << "calibration: " << (arguments.request.out / "calibration.json").string() << "\n";
+    std::cout << describe(calibration) << "calibration: " << (arguments.request.out / "calibration.json").string()
+              << "\n";
 }
 
 }  // namespace
@@ -27,7 +28,10 @@ void add_calibrate_command(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("calibrate", "calibrate lens, platform and lamp with the rig");
   command->add_option("--rig", arguments->request.rig, "rig file")->required();
-  command->add_option("--out", arguments->request.out, "folder for pictures and calibration.json; an interrupted one goes on")->required();
+  command
+      ->add_option("--out", arguments->request.out,
+                   "folder for pictures and calibration.json; an interrupted one goes on")
+      ->required();
   command->add_option("--only", arguments->request.only, "take the pictures of this part again")
       ->check(CLI::IsMember({"camera", "platform", "light"}));
   command->add_flag("--solve", arguments->request.solve_only, "take no pictures: solve again from those in --out");

@@ -16,10 +16,12 @@ struct Arguments {
 void run(Arguments& arguments) {
   CaptureRequest& request = arguments.request;
   request.progress_style = arguments.output.progress_style();
-  const RunOutcome outcome = arguments.resume ? resume_session(request.out, request.unattended, request.progress_style)
-                                              : capture_session(request);
+  const RunOutcome outcome = arguments.resume
+                                 ? resume_session(request.out, request.unattended, request.progress_style)
+                                 : capture_session(request);
   if (outcome == RunOutcome::interrupted)
-    throw std::runtime_error("capture was interrupted; go on with: threadstation capture --resume --out " + request.out.string());
+    throw std::runtime_error("capture was interrupted; go on with: threadstation capture --resume --out " +
+                             request.out.string());
 }
 
 }  // namespace
@@ -33,7 +35,8 @@ void add_capture_command(CLI::App& app) {
   CLI::Option* spool = command->add_option("--spool", request.spool, "spool file");
   command->add_option("--out", request.out, "session folder")->required();
   command->add_flag("--unattended", request.unattended, "ask nobody; refused when the rig needs a person");
-  CLI::Option* resume = command->add_flag("--resume", arguments->resume, "go on with the session in --out; needs nothing else");
+  CLI::Option* resume =
+      command->add_flag("--resume", arguments->resume, "go on with the session in --out; needs nothing else");
   arguments->output.add_to(*command);
   command->callback([=] {
     if (arguments->resume && (rig->count() || calibration->count() || spool->count()))

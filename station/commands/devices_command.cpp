@@ -10,13 +10,19 @@ void print(const std::vector<rig::FoundDevice>& devices, bool json) {
   if (json) {
     nlohmann::json list = nlohmann::json::array();
     for (const rig::FoundDevice& d : devices)
-      list.push_back({{"kind", d.kind}, {"name", d.name}, {"port", d.port}, {"usb_id", d.usb_id}, {"serial", d.serial}, {"believed_to_be", d.believed_to_be}});
+      list.push_back({{"kind", d.kind},
+                      {"name", d.name},
+                      {"port", d.port},
+                      {"usb_id", d.usb_id},
+                      {"serial", d.serial},
+                      {"believed_to_be", d.believed_to_be}});
     std::cout << list.dump() << "\n";
     return;
   }
   if (devices.empty()) std::cout << "no camera and no serial port found; plug one in and switch it on\n";
   for (const rig::FoundDevice& d : devices)
-    std::cout << d.kind << "  " << d.port << "  " << d.name << (d.serial.empty() ? "" : "  serial " + d.serial) << "  (" << d.believed_to_be << ")\n";
+    std::cout << d.kind << "  " << d.port << "  " << d.name << (d.serial.empty() ? "" : "  serial " + d.serial)
+              << "  (" << d.believed_to_be << ")\n";
 }
 
 }  // namespace

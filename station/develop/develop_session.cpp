@@ -11,8 +11,8 @@
 #include "station/capture/picture_record.h"
 #include "station/capture/sha256.h"
 #include "station/documents/calibration_file.h"
-#include "station/documents/session_file.h"
 #include "station/documents/reader.h"
+#include "station/documents/session_file.h"
 #include "station/report/html.h"
 #include "station/views.h"
 
@@ -41,12 +41,13 @@ const PictureRecord& picture_of(const Pictures& pictures, const std::string& ste
 calibration::SensorPicture read_picture(const std::filesystem::path& session, const PictureRecord& record) {
   const std::filesystem::path file = session / record.file;
   if (!std::filesystem::exists(file) || sha256_of_file(file) != record.sha256)
-    throw std::runtime_error(file.string() + " is missing or differs from the journal; take it again with capture --resume");
+    throw std::runtime_error(file.string() +
+                             " is missing or differs from the journal; take it again with capture --resume");
   return calibration::read_sensor_file(file);
 }
 
-MountedHolder measure_holder(const std::filesystem::path& session, const PictureRecord& pose_picture, const RigCalibration& calibration,
-                             const RigFile& rig) {
+MountedHolder measure_holder(const std::filesystem::path& session, const PictureRecord& pose_picture,
+                             const RigCalibration& calibration, const RigFile& rig) {
   const calibration::TagObservation tags = tags_in(read_picture(session, pose_picture));
   const auto pose = calibration::fit_pose(calibration.lens.lens, rig.holder_tags, tags);
   if (!pose || pose->tags_used < kFewestTags)
@@ -86,21 +87,22 @@ void develop_view(const std::filesystem::path& session, const Pictures& pictures
   inversion::View& view = developed.view;
   const calibration::SensorPicture raw = read_picture(session, picture_of(pictures, view.id));
   const calibration::SensorPicture dark = read_picture(session, picture_of(pictures, "dark-" + view.id));
-  const calibration::Developed picture =
-      calibration::develop(raw, {.dark_dn = calibration::master_dark({dark}),
-                                 .vignetting = calibration.light.vignetting,
-                                 .lens = calibration.lens.lens});
+  const calibration::Developed picture = calibration::develop(raw, {.dark_dn = calibration::master_dark({dark}),
+                                                                    .vignetting = calibration.light.vignetting,
+                                                                    .lens = calibration.lens.lens});
   developed.exposure_s = raw.exposure_s;
   view.image = picture.radiance;
   view.mask = inversion::thread_mask(spool, view.camera, view.light, kMaskSamples);
   developed.masked_pixels = cv::countNonZero(view.mask);
   if (developed.masked_pixels == 0)
-    throw std::runtime_error("view " + view.id + ": no thread is where the calibration expects them; calibrate the rig again");
+    throw std::runtime_error("view " + view.id +
+                             ": no thread is where the calibration expects them; calibrate the rig again");
   developed.saturated_fraction =
       static_cast<double>(cv::countNonZero(picture.saturated & view.mask)) / developed.masked_pixels;
   renderer::write_exr(session / developed.image_file, view.image,
-                      {{"threadstation/content", "linear camera RGB, radiance unit (full scale per second); dark subtracted, "
-                                                 "exposure divided, flat-fielded, distortion removed"},
+                      {{"threadstation/content",
+                        "linear camera RGB, radiance unit (full scale per second); dark subtracted, "
+                        "exposure divided, flat-fielded, distortion removed"},
                        {"threadstation/view", view.id}});
   renderer::write_png(session / developed.mask_file, view.mask);
 }
@@ -123,8 +125,8 @@ DevelopedViews develop_session(const std::filesystem::path& session, ProgressSty
   for (const PlanStep& step : asked.plan.steps) {
     if (step.kind != StepKind::view) continue;
     progress.show(static_cast<int>(developed.views.size()), total, step.id);
-    developed.views.push_back(
-        place_view(step, picture_of(pictures, step.id), mounted.at(step.mounting), calibration, asked.rig.lamp_radius_mm));
+    developed.views.push_back(place_view(step, picture_of(pictures, step.id), mounted.at(step.mounting), calibration,
+                                         asked.rig.lamp_radius_mm));
     develop_view(session, pictures, calibration, asked.spool.wrapping, developed.views.back());
   }
   write_json_file(session / "linear" / "views.json", to_json(developed));
@@ -139,8 +141,9 @@ std::string describe(const DevelopedViews& developed) {
   std::string text;
   for (const DevelopedView& view : developed.views)
     text += view.view.id + ": " + number_text(view.platform_angle_rad * kDegPerRad, 2) + " deg, exposure " +
-            number_text(view.exposure_s, 4) + " s, " + std::to_string(view.masked_pixels) + " masked pixels, saturated " +
-            number_text(100 * view.saturated_fraction, 2) + " %, holder tags " + number_text(view.pose_rms_px, 3) + " px\n";
+            number_text(view.exposure_s, 4) + " s, " + std::to_string(view.masked_pixels) +
+            " masked pixels, saturated " + number_text(100 * view.saturated_fraction, 2) + " %, holder tags " +
+            number_text(view.pose_rms_px, 3) + " px\n";
   return text;
 }
 

@@ -23,7 +23,8 @@ json matrix_json(const Eigen::MatrixXd& matrix) {
 Eigen::MatrixXd read_matrix(ObjectReader& reader, const std::string& key, Eigen::Index size) {
   const json& rows = reader.raw(key);
   Eigen::MatrixXd matrix(size, size);
-  const std::string expected = "expected a " + std::to_string(size) + " x " + std::to_string(size) + " matrix of numbers";
+  const std::string expected =
+      "expected a " + std::to_string(size) + " x " + std::to_string(size) + " matrix of numbers";
   if (!rows.is_array() || rows.size() != static_cast<std::size_t>(size)) reader.refuse(key, expected);
   for (Eigen::Index r = 0; r < size; ++r) {
     const json& row = rows[static_cast<std::size_t>(r)];

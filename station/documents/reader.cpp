@@ -84,28 +84,33 @@ void write_json_file(const std::filesystem::path& file, const json& document) {
 
 ObjectReader::ObjectReader(const json& document, const std::string& source, const std::string& kind, int version)
     : object_(&document), source_(source) {
-  if (!document.is_object()) throw std::runtime_error(source + ": found " + shown(document) + ", expected a JSON object");
+  if (!document.is_object())
+    throw std::runtime_error(source + ": found " + shown(document) + ", expected a JSON object");
   const std::string wanted = "threadstation/" + kind;
   const std::string format = has("format") ? text("format") : std::string("no \"format\" key");
   if (format != wanted)
-    throw std::runtime_error(source + ": expected a \"" + wanted + "\" document, found " + format +
-                             "; give a " + kind + " file here");
+    throw std::runtime_error(source + ": expected a \"" + wanted + "\" document, found " + format + "; give a " +
+                             kind + " file here");
   const int found = integer("version", 0, 1 << 30);
   if (found != version)
-    throw std::runtime_error(source + ": " + kind + " version " + std::to_string(found) + " found, this program reads version " +
-                             std::to_string(version));
+    throw std::runtime_error(source + ": " + kind + " version " + std::to_string(found) +
+                             " found, this program reads version " + std::to_string(version));
 }
 
 ObjectReader::ObjectReader(const json& object, std::string source, std::string path)
     : object_(&object), source_(std::move(source)), path_(std::move(path)) {}
 
-std::string ObjectReader::full_name(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+std::string ObjectReader::full_name(const std::string& key) const {
+  return path_.empty() ? key : path_ + "." + key;
+}
 
 void ObjectReader::refuse(const std::string& key, const std::string& found_and_expected) const {
   throw std::runtime_error(source_ + ": key \"" + full_name(key) + "\": " + found_and_expected);
 }
 
-bool ObjectReader::has(const std::string& key) const { return object_->contains(key); }
+bool ObjectReader::has(const std::string& key) const {
+  return object_->contains(key);
+}
 
 const json& ObjectReader::value(const std::string& key) {
   asked_.push_back(key);
@@ -211,7 +216,9 @@ Eigen::Isometry3d ObjectReader::transform(const std::string& key) {
   return Eigen::Isometry3d(matrix);
 }
 
-const json& ObjectReader::raw(const std::string& key) { return value(key); }
+const json& ObjectReader::raw(const std::string& key) {
+  return value(key);
+}
 
 void ObjectReader::finish() const {
   for (const auto& [key, unused] : object_->items()) {
@@ -220,7 +227,9 @@ void ObjectReader::finish() const {
   }
 }
 
-json to_json(const Eigen::Vector3d& v) { return json::array({v.x(), v.y(), v.z()}); }
+json to_json(const Eigen::Vector3d& v) {
+  return json::array({v.x(), v.y(), v.z()});
+}
 
 json to_json(const Eigen::Isometry3d& t) {
   json rows = json::array();

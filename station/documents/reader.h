@@ -36,10 +36,10 @@ class ObjectReader {
   bool flag(const std::string& key);
   int integer(const std::string& key, int low, int high);
   double number(const std::string& key, double low, double high);
-  std::vector<double> numbers(const std::string& key);                   // any length, finite
+  std::vector<double> numbers(const std::string& key);  // any length, finite
   std::vector<double> numbers(const std::string& key, std::size_t count);
   Eigen::Vector3d vector3(const std::string& key);
-  Eigen::Isometry3d transform(const std::string& key);                   // 4 x 4 row-major, rotation checked
+  Eigen::Isometry3d transform(const std::string& key);  // 4 x 4 row-major, rotation checked
   const nlohmann::json& raw(const std::string& key);
 
   void finish() const;

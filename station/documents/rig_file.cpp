@@ -43,7 +43,8 @@ calibration::TagLayout corner_tags(ObjectReader tags, const std::string& name, c
     tag.object_from_tag.linear().col(0) = right;
     tag.object_from_tag.linear().col(1) = up;
     tag.object_from_tag.linear().col(2) = right.cross(up);
-    tag.object_from_tag.translation() = (i % 2 ? offset_mm : -offset_mm) * right + (i < 2 ? offset_mm : -offset_mm) * up;
+    tag.object_from_tag.translation() =
+        (i % 2 ? offset_mm : -offset_mm) * right + (i < 2 ? offset_mm : -offset_mm) * up;
     layout.tags.push_back(tag);
   }
   return layout;
@@ -132,12 +133,14 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
   rig.platform_height_mm = platform.number("height_mm", 0, 1000);
   rig.platform_radius_mm = platform.number("radius_mm", 1, 2000);
   platform.finish();
-  rig.holder_tags = corner_tags(reader.object("holder_tags"), "holder", Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
+  rig.holder_tags =
+      corner_tags(reader.object("holder_tags"), "holder", Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
   ObjectReader panel = reader.object("spectralon");
   rig.spectralon.albedo = panel.number("albedo", 0.5, 1);
   rig.spectralon.white_mm = panel.number("white_mm", 1, 1000);
   rig.spectralon.plate_mm = panel.number("plate_mm", rig.spectralon.white_mm, 2000);
-  rig.spectralon.tags = corner_tags(panel.object("tags"), "spectralon", Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
+  rig.spectralon.tags =
+      corner_tags(panel.object("tags"), "spectralon", Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
   panel.finish();
   ObjectReader lamps = reader.object("lamp_by_tape");
   rig.front_lamp_mm = lamps.vector3("front_position_mm");
@@ -152,6 +155,8 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
   return rig;
 }
 
-RigFile read_rig(const std::filesystem::path& file) { return parse_rig(read_json_file(file), file.string()); }
+RigFile read_rig(const std::filesystem::path& file) {
+  return parse_rig(read_json_file(file), file.string());
+}
 
 }  // namespace station

@@ -14,9 +14,9 @@
 namespace station {
 
 struct SpectralonPanel {
-  double albedo = 0.99;       // of the white square
-  double white_mm = 50;       // its edge
-  double plate_mm = 90;       // edge of the black plate that carries the tags
+  double albedo = 0.99;  // of the white square
+  double white_mm = 50;  // its edge
+  double plate_mm = 90;  // edge of the black plate that carries the tags
   calibration::TagLayout tags;
 };
 
@@ -28,9 +28,9 @@ struct SimulatedRig {
 
 struct RigFile {
   std::string name;
-  std::string camera_driver, turntable_driver, operator_driver;  // "simulated"; operator also "console"
+  std::string camera_driver, turntable_driver, operator_driver;              // "simulated"; operator also "console"
   std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major; for display only
-  double focal_length_guess_px = 0;  // from the lens's engraving
+  double focal_length_guess_px = 0;                                          // from the lens's engraving
   Eigen::Isometry3d world_from_camera_by_tape = Eigen::Isometry3d::Identity();  // OpenCV axes; roughly
   calibration::TagLayout board;
   double board_thickness_mm = 0;
@@ -38,7 +38,7 @@ struct RigFile {
   calibration::TagLayout holder_tags;
   SpectralonPanel spectralon;
   Eigen::Vector3d front_lamp_mm, back_lamp_mm;  // by tape, world frame
-  double lamp_radius_mm = 0;  // of its bright face
+  double lamp_radius_mm = 0;                    // of its bright face
   std::vector<double> reflection_angles_deg, transmission_angles_deg;
   double target_level = 0.6;  // of full scale that the brightest thread pixels should reach
   std::optional<SimulatedRig> simulation;

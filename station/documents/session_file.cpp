@@ -7,14 +7,16 @@ namespace station {
 
 nlohmann::json make_session_document(const std::string& utc, const nlohmann::json& rig, const nlohmann::json& spool,
                                      const Plan& plan) {
-  return {{"format", "threadstation/session"}, {"version", 1},     {"utc", utc}, {"software", software_version()},
-          {"rig", rig},                        {"spool", spool},   {"plan", plan_to_json(plan)}};
+  return {{"format", "threadstation/session"}, {"version", 1}, {"utc", utc},
+          {"software", software_version()},    {"rig", rig},   {"spool", spool},
+          {"plan", plan_to_json(plan)}};
 }
 
 SessionFile read_session_file(const std::filesystem::path& session) {
   const std::filesystem::path file = session / "session.json";
   if (!std::filesystem::exists(file))
-    throw std::runtime_error(session.string() + " is not a session folder (no session.json); give the folder that capture made");
+    throw std::runtime_error(session.string() +
+                             " is not a session folder (no session.json); give the folder that capture made");
   const nlohmann::json document = read_json_file(file);
   ObjectReader reader(document, file.string(), "session", 1);
   SessionFile result;
@@ -27,6 +29,8 @@ SessionFile read_session_file(const std::filesystem::path& session) {
   return result;
 }
 
-std::string software_version() { return std::string("threadstation ") + THREADSTATION_VERSION; }
+std::string software_version() {
+  return std::string("threadstation ") + THREADSTATION_VERSION;
+}
 
 }  // namespace station

@@ -18,7 +18,8 @@ inversion::WrappedSpool parse_wrapping(ObjectReader& spool) {
   wrapping.thread_diameter_mm = spool.number("thread_diameter_mm", 0.005, 20);
   wrapping.front_and_back = spool.choice("sheets", {"front", "front_and_back"}) == "front_and_back";
   if (wrapping.turns * wrapping.thread_diameter_mm > wrapping.frame_height_mm)
-    spool.refuse("turns", std::to_string(wrapping.turns) + " turns of this diameter are wider than the frame; correct one of them");
+    spool.refuse("turns", std::to_string(wrapping.turns) +
+                              " turns of this diameter are wider than the frame; correct one of them");
   return wrapping;
 }
 
@@ -50,6 +51,8 @@ Spool parse_spool(const nlohmann::json& document, const std::string& source) {
   return spool;
 }
 
-Spool read_spool(const std::filesystem::path& file) { return parse_spool(read_json_file(file), file.string()); }
+Spool read_spool(const std::filesystem::path& file) {
+  return parse_spool(read_json_file(file), file.string());
+}
 
 }  // namespace station

@@ -41,8 +41,9 @@ DevelopedView parse_view(ObjectReader reader) {
   inversion::View& view = developed.view;
   view.id = reader.text("id");
   view.transmission = reader.choice("light_side", {"front", "back"}) == "back";
-  developed.mounting = reader.choice("mounting", {"horizontal", "vertical"}) == "horizontal" ? rig::Mounting::horizontal
-                                                                                              : rig::Mounting::vertical;
+  developed.mounting = reader.choice("mounting", {"horizontal", "vertical"}) == "horizontal"
+                           ? rig::Mounting::horizontal
+                           : rig::Mounting::vertical;
   developed.platform_angle_rad = reader.number("platform_angle_deg", -720, 720) * kRadPerDeg;
   developed.exposure_s = reader.number("exposure_s", 0, 3600);
   developed.image_file = reader.text("image_file");
@@ -99,8 +100,9 @@ void read_view_pictures(const std::filesystem::path& session, DevelopedViews& vi
     view.mask = renderer::read_png_grey(session / developed.mask_file);
     const cv::Size expected(view.camera.width, view.camera.height);
     if (view.image.size() != expected || view.mask.size() != expected)
-      throw std::runtime_error("view " + view.id + ": picture or mask is not " + std::to_string(expected.width) + " x " +
-                               std::to_string(expected.height) + " pixels as views.json says; run develop again");
+      throw std::runtime_error("view " + view.id + ": picture or mask is not " + std::to_string(expected.width) +
+                               " x " + std::to_string(expected.height) +
+                               " pixels as views.json says; run develop again");
   }
 }
 

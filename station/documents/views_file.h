@@ -19,8 +19,8 @@ struct DevelopedView {
   double exposure_s = 0.0;
   std::string image_file, mask_file;  // relative to the session folder
   int masked_pixels = 0;
-  double saturated_fraction = 0.0;    // of the masked pixels
-  double pose_rms_px = 0.0;           // of the holder's tags at this mounting
+  double saturated_fraction = 0.0;  // of the masked pixels
+  double pose_rms_px = 0.0;         // of the holder's tags at this mounting
 };
 
 struct DevelopedViews {

@@ -26,7 +26,8 @@ cv::Rect threads_box(const cv::Mat1b& mask, int margin_px) {
   const cv::Rect whole(0, 0, mask.cols, mask.rows);
   const cv::Rect box = cv::boundingRect(mask);
   if (box.empty()) return whole;
-  const double share = std::min(1.0, std::max((box.width + 2.0 * margin_px) / whole.width, (box.height + 2.0 * margin_px) / whole.height));
+  const double share = std::min(
+      1.0, std::max((box.width + 2.0 * margin_px) / whole.width, (box.height + 2.0 * margin_px) / whole.height));
   const int width = cvRound(share * whole.width), height = cvRound(share * whole.height);
   return {std::clamp(box.x + (box.width - width) / 2, 0, whole.width - width),
           std::clamp(box.y + (box.height - height) / 2, 0, whole.height - height), width, height};

@@ -3,10 +3,12 @@
 #include <cmath>
 #include <sstream>
 
+#include "renderer/image_file.h"
 #include "station/documents/calibration_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
 #include "station/documents/views_file.h"
+#include "station/report/contact_sheet.h"
 #include "station/report/display.h"
 #include "station/report/html.h"
 
@@ -17,8 +19,9 @@ constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr int kMargin_px = 24;
 
 std::string caption(const DevelopedView& developed) {
-  return escaped(developed.view.id) + "<br>" + number_text(developed.platform_angle_rad * kDegPerRad, 2) + "&deg;, exposure " +
-         number_text(developed.exposure_s, 4) + " s, " + std::to_string(developed.masked_pixels) + " masked pixels, saturated " +
+  return escaped(developed.view.id) + "<br>" + number_text(developed.platform_angle_rad * kDegPerRad, 2) +
+         "&deg;, exposure " + number_text(developed.exposure_s, 4) + " s, " +
+         std::to_string(developed.masked_pixels) + " masked pixels, saturated " +
          number_text(100 * developed.saturated_fraction, 2) + " %";
 }
 
@@ -30,12 +33,11 @@ std::string tile(const DevelopedView& developed, const std::array<double, 9>& co
   cv::Mat3b outlined = picture.clone();
   draw_outline(outlined, developed.view.mask);
   return "<figure>" + embedded_image(picture(box).clone(), developed.view.id) +
-         embedded_image(outlined(box).clone(), developed.view.id + " with its mask") + "<figcaption>" + caption(developed) +
-         "<br>shown at " +
-         number_text(scale, 2) + " × its radiance</figcaption></figure>\n";
+         embedded_image(outlined(box).clone(), developed.view.id + " with its mask") + "<figcaption>" +
+         caption(developed) + "<br>shown at " + number_text(scale, 2) + " × its radiance</figcaption></figure>\n";
 }
 
-std::string contact_sheet(const DevelopedViews& developed, bool transmission) {
+std::string view_tiles(const DevelopedViews& developed, bool transmission) {
   std::string tiles;
   int count = 0;
   for (const DevelopedView& view : developed.views)
@@ -63,14 +65,17 @@ std::string calibration_table(const RigCalibration& calibration) {
   return fact_table(
       {{"made", calibration.utc + " on " + calibration.rig_name},
        {"lens", "f " + number_text(lens.fx_px, 1) + " / " + number_text(lens.fy_px, 1) + " px, rms " +
-                    number_text(calibration.lens.rms_px, 3) + " px over " + std::to_string(calibration.lens.corners_used) + " corners"},
-       {"camera in the world", number_text(camera.x(), 1) + ", " + number_text(camera.y(), 1) + ", " + number_text(camera.z(), 1) + " mm"},
-       {"platform", "angles " + number_text(platform.angle_rms_rad * kDegPerRad, 4) + "° rms about " + number_text(platform.scale, 5) +
-                        " × the reading; rms " + number_text(platform.rms_px, 3) + " px"},
+                    number_text(calibration.lens.rms_px, 3) + " px over " +
+                    std::to_string(calibration.lens.corners_used) + " corners"},
+       {"camera in the world",
+        number_text(camera.x(), 1) + ", " + number_text(camera.y(), 1) + ", " + number_text(camera.z(), 1) + " mm"},
+       {"platform", "angles " + number_text(platform.angle_rms_rad * kDegPerRad, 4) + "° rms about " +
+                        number_text(platform.scale, 5) + " × the reading; rms " + number_text(platform.rms_px, 3) +
+                        " px"},
        {"lamp in front", position_text(light.positions[0], light.position_covariances[0])},
        {"lamp behind", position_text(light.positions[1], light.position_covariances[1])},
-       {"lamp intensity (R, G, B)", number_text(light.intensity[0], 0) + ", " + number_text(light.intensity[1], 0) + ", " +
-                                        number_text(light.intensity[2], 0) + " (radiance unit × mm²)"},
+       {"lamp intensity (R, G, B)", number_text(light.intensity[0], 0) + ", " + number_text(light.intensity[1], 0) +
+                                        ", " + number_text(light.intensity[2], 0) + " (radiance unit × mm²)"},
        {"Spectralon residual", number_text(100 * light.relative_rms, 2) + " % rms"}});
 }
 
@@ -87,8 +92,9 @@ std::filesystem::path write_session_report(const std::filesystem::path& session)
                                  {"rig", asked.rig.name},
                                  {"captured", asked.utc},
                                  {"software", asked.software}});
-  body += contact_sheet(developed, false) + contact_sheet(developed, true);
+  body += view_tiles(developed, false) + view_tiles(developed, true);
   body += "<h2>Calibration</h2>\n" + calibration_table(calibration);
+  renderer::write_png(session / "result" / "contact_sheet.png", contact_sheet(developed));
   const std::filesystem::path file = session / "report.html";
   write_text_file(file, html_page("Thread session: " + asked.spool.name, body));
   return file;

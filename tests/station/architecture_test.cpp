@@ -54,9 +54,9 @@ TEST(Architecture, EveryIncludeFollowsTheArrows) {
 }
 
 TEST(Architecture, EachOfTheseLibrariesIsMetInOneFolder) {
-  const std::map<std::string, std::string> home{{"embree3", "renderer"},     {"OpenImageIO", "renderer"}, {"libraw", "calibration"},
-                                                {"apriltag", "calibration"}, {"mrcal", "calibration"},    {"gphoto2", "rig"},
-                                                {"libserialport.h", "rig"},  {"CLI", "station"}};
+  const std::map<std::string, std::string> home{
+      {"embree3", "renderer"},  {"OpenImageIO", "renderer"}, {"libraw", "calibration"},  {"apriltag", "calibration"},
+      {"mrcal", "calibration"}, {"gphoto2", "rig"},          {"libserialport.h", "rig"}, {"CLI", "station"}};
   for (const auto& [folder, unused] : kAllowed)
     for (const Include& include : includes_in(kRoot / folder))
       for (const auto& [library, owner] : home)
@@ -66,7 +66,7 @@ TEST(Architecture, EachOfTheseLibrariesIsMetInOneFolder) {
 }
 
 TEST(Architecture, TheTopLevelHasTheAgreedFoldersAndNothingElse) {
-  const std::set<std::string> agreed{"CMakeLists.txt", "README.md", "LICENSE", "station",  "rig",
+  const std::set<std::string> agreed{"CMakeLists.txt", "README.md", "LICENSE",  "station", "rig",
                                      "calibration",    "inversion", "renderer", "tests",   "fixtures"};
   for (const auto& entry : fs::directory_iterator(kRoot)) {
     const std::string name = entry.path().filename().string();

@@ -24,7 +24,8 @@ std::string content(const fs::path& file) {
 
 // Replaces the child's image; never returns.
 [[noreturn]] void execute(const std::vector<std::string>& command, const char* out, const char* error) {
-  const int out_fd = ::open(out, O_WRONLY | O_CREAT | O_TRUNC, 0600), error_fd = ::open(error, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  const int out_fd = ::open(out, O_WRONLY | O_CREAT | O_TRUNC, 0600),
+            error_fd = ::open(error, O_WRONLY | O_CREAT | O_TRUNC, 0600);
   const int in_fd = ::open("/dev/null", O_RDONLY);
   ::dup2(in_fd, 0);
   ::dup2(out_fd, 1);
@@ -57,11 +58,17 @@ std::vector<std::string> with_program(const std::vector<std::string>& arguments)
 
 }  // namespace
 
-int ProgramResult::error_lines() const { return static_cast<int>(std::count(error.begin(), error.end(), '\n')); }
+int ProgramResult::error_lines() const {
+  return static_cast<int>(std::count(error.begin(), error.end(), '\n'));
+}
 
-ProgramResult run_threadstation(const std::vector<std::string>& arguments) { return run(with_program(arguments)); }
+ProgramResult run_threadstation(const std::vector<std::string>& arguments) {
+  return run(with_program(arguments));
+}
 
-ProgramResult run_shell(const std::string& command_line) { return run({"sh", "-c", command_line}); }
+ProgramResult run_shell(const std::string& command_line) {
+  return run({"sh", "-c", command_line});
+}
 
 pid_t start_threadstation(const std::vector<std::string>& arguments) {
   const std::vector<std::string> command = with_program(arguments);
@@ -79,7 +86,8 @@ int wait_for(pid_t process) {
 
 TemporaryFolder::TemporaryFolder() {
   std::string name = (fs::temp_directory_path() / "threadstation-test-XXXXXX").string();
-  if (!::mkdtemp(name.data())) throw std::runtime_error("cannot make a folder for a test in " + fs::temp_directory_path().string());
+  if (!::mkdtemp(name.data()))
+    throw std::runtime_error("cannot make a folder for a test in " + fs::temp_directory_path().string());
   path_ = name;
 }
 

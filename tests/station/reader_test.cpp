@@ -1,9 +1,10 @@
+#include "station/documents/reader.h"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "station/documents/reader.h"
 #include "station/documents/rig_file.h"
 #include "station/documents/spool.h"
 
@@ -26,15 +27,19 @@ std::string refusal(Action&& action) {
   return {};
 }
 
-json good_rig() { return read_json_file(std::string(FIXTURES_DIR) + "/rigs/simulated.json"); }
+json good_rig() {
+  return read_json_file(std::string(FIXTURES_DIR) + "/rigs/simulated.json");
+}
 
 TEST(Documents, EveryRigAndSpoolInFixturesIsRead) {
   int read = 0;
   for (const auto& entry : std::filesystem::directory_iterator(std::string(FIXTURES_DIR) + "/rigs")) {
+    if (entry.path().extension() != ".json") continue;
     EXPECT_NO_THROW(read_rig(entry.path())) << entry.path();
     ++read;
   }
   for (const auto& entry : std::filesystem::directory_iterator(std::string(FIXTURES_DIR) + "/spools")) {
+    if (entry.path().extension() != ".json") continue;
     const Spool spool = read_spool(entry.path());
     EXPECT_EQ(spool.wrapping.turns, 50) << entry.path();
     ASSERT_TRUE(spool.simulation) << entry.path();
@@ -68,7 +73,8 @@ TEST(Documents, AMissingKeyAWrongTypeAndAValueOutOfRangeAreNamed) {
 }
 
 TEST(Documents, AnotherKindOfDocumentAndAnotherVersionAreRefused) {
-  EXPECT_NE(refusal([] { read_spool(std::string(FIXTURES_DIR) + "/rigs/simulated.json"); }).find("threadstation/rig"), std::string::npos);
+  EXPECT_NE(refusal([] { read_spool(std::string(FIXTURES_DIR) + "/rigs/simulated.json"); }).find("threadstation/rig"),
+            std::string::npos);
   json rig = good_rig();
   rig["version"] = 2;
   EXPECT_NE(refusal([&] { parse_rig(rig, "r"); }).find("version 2"), std::string::npos);
@@ -86,13 +92,15 @@ TEST(Documents, AFileCutShortMissingOrAFolderGetsOneLine) {
 }
 
 TEST(Documents, TransformsKeepEveryDigitAndMirroredOnesAreRefused) {
-  Eigen::Isometry3d pose = Eigen::Translation3d(1.0 / 3, -2e5 / 7, 1e-9) * Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized());
+  Eigen::Isometry3d pose =
+      Eigen::Translation3d(1.0 / 3, -2e5 / 7, 1e-9) * Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized());
   json document{{"format", "threadstation/test"}, {"version", 1}, {"pose", to_json(pose)}};
   const json parsed = json::parse(document.dump());
   EXPECT_EQ(ObjectReader(parsed, "t", "test", 1).transform("pose").matrix(), pose.matrix());
   pose.linear().col(0) *= -1;
   document["pose"] = to_json(pose);
-  EXPECT_NE(refusal([&] { ObjectReader(document, "t", "test", 1).transform("pose"); }).find("rigid"), std::string::npos);
+  EXPECT_NE(refusal([&] { ObjectReader(document, "t", "test", 1).transform("pose"); }).find("rigid"),
+            std::string::npos);
 }
 
 }  // namespace

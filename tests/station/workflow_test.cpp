@@ -25,7 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-void expect_success(const ProgramResult& result) { EXPECT_EQ(result.status, 0) << result.error; }
+void expect_success(const ProgramResult& result) {
+  EXPECT_EQ(result.status, 0) << result.error;
+}
 
 // One clear line on standard error and exit status 1.
 void expect_one_line(const ProgramResult& result, const std::string& must_name) {
@@ -45,7 +47,8 @@ class Workflow : public ::testing::Test {
     station::write_json_file(path("rig.json"), rig);
     rig["simulation"]["target_samples_per_pixel"] = 1;
     station::write_json_file(path("hasty_rig.json"), rig);
-    expect_success(run_threadstation({"calibrate", "--rig", path("rig.json"), "--out", path("calibration"), "--quiet"}));
+    expect_success(
+        run_threadstation({"calibrate", "--rig", path("rig.json"), "--out", path("calibration"), "--quiet"}));
     expect_success(capture(path("session")));
   }
   static void TearDownTestSuite() {
@@ -55,8 +58,17 @@ class Workflow : public ::testing::Test {
 
   static std::string path(const std::string& name) { return *folder_ / name; }
   static std::vector<std::string> capture_arguments(const std::string& session, const std::string& rig = "rig.json") {
-    return {"capture", "--rig", path(rig), "--calibration", path("calibration"), "--spool",
-            std::string(FIXTURES_DIR) + "/spools/silk_red.json", "--out", session, "--unattended", "--quiet"};
+    return {"capture",
+            "--rig",
+            path(rig),
+            "--calibration",
+            path("calibration"),
+            "--spool",
+            std::string(FIXTURES_DIR) + "/spools/silk_red.json",
+            "--out",
+            session,
+            "--unattended",
+            "--quiet"};
   }
   static ProgramResult capture(const std::string& session) { return run_threadstation(capture_arguments(session)); }
 
@@ -74,12 +86,19 @@ TEST_F(Workflow, CalibrationFindsTheBenchAsItIs) {
   EXPECT_NEAR(found.platform.scale, truth.turntable.scale, 5e-4);
   // A point at the spool must fall where the true camera sees it: 1 px = 0.25 mm.
   const auto camera = [](const calibration::Lens& l, const Eigen::Isometry3d& pose) {
-    return renderer::Camera{.width = l.width_px, .height = l.height_px, .fx = l.fx_px, .fy = l.fy_px, .cx = l.cx_px,
-                            .cy = l.cy_px, .distortion = l.distortion, .world_from_camera = pose};
+    return renderer::Camera{.width = l.width_px,
+                            .height = l.height_px,
+                            .fx = l.fx_px,
+                            .fy = l.fy_px,
+                            .cx = l.cx_px,
+                            .cy = l.cy_px,
+                            .distortion = l.distortion,
+                            .world_from_camera = pose};
   };
-  const calibration::Lens true_lens{truth.lens.width_px, truth.lens.height_px, truth.lens.fx_px, truth.lens.fy_px,
-                                    truth.lens.cx_px, truth.lens.cy_px, truth.lens.distortion};
-  for (const Eigen::Vector3d& point : {Eigen::Vector3d(0, 0, 64), Eigen::Vector3d(10, 30, 80), Eigen::Vector3d(-10, -30, 50)}) {
+  const calibration::Lens true_lens{truth.lens.width_px, truth.lens.height_px, truth.lens.fx_px,     truth.lens.fy_px,
+                                    truth.lens.cx_px,    truth.lens.cy_px,     truth.lens.distortion};
+  for (const Eigen::Vector3d& point :
+       {Eigen::Vector3d(0, 0, 64), Eigen::Vector3d(10, 30, 80), Eigen::Vector3d(-10, -30, 50)}) {
     const Eigen::Vector2d seen = renderer::project(camera(lens, found.platform.world_from_camera), point);
     const Eigen::Vector2d true_seen = renderer::project(camera(true_lens, truth.lens.world_from_camera), point);
     EXPECT_LT((seen - true_seen).norm(), 1.5) << point.transpose();
@@ -97,7 +116,8 @@ TEST_F(Workflow, CalibrationFindsTheBenchAsItIs) {
 
 TEST_F(Workflow, CalibrationIsSolvedAgainFromItsPicturesAlone) {
   const json before = station::read_json_file(path("calibration/calibration.json"));
-  expect_success(run_threadstation({"calibrate", "--rig", path("rig.json"), "--out", path("calibration"), "--solve", "--quiet"}));
+  expect_success(run_threadstation(
+      {"calibrate", "--rig", path("rig.json"), "--out", path("calibration"), "--solve", "--quiet"}));
   json after = station::read_json_file(path("calibration/calibration.json"));
   after["utc"] = before["utc"];
   EXPECT_EQ(after, before);
@@ -117,7 +137,8 @@ TEST_F(Workflow, SessionHasEveryFileUpToMasksAndEachStageRunsAgainAlone) {
   }
   const std::string first = run_shell("cd '" + session.string() + "' && sha256sum linear/* masks/*").out;
   expect_success(run_threadstation({"develop", session, "--quiet"}));
-  EXPECT_EQ(run_shell("cd '" + session.string() + "' && sha256sum linear/* masks/*").out, first) << "developing again gives the same files";
+  EXPECT_EQ(run_shell("cd '" + session.string() + "' && sha256sum linear/* masks/*").out, first)
+      << "developing again gives the same files";
   expect_success(run_threadstation({"verify", session}));
 }
 
@@ -127,7 +148,8 @@ TEST_F(Workflow, MasksLieOnTheThreads) {
   station::DevelopedViews developed = station::read_views(session);
   station::read_view_pictures(session, developed);
   for (const station::DevelopedView& view : developed.views) {
-    if (view.view.transmission || std::abs(view.platform_angle_rad) > 0.6) continue;  // grazing light: threads are dark
+    if (view.view.transmission || std::abs(view.platform_angle_rad) > 0.6)
+      continue;  // grazing light: threads are dark
     // Red silk on a black frame: inside the mask the red channel leads; a ring just outside it is grey.
     double inside_red = 0, inside_blue = 0;
     for (int row = 0; row < view.view.mask.rows; ++row)
@@ -150,12 +172,13 @@ TEST_F(Workflow, ReportOpensInABrowserWithoutAConsoleError) {
   const std::string profile = path("browser");
   const ProgramResult browser = run_shell(
       "chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
-      "--disable-component-update --disable-sync --user-data-dir='" + profile + "' --enable-logging=stderr --dump-dom 'file://" +
-      (session / "report.html").string() + "'");
+      "--disable-component-update --disable-sync --user-data-dir='" +
+      profile + "' --enable-logging=stderr --dump-dom 'file://" + (session / "report.html").string() + "'");
   EXPECT_EQ(browser.status, 0) << browser.error;
   EXPECT_EQ(browser.error.find("CONSOLE"), std::string::npos) << browser.error;
   std::size_t pictures = 0;
-  for (std::size_t at = browser.out.find("<img"); at != std::string::npos; at = browser.out.find("<img", at + 1)) ++pictures;
+  for (std::size_t at = browser.out.find("<img"); at != std::string::npos; at = browser.out.find("<img", at + 1))
+    ++pictures;
   EXPECT_GE(pictures, 34U) << "a picture and a mask for each of the 17 views";
   EXPECT_EQ(browser.out.find("src=\"http"), std::string::npos) << "the page needs no network";
 }
@@ -177,7 +200,8 @@ TEST_F(Workflow, APulledPlugAtTwentyRandomMomentsLosesAndDoublesNothing) {
     ::kill(process, SIGKILL);
     killed += wait_for(process) == 128 + SIGKILL;
     const bool begun = fs::exists(session + "/session.json");
-    expect_success(begun ? run_threadstation({"capture", "--resume", "--out", session, "--quiet"}) : run_threadstation(capture_arguments(session, "hasty_rig.json")));
+    expect_success(begun ? run_threadstation({"capture", "--resume", "--out", session, "--quiet"})
+                         : run_threadstation(capture_arguments(session, "hasty_rig.json")));
     const ProgramResult verified = run_threadstation({"verify", session, "--json"});
     expect_success(verified);
     EXPECT_TRUE(json::parse(verified.out)["complete"]) << verified.out;
@@ -198,7 +222,8 @@ TEST_F(Workflow, APulledPlugAtTwentyRandomMomentsLosesAndDoublesNothing) {
 TEST_F(Workflow, CtrlCStopsThePlatformAndLeavesASessionThatResumes) {
   const std::string session = path("interrupted");
   const pid_t process = start_threadstation(capture_arguments(session, "hasty_rig.json"));
-  while (!fs::exists(session + "/raw/reflection-horizontal-1.arw")) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  while (!fs::exists(session + "/raw/reflection-horizontal-1.arw"))
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
   ::kill(process, SIGINT);
   EXPECT_EQ(wait_for(process), 1);
   std::ifstream journal(session + "/journal.jsonl");
@@ -213,12 +238,13 @@ TEST_F(Workflow, AFullDiskAndAReadOnlyFolderGetOneLineAndTheSessionResumes) {
   // A private mount namespace, so that the small file system goes away with the command.
   const std::string mount = path("mount");
   fs::create_directory(mount);
-  const std::string arguments = " capture --rig '" + path("rig.json") + "' --calibration '" + path("calibration") + "' --spool '" +
-                                FIXTURES_DIR + "/spools/silk_red.json' --unattended --quiet --out '" + mount + "/session'";
+  const std::string arguments = " capture --rig '" + path("rig.json") + "' --calibration '" + path("calibration") +
+                                "' --spool '" + FIXTURES_DIR + "/spools/silk_red.json' --unattended --quiet --out '" +
+                                mount + "/session'";
   const auto on_file_system = [&](const std::string& options) {
     const std::string unshare = ::geteuid() == 0 ? "unshare -m" : "unshare -rm";
-    return run_shell(unshare + " sh -c \"mount -t tmpfs -o " + options + " tmpfs '" + mount + "' && exec '" + THREADSTATION_PROGRAM + "'" +
-                     arguments + "\"");
+    return run_shell(unshare + " sh -c \"mount -t tmpfs -o " + options + " tmpfs '" + mount + "' && exec '" +
+                     THREADSTATION_PROGRAM + "'" + arguments + "\"");
   };
   expect_one_line(on_file_system("size=1500k"), "No space left on device");
   expect_one_line(on_file_system("ro"), "Read-only file system");
@@ -226,8 +252,14 @@ TEST_F(Workflow, AFullDiskAndAReadOnlyFolderGetOneLineAndTheSessionResumes) {
 
 TEST_F(Workflow, WrongUseEndsWithTwoAndOneLine) {
   for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"capture", "--out", "x"}, {"nonsense"}, {}, {"calibrate"}, {"develop"}, {"demo", "--fast"},
-        {"capture", "--resume", "--rig", "r", "--out", "x"}, {"calibrate", "--rig", "r", "--out", "o", "--only", "everything"}}) {
+       {std::vector<std::string>{"capture", "--out", "x"},
+        {"nonsense"},
+        {},
+        {"calibrate"},
+        {"develop"},
+        {"demo", "--fast"},
+        {"capture", "--resume", "--rig", "r", "--out", "x"},
+        {"calibrate", "--rig", "r", "--out", "o", "--only", "everything"}}) {
     const ProgramResult result = run_threadstation(arguments);
     EXPECT_EQ(result.status, 2) << result.error;
     EXPECT_EQ(result.error_lines(), 1) << result.error;
@@ -238,7 +270,9 @@ TEST_F(Workflow, WrongUseEndsWithTwoAndOneLine) {
 
 TEST_F(Workflow, WrongFilesGetOneLineThatNamesThem) {
   const std::string out = path("never");
-  const auto with_rig = [&](const std::string& rig) { return run_threadstation({"calibrate", "--rig", rig, "--out", out}); };
+  const auto with_rig = [&](const std::string& rig) {
+    return run_threadstation({"calibrate", "--rig", rig, "--out", out});
+  };
   expect_one_line(with_rig(path("no_such.json")), "no_such.json");
   expect_one_line(with_rig(std::string(FIXTURES_DIR) + "/spools/silk_red.json"), "threadstation/spool");
   json rig = station::read_json_file(path("rig.json"));
