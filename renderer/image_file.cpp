@@ -6,9 +6,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <stdexcept>
 #include <vector>
 
@@ -104,6 +106,18 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const fs::path& file) {
   return input;
 }
 
+// OpenImageIO leaks, and libpng writes to standard error, when a PNG file ends early; so its end is looked at first.
+void check_png_is_complete(const fs::path& file) {
+  static constexpr std::array<unsigned char, 8> kEnd{'I', 'E', 'N', 'D', 0xae, 0x42, 0x60, 0x82};
+  std::ifstream stream(file, std::ios::binary);
+  stream.seekg(-static_cast<std::streamoff>(kEnd.size()), std::ios::end);
+  std::array<char, kEnd.size()> end{};
+  stream.read(end.data(), end.size());
+  if (!stream || std::memcmp(end.data(), kEnd.data(), kEnd.size()) != 0) {
+    fail("reading picture " + file.string(), "it is not a complete PNG file", "make it again");
+  }
+}
+
 template <class Pixel>
 cv::Mat_<Pixel> read_pixels(OIIO::ImageInput& input, const fs::path& file, OIIO::TypeDesc type) {
   const OIIO::ImageSpec& spec = input.spec();
@@ -154,7 +168,9 @@ void write_png(const fs::path& file, const cv::Mat3b& rgb) {
 }
 
 cv::Mat1b read_png_grey(const fs::path& file) {
-  return read_pixels<uchar>(*open_picture(file), file, OIIO::TypeDesc::UINT8);
+  const auto input = open_picture(file);
+  check_png_is_complete(file);
+  return read_pixels<uchar>(*input, file, OIIO::TypeDesc::UINT8);
 }
 
 std::string encode_png(const cv::Mat3b& rgb) {
