@@ -18,6 +18,10 @@ renderer::Camera camera_of(const calibration::Lens& lens, const Eigen::Isometry3
   return camera;
 }
 
+calibration::Lens lens_of(const rig::TrueLens& lens) {
+  return {lens.width_px, lens.height_px, lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, lens.distortion};
+}
+
 calibration::TagObservation tags_in(const calibration::SensorPicture& picture) {
   const cv::Mat3f radiance = calibration::develop(picture, {}).radiance;
   cv::Mat1f grey(radiance.size());

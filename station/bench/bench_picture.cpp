@@ -8,6 +8,7 @@
 #include "renderer/fiber_bundle.h"
 #include "renderer/path_tracer.h"
 #include "station/bench/bench_objects.h"
+#include "station/views.h"
 
 namespace station {
 namespace {
@@ -30,17 +31,6 @@ renderer::SphereLight room_lamp(const Eigen::Vector3d& diffuser_radiance,
   return {.center = object_from_world * kRoomLampPosition,
           .radius_mm = kRoomLampRadius_mm,
           .radiance = diffuser_radiance * ratio * ratio};
-}
-
-renderer::Camera camera_of(const rig::TrueLens& lens, const Eigen::Isometry3d& object_from_world) {
-  return {.width = lens.width_px,
-          .height = lens.height_px,
-          .fx = lens.fx_px,
-          .fy = lens.fy_px,
-          .cx = lens.cx_px,
-          .cy = lens.cy_px,
-          .distortion = lens.distortion,
-          .world_from_camera = object_from_world * lens.world_from_camera};
 }
 
 struct Painter {
@@ -83,7 +73,8 @@ struct Painter {
     if (dark) return cv::Mat3f(state.lens.height_px, state.lens.width_px, cv::Vec3f(0, 0, 0));
     const Eigen::Isometry3d object_from_world = state.world_from_object.inverse();
     const renderer::PathTracer tracer(scene(state, object_from_world));
-    const renderer::Camera camera = camera_of(state.lens, object_from_world);
+    const renderer::Camera camera =
+        camera_of(lens_of(state.lens), object_from_world * state.lens.world_from_camera, false);
     renderer::RenderOptions options;
     options.samples_per_pixel = rig.simulation->target_samples_per_pixel;
     options.seed = rig.simulation->truth.seed + 7919 * ++pictures;

@@ -7,25 +7,13 @@
 
 #include "station/documents/rig_file.h"
 #include "station/documents/spool.h"
+#include "tests/station/refusal.h"
 
 namespace station {
 namespace {
 
 using nlohmann::json;
-
-// The message of what `action` throws, which must be one line.
-template <typename Action>
-std::string refusal(Action&& action) {
-  try {
-    action();
-  } catch (const std::runtime_error& error) {
-    const std::string message = error.what();
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    return message;
-  }
-  ADD_FAILURE() << "nothing was refused";
-  return {};
-}
+using station_test::refusal;
 
 json good_rig() {
   return read_json_file(std::string(FIXTURES_DIR) + "/rigs/simulated.json");

@@ -17,6 +17,7 @@
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
 #include "station/documents/views_file.h"
+#include "station/views.h"
 #include "tests/station/program.h"
 
 namespace station_test {
@@ -85,22 +86,12 @@ TEST_F(Workflow, CalibrationFindsTheBenchAsItIs) {
   EXPECT_LT(found.lens.rms_px, 0.3);
   EXPECT_NEAR(found.platform.scale, truth.turntable.scale, 5e-4);
   // A point at the spool must fall where the true camera sees it: 1 px = 0.25 mm.
-  const auto camera = [](const calibration::Lens& l, const Eigen::Isometry3d& pose) {
-    return renderer::Camera{.width = l.width_px,
-                            .height = l.height_px,
-                            .fx = l.fx_px,
-                            .fy = l.fy_px,
-                            .cx = l.cx_px,
-                            .cy = l.cy_px,
-                            .distortion = l.distortion,
-                            .world_from_camera = pose};
-  };
-  const calibration::Lens true_lens{truth.lens.width_px, truth.lens.height_px, truth.lens.fx_px,     truth.lens.fy_px,
-                                    truth.lens.cx_px,    truth.lens.cy_px,     truth.lens.distortion};
   for (const Eigen::Vector3d& point :
        {Eigen::Vector3d(0, 0, 64), Eigen::Vector3d(10, 30, 80), Eigen::Vector3d(-10, -30, 50)}) {
-    const Eigen::Vector2d seen = renderer::project(camera(lens, found.platform.world_from_camera), point);
-    const Eigen::Vector2d true_seen = renderer::project(camera(true_lens, truth.lens.world_from_camera), point);
+    const Eigen::Vector2d seen =
+        renderer::project(station::camera_of(lens, found.platform.world_from_camera, false), point);
+    const Eigen::Vector2d true_seen = renderer::project(
+        station::camera_of(station::lens_of(truth.lens), truth.lens.world_from_camera, false), point);
     EXPECT_LT((seen - true_seen).norm(), 1.5) << point.transpose();
   }
   // Lamp: 10 mm of some 450; the irradiance at the spool is what the fit uses.

@@ -6,28 +6,16 @@
 #include "station/documents/draft_file.h"
 #include "station/documents/patch_file.h"
 #include "station/documents/reader.h"
+#include "tests/station/refusal.h"
 
 namespace station {
 namespace {
 
 using nlohmann::json;
+using station_test::refusal;
 namespace fs = std::filesystem;
 
 const fs::path kDrafts = fs::path(FIXTURES_DIR) / "drafts";
-
-// The message of what `action` throws, which must be one line.
-template <typename Action>
-std::string refusal(Action&& action) {
-  try {
-    action();
-  } catch (const std::runtime_error& error) {
-    const std::string message = error.what();
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    return message;
-  }
-  ADD_FAILURE() << "nothing was refused";
-  return {};
-}
 
 void expect_refused(const json& document, bool is_draft, const std::string& named) {
   const std::string line = refusal(
