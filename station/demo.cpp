@@ -22,15 +22,15 @@ nlohmann::json demo_rig(bool quick) {
   return rig;
 }
 
-// A demo folder that this program made, or a new one; never somebody's other files.
-void prepare_folder(const std::filesystem::path& out, const nlohmann::json& rig) {
+// A demo folder that this program made, or a new one; never somebody's other files. Says whether pictures were kept.
+bool prepare_folder(const std::filesystem::path& out, const nlohmann::json& rig, bool fresh) {
   const std::filesystem::path mark = out / "rig.json";
   std::error_code code;
-  if (std::filesystem::exists(out) && !std::filesystem::exists(mark) && !std::filesystem::is_empty(out, code))
+  const bool earlier = std::filesystem::exists(mark);
+  if (!earlier && std::filesystem::exists(out) && !std::filesystem::is_empty(out, code))
     throw std::runtime_error(out.string() + " is not an earlier demo's folder and not empty; choose another --out");
-  const bool same_rig = std::filesystem::exists(mark) && read_json_file(mark) == rig;
-  const bool finished = std::filesystem::exists(out / "session" / "report.html");
-  if (finished || !same_rig) {
+  const bool keep = earlier && !fresh && read_json_file(mark) == rig;
+  if (!keep) {
     std::filesystem::remove_all(out / "calibration", code);
     std::filesystem::remove_all(out / "session", code);
   }
@@ -39,12 +39,13 @@ void prepare_folder(const std::filesystem::path& out, const nlohmann::json& rig)
     throw std::runtime_error("cannot make " + out.string() + ": " + code.message() +
                              "; choose a writable folder with --out");
   write_json_file(mark, rig);
+  return keep && std::filesystem::exists(out / "calibration");
 }
 
 }  // namespace
 
 DemoResult run_demo(const DemoRequest& request) {
-  prepare_folder(request.out, demo_rig(request.quick));
+  const bool kept = prepare_folder(request.out, demo_rig(request.quick), request.fresh);
   const std::filesystem::path rig = request.out / "rig.json", session = request.out / "session";
   calibrate_rig({.rig = rig, .out = request.out / "calibration", .progress_style = request.progress_style});
   const RunOutcome outcome =
@@ -58,7 +59,7 @@ DemoResult run_demo(const DemoRequest& request) {
   if (outcome == RunOutcome::interrupted)
     throw std::runtime_error("the demo was interrupted; the same command goes on from here");
   develop_session(session, request.progress_style);
-  return {.session = session, .report = write_session_report(session)};
+  return {.session = session, .report = write_session_report(session), .kept = kept};
 }
 
 }  // namespace station

@@ -10,14 +10,17 @@ namespace station {
 struct DemoRequest {
   std::filesystem::path out = "demo";
   bool quick = false;  // fewer samples per pixel: noisier pictures, same steps
+  bool fresh = false;  // make everything again
   ProgressStyle progress_style = ProgressStyle::automatic;
 };
 
 struct DemoResult {
   std::filesystem::path session, report;
+  bool kept = false;  // pictures of an earlier demo on the same rig were kept
 };
 
-// Goes on where an earlier demo in the same folder was interrupted; a finished one is made again from the start.
+// Keeps what an earlier demo on the same rig left whole in the folder: an interrupted one goes on, a finished one is only
+// developed and reported again. Another rig (or --quick against full) starts from the beginning.
 DemoResult run_demo(const DemoRequest& request);
 
 }  // namespace station

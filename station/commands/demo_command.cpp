@@ -18,7 +18,9 @@ void run(Arguments& arguments) {
   if (arguments.output.json)
     std::cout << nlohmann::json{{"session", result.session}, {"report", result.report}}.dump() << "\n";
   else
-    std::cout << "session  " << result.session.string() << "\nreport   " << result.report.string() << "\n";
+    std::cout << (result.kept ? "kept the pictures of an earlier demo in this folder; --fresh takes them again\n"
+                              : "")
+              << "session  " << result.session.string() << "\nreport   " << result.report.string() << "\n";
 }
 
 }  // namespace
@@ -28,6 +30,7 @@ void add_demo_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("demo", "the whole job on the simulated bench");
   command->add_option("--out", arguments->request.out, "folder for the results")->capture_default_str();
   command->add_flag("--quick", arguments->request.quick, "fewer samples per pixel: noisier, within a minute");
+  command->add_flag("--fresh", arguments->request.fresh, "take every picture again");
   arguments->output.add_to(*command);
   command->callback([arguments] { run(*arguments); });
 }

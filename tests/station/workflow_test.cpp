@@ -283,6 +283,27 @@ TEST_F(Workflow, WrongFilesGetOneLineThatNamesThem) {
   EXPECT_FALSE(fs::exists(out)) << "a refused command leaves nothing behind";
 }
 
+TEST_F(Workflow, TheDemoDoesItAllAndRunAgainKeepsItsPictures) {
+  const std::string out = path("demo");
+  const ProgramResult first = run_threadstation({"demo", "--quick", "--out", out, "--json"});
+  expect_success(first);
+  EXPECT_TRUE(fs::exists(json::parse(first.out)["report"].get<std::string>()));
+  EXPECT_TRUE(fs::exists(out + "/session/result/contact_sheet.png"));
+  expect_success(run_threadstation({"verify", out + "/session"}));
+  const auto pictures = [&] {
+    return run_shell("cd '" + out + "' && sha256sum calibration/pictures/* session/raw/*").out;
+  };
+  const std::string before = pictures();
+  const ProgramResult again = run_threadstation({"demo", "--quick", "--out", out, "--quiet"});
+  expect_success(again);
+  EXPECT_NE(again.out.find("kept"), std::string::npos) << again.out;
+  EXPECT_EQ(pictures(), before);
+  fs::create_directory(path("somebody"));
+  std::ofstream(path("somebody/letter.txt")) << "not ours";
+  expect_one_line(run_threadstation({"demo", "--out", path("somebody")}), "not an earlier demo");
+  EXPECT_TRUE(fs::exists(path("somebody/letter.txt")));
+}
+
 TEST_F(Workflow, ADamagedSessionIsNamedByVerifyAndRefusedByDevelop) {
   const fs::path session = path("damaged");
   fs::copy(path("session"), session, fs::copy_options::recursive);
