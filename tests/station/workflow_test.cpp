@@ -106,12 +106,20 @@ TEST_F(Workflow, CalibrationFindsTheBenchAsItIs) {
 }
 
 TEST_F(Workflow, CalibrationIsSolvedAgainFromItsPicturesAlone) {
-  const json before = station::read_json_file(path("calibration/calibration.json"));
+  const json before = station::read_json_file(path("calibration/calibration.json")).flatten();
   expect_success(run_threadstation(
       {"calibrate", "--rig", path("rig.json"), "--out", path("calibration"), "--solve", "--quiet"}));
-  json after = station::read_json_file(path("calibration/calibration.json"));
-  after["utc"] = before["utc"];
-  EXPECT_EQ(after, before);
+  const json after = station::read_json_file(path("calibration/calibration.json")).flatten();
+  for (const auto& [key, value] : before.items()) {
+    if (key == "/utc") continue;
+    if (!value.is_number()) {
+      EXPECT_EQ(after.at(key), value) << key;
+      continue;
+    }
+    // Linear algebra libraries add in an order that depends on where memory lies: some 13 digits of a covariance agree.
+    EXPECT_NEAR(after.at(key).get<double>(), value.get<double>(), 1e-9 * std::abs(value.get<double>()) + 1e-15)
+        << key;
+  }
 }
 
 TEST_F(Workflow, SessionHasEveryFileUpToMasksAndEachStageRunsAgainAlone) {
@@ -225,17 +233,18 @@ TEST_F(Workflow, CtrlCStopsThePlatformAndLeavesASessionThatResumes) {
   expect_success(run_threadstation({"verify", session}));
 }
 
-TEST_F(Workflow, AFullDiskAndAReadOnlyFolderGetOneLineAndTheSessionResumes) {
-  // A private mount namespace, so that the small file system goes away with the command.
+TEST_F(Workflow, AFullDiskAndAReadOnlyFolderGetOneLine) {
+  // A small file system in a mount namespace of its own, so that it goes away with the command.
   const std::string mount = path("mount");
   fs::create_directory(mount);
-  const std::string arguments = " capture --rig '" + path("rig.json") + "' --calibration '" + path("calibration") +
-                                "' --spool '" + FIXTURES_DIR + "/spools/silk_red.json' --unattended --quiet --out '" +
-                                mount + "/session'";
+  const std::string capture = std::string("'") + THREADSTATION_PROGRAM + "' capture --rig '" + path("rig.json") +
+                              "' --calibration '" + path("calibration") + "' --spool '" + FIXTURES_DIR +
+                              "/spools/silk_red.json' --unattended --quiet --out '" + mount + "/session'";
   const auto on_file_system = [&](const std::string& options) {
-    const std::string unshare = ::geteuid() == 0 ? "unshare -m" : "unshare -rm";
-    return run_shell(unshare + " sh -c \"mount -t tmpfs -o " + options + " tmpfs '" + mount + "' && exec '" +
-                     THREADSTATION_PROGRAM + "'" + arguments + "\"");
+    const std::string unshare =
+        ::geteuid() == 0 ? "unshare -m --propagation unchanged" : "unshare -rm --propagation unchanged";
+    return run_shell(unshare + " sh -c \"mount -t tmpfs -o " + options + " tmpfs '" + mount + "' || exit 9; " +
+                     capture + "; status=\\$?; umount '" + mount + "'; exit \\$status\"");
   };
   expect_one_line(on_file_system("size=1500k"), "No space left on device");
   expect_one_line(on_file_system("ro"), "Read-only file system");
