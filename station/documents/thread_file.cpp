@@ -1,0 +1,118 @@
+#include "station/documents/thread_file.h"
+
+#include <algorithm>
+
+#include "station/documents/reader.h"
+
+namespace station {
+namespace {
+
+using nlohmann::json;
+using renderer::ThreadParameters;
+
+constexpr double kLeastRoughness = 0.02, kMostR = 1e6, kMostAbsorption = 1e4;
+constexpr double kRounding = 1e-9;
+
+std::array<double, 3> roughness(ObjectReader& reader, const std::string& key) {
+  std::array<double, 3> lobes{};
+  const std::vector<double> found = reader.numbers(key, 3);
+  std::copy(found.begin(), found.end(), lobes.begin());
+  for (double value : lobes)
+    if (!(value >= kLeastRoughness && value <= 1))
+      reader.refuse(key, "found " + json(value).dump() + ", expected roughnesses between 0.02 and 1");
+  return lobes;
+}
+
+std::vector<double> coefficients(ObjectReader& reader, const std::string& key, std::size_t count) {
+  const std::vector<double> found = reader.numbers(key, count);
+  for (double value : found)
+    if (!(std::abs(value) <= kMostR)) reader.refuse(key, "found " + json(value).dump() + ", expected at most 1e6");
+  return found;
+}
+
+// lambda_p >= 0 for every c in [0, 1].
+void check_lobe_energies(const ObjectReader& reader, ThreadParameters parameters) {
+  constexpr int kSteps = 100;
+  constexpr std::array<const char*, 3> kKeys{"r0", "r1", "r2"};
+  parameters.limit_energy = false;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double c = static_cast<double>(i) / kSteps;
+    const std::array<double, 3> lambda = renderer::thread_lobe_energies<double>(parameters, c);
+    for (std::size_t p = 0; p < 3; ++p)
+      if (!(lambda[p] >= -kRounding))
+        reader.refuse(kKeys[p], "makes the lobe's energy " + json(lambda[p]).dump() + " at cos theta " +
+                                    json(c).dump() + "; energies cannot be negative");
+  }
+}
+
+ThreadParameters parse_parameters(ObjectReader reader) {
+  ThreadParameters p;
+  p.sigma_a = reader.vector3("sigma_a");
+  if (!(p.sigma_a.minCoeff() >= 0 && p.sigma_a.maxCoeff() <= kMostAbsorption))
+    reader.refuse("sigma_a", "found " + to_json(p.sigma_a).dump() + ", expected absorptions between 0 and 10000");
+  p.alpha = roughness(reader, "alpha");
+  p.beta = roughness(reader, "beta");
+  const std::vector<double> r0 = coefficients(reader, "r0", 3), r1 = coefficients(reader, "r1", 1),
+                            r2 = coefficients(reader, "r2", 3);
+  p.r0a = r0[0], p.r0b = r0[1], p.r0c = r0[2];
+  p.r1a = r1[0];
+  p.r2a = r2[0], p.r2b = r2[1], p.r2c = r2[2];
+  check_lobe_energies(reader, p);
+  reader.finish();
+  return p;
+}
+
+json parameters_json(const ThreadParameters& p) {
+  return {{"sigma_a", to_json(p.sigma_a)}, {"alpha", p.alpha}, {"beta", p.beta},
+          {"r0", {p.r0a, p.r0b, p.r0c}},   {"r1", {p.r1a}},    {"r2", {p.r2a, p.r2b, p.r2c}}};
+}
+
+json units() {
+  return {{"sigma_a", "1 / thread radius; camera R, G, B"},
+          {"alpha", "longitudinal roughness of R, TT, TRT; 0.02 to 1"},
+          {"beta", "azimuthal roughness of R, TT, TRT; 0.02 to 1"},
+          {"r0", "lambda_0 = r0[0] c^2 + r0[1] c + r0[2], c = |cos theta|"},
+          {"r1", "lambda_1 = r1[0] c"},
+          {"r2", "lambda_2 = 1 / (r2[0] c + r2[1]) + r2[2]"}};
+}
+
+}  // namespace
+
+ThreadFile parse_thread(const json& document, const std::string& source) {
+  ObjectReader reader(document, source, "thread", 1);
+  ThreadFile thread;
+  thread.name = reader.text("name");
+  thread.diameter_mm = reader.number("diameter_mm", 0.005, 20);
+  thread.parameters = parse_parameters(reader.object("parameters"));
+  if (reader.has("units") && reader.raw("units") != units())
+    reader.refuse("units", "are not those of version 1; leave the key out or write the thread again");
+  if (reader.has("linear_srgb_from_camera")) {
+    const std::vector<double> colour = reader.numbers("linear_srgb_from_camera", 9);
+    std::copy(colour.begin(), colour.end(), thread.linear_srgb_from_camera.begin());
+  }
+  for (const auto& [key, member] : {std::pair{"fit", &thread.fit}, std::pair{"provenance", &thread.provenance}})
+    if (reader.has(key)) {
+      *member = reader.raw(key);
+      if (!member->is_object()) reader.refuse(key, "expected an object");
+    }
+  reader.finish();
+  return thread;
+}
+
+ThreadFile read_thread(const std::filesystem::path& file) {
+  return parse_thread(read_json_file(file), file.string());
+}
+
+json to_json(const ThreadFile& thread) {
+  return {{"format", "threadstation/thread"},
+          {"version", 1},
+          {"name", thread.name},
+          {"diameter_mm", thread.diameter_mm},
+          {"parameters", parameters_json(thread.parameters)},
+          {"units", units()},
+          {"linear_srgb_from_camera", thread.linear_srgb_from_camera},
+          {"fit", thread.fit},
+          {"provenance", thread.provenance}};
+}
+
+}  // namespace station
