@@ -72,4 +72,20 @@ Camera look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const 
   return camera;
 }
 
+bool advance_to(const Eigen::AlignedBox3d& box, CameraRay& ray) {
+  double entry = 0, leave = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double inverse = 1 / ray.direction[axis];
+    double near = (box.min()[axis] - ray.origin[axis]) * inverse;
+    double far = (box.max()[axis] - ray.origin[axis]) * inverse;
+    if (near > far) std::swap(near, far);
+    entry = std::max(entry, near);  // a NaN (origin on a slab's plane, parallel to it) leaves the bounds as they are
+    leave = std::min(leave, far);
+  }
+  const double margin = 1e-5 * box.diagonal().norm();
+  if (box.isEmpty() || entry > leave + margin) return false;
+  ray.origin += std::max(0.0, entry - margin) * ray.direction;
+  return true;
+}
+
 }  // namespace renderer

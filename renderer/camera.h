@@ -32,4 +32,8 @@ Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point_world
 // A camera at `eye` looking at `target`; `up` shows upwards in the picture. Intrinsics are left at their defaults.
 Camera look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Eigen::Vector3d& up);
 
+// Moves a ray's origin to where it enters the box, in double, so that float rays are exact near the surfaces.
+// False when the ray misses the box.
+bool advance_to(const Eigen::AlignedBox3d& box, CameraRay& ray);
+
 }  // namespace renderer

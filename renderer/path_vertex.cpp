@@ -16,12 +16,6 @@ Matrix3f frame_rows(const Vector3f& x, const Vector3f& y, const Vector3f& z) {
   return rows;
 }
 
-// Offset of the viewing ray: the angle from the surface normal (local z) to wo in the normal plane is gamma_o.
-float offset(const Vector3f& wo) {
-  const float radial = std::hypot(wo.y(), wo.z());
-  return radial > 0 ? std::clamp(-wo.y() / radial, -1.0f, 1.0f) : 0.0f;
-}
-
 float single(double value) {
   return static_cast<float>(value);
 }
@@ -52,13 +46,22 @@ std::vector<CurveModel> prepare_curve_models(const std::vector<CurveSet>& curves
   return models;
 }
 
+Matrix3f local_from_world(const CurvePoint& point) {
+  return frame_rows(point.tangent, point.normal.cross(point.tangent), point.normal);
+}
+
+float viewing_offset(const Vector3f& wo) {
+  const float radial = std::hypot(wo.y(), wo.z());
+  return radial > 0 ? std::clamp(-wo.y() / radial, -1.0f, 1.0f) : 0.0f;
+}
+
 PathVertex::PathVertex(const SurfaceHit& hit, const Vector3f& wo, const std::vector<CurveModel>& models) {
   if (const auto* curve = std::get_if<CurvePoint>(&hit.point)) {
     is_curve_ = true;
     position_ = curve->position;
-    local_from_world_ = frame_rows(curve->tangent, curve->normal.cross(curve->tangent), curve->normal);
+    local_from_world_ = local_from_world(*curve);
     const Vector3f local = local_from_world_ * wo;
-    const float h = offset(local);
+    const float h = viewing_offset(local);
     lobes_ = std::visit([&](const auto& model) { return model.lobes_at(h, local); }, models[curve->curve_set]);
   } else {
     const auto& mesh = std::get<MeshPoint>(hit.point);

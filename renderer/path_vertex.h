@@ -16,6 +16,13 @@ namespace renderer {
 using CurveModel = std::variant<FiberModel<float>, ThreadModel<float>>;
 std::vector<CurveModel> prepare_curve_models(const std::vector<CurveSet>& curves);
 
+// Rotation into the scattering models' frame at a point of a curve: x = tangent, z = outward normal.
+Eigen::Matrix3f local_from_world(const CurvePoint& point);
+
+// Offset h of the ray along which a curve was hit from outside: the angle from the surface normal (local z) to the
+// direction wo back along the ray, in the normal plane, is gamma_o = asin h.
+float viewing_offset(const Eigen::Vector3f& wo_local);
+
 class PathVertex {
  public:
   // `wo`: unit direction back along the ray. The models must outlive the vertex.
