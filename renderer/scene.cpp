@@ -23,4 +23,11 @@ void CurveSet::add_clamped_curve(const std::vector<Eigen::Vector4f>& points) {
   for (std::uint32_t i = 0; i + 1 < points.size(); ++i) segments.push_back(first + i);
 }
 
+std::vector<ScatteringModel> scattering_models(const Scene& scene) {
+  std::vector<ScatteringModel> models;
+  for (const CurveSet& set : scene.curves) models.push_back(set.scattering);
+  for (const Cloth& cloth : scene.cloths) models.insert(models.end(), cloth.threads.begin(), cloth.threads.end());
+  return models;
+}
+
 }  // namespace renderer

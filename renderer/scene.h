@@ -1,4 +1,5 @@
-// What the path tracer sees: thread or fiber curves, diffuse meshes and spherical lights, in one world frame (mm).
+// What the path tracer sees: thread or fiber curves, cloth, diffuse meshes and spherical lights, in one world frame
+// (mm).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -10,6 +11,7 @@
 
 #include "renderer/scattering/fiber.h"
 #include "renderer/scattering/thread.h"
+#include "renderer/weave/patch.h"
 
 namespace renderer {
 
@@ -36,6 +38,23 @@ struct TriangleMesh {
   cv::Mat3f albedo = cv::Mat3f(1, 1, cv::Vec3f(0, 0, 0));  // looked up at the nearest texel (crisp tags)
 };
 
+// A smooth surface that says where each place of an endless patch (patch.h) lies: the patch's plane z = 0. Triangles
+// turn counter-clockwise both in the patch and seen from its face (+z), and share vertices where the cloth goes on.
+struct ClothSurface {
+  std::vector<Eigen::Vector3d> vertices{};  // mm, world
+  std::vector<Eigen::Vector3d> normals{};   // per vertex, unit: where the patch's +z points
+  std::vector<Eigen::Vector2d> patch_mm{};  // per vertex: x, y in the endless patch
+  std::vector<std::array<std::uint32_t, 3>> triangles{};
+};
+
+// Cloth in two scales: one patch, repeated without end over a surface and ending at its border. Memory does not grow
+// with the number of repeats. Cloth as explicit curves: cloth_shape.h.
+struct Cloth {
+  ClothSurface surface{};
+  YarnPatch patch{};
+  std::vector<ScatteringModel> threads{};  // by thread index of the patch's yarns
+};
+
 // Uniformly emitting sphere; irradiance at distance d facing it: radiance * pi * radius^2 / d^2.
 struct SphereLight {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
@@ -48,6 +67,11 @@ struct Scene {
   std::vector<CurveSet> curves{};
   std::vector<TriangleMesh> meshes{};
   std::vector<SphereLight> lights{};
+  std::vector<Cloth> cloths{};
 };
+
+// The models of all curves, in the order in which hits number them (CurvePoint::curve_set): the curve sets, then the
+// threads of each cloth.
+std::vector<ScatteringModel> scattering_models(const Scene& scene);
 
 }  // namespace renderer

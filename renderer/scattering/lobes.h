@@ -131,6 +131,29 @@ struct LobeWidths {
   }
 };
 
+// Where direction i lies relative to each lobe, all that M_p and N_p depend on besides the widths.
+template <class S>
+struct LobeAngles {
+  Lanes<S> distance2;    // squared distance of the directions across the specular cone, in (cos theta, sin theta)
+  Lanes<S> cos_cos;      // cos theta_o cos theta_i
+  Lanes<S> from_center;  // |phi - Phi_p|, within [0, pi]
+};
+
+// M = exp(-b) I0(a) / (2 v sinh(1/v)) with a = cos cos / v, b = sin sin / v. The exponentials are merged into the
+// squared distance of the two directions across the specular cone, which stays exact in float for small v.
+template <class S>
+Lanes<S> longitudinal_density(const LobeWidths<S>& widths, const LobeAngles<S>& at) {
+  const Lanes<S> a = at.cos_cos * widths.inv_v;
+  return widths.m_norm * (at.distance2 * widths.inv_v * S(-0.5)).exp() * bessel_i0e(a);
+}
+
+// Logistic trimmed to [-pi, pi] around each centre.
+template <class S>
+Lanes<S> azimuthal_density(const LobeWidths<S>& widths, const LobeAngles<S>& at) {
+  const Lanes<S> e = (-at.from_center * widths.inv_s).exp();
+  return widths.n_norm * e / (e + S(1.0)).square();
+}
+
 template <class S>
 struct ScatteringValue {
   Rgb<S> f_cos;  // includes the cosine
@@ -170,27 +193,19 @@ struct CurveLobes {
 
   // M_p N_p of each lobe: its density over solid angle.
   Lanes<S> lobe_densities(const Vec3<G>& wi) const {
+    const LobeAngles<S> at = angles(wi);
+    return longitudinal_density(*widths, at) * azimuthal_density(*widths, at);
+  }
+
+  LobeAngles<S> angles(const Vec3<G>& wi) const {
     using std::atan2, std::sqrt;
     const G cos_theta_i = sqrt(wi.y() * wi.y() + wi.z() * wi.z());
     const G along = azimuth_o.x() * wi.y() + azimuth_o.y() * wi.z();
     const G across = azimuth_o.x() * wi.z() - azimuth_o.y() * wi.y();
-    return longitudinal(wi.x(), cos_theta_i) * azimuthal(atan2(across, along));
-  }
-
-  // M = exp(-b) I0(a) / (2 v sinh(1/v)) with a = cos cos / v, b = sin sin / v. The exponentials are merged into the
-  // squared distance of the two directions across the specular cone, which stays exact in float for small v.
-  Lanes<S> longitudinal(const G& sin_theta_i, const G& cos_theta_i) const {
-    const Lanes<S> distance2 = (cos_theta_o - S(cos_theta_i)).square() + (sin_theta_o + S(sin_theta_i)).square();
-    const Lanes<S> a = cos_theta_o * widths->inv_v * S(cos_theta_i);
-    return widths->m_norm * (distance2 * widths->inv_v * S(-0.5)).exp() * bessel_i0e(a);
-  }
-
-  // Logistic trimmed to [-pi, pi] around each centre.
-  Lanes<S> azimuthal(const G& phi) const {
-    const Lanes<S> straight = (center - S(phi)).abs();
-    const Lanes<S> x = straight.min(Lanes<S>(S(2 * kPi) - straight));
-    const Lanes<S> e = (-x * widths->inv_s).exp();
-    return widths->n_norm * e / (e + S(1.0)).square();
+    const Lanes<S> straight = (center - S(atan2(across, along))).abs();
+    return {.distance2 = (cos_theta_o - S(cos_theta_i)).square() + (sin_theta_o + S(wi.x())).square(),
+            .cos_cos = cos_theta_o * S(cos_theta_i),
+            .from_center = straight.min(Lanes<S>(S(2 * kPi) - straight))};
   }
 
   // A direction i with density evaluate(i).pdf; u in [0, 1).

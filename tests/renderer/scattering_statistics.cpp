@@ -66,8 +66,11 @@ double energy(const CurveLobes<double>& lobes, int channel) {
   Lanes<double> m = Lanes<double>::Zero(), n = Lanes<double>::Zero();
   for (int k = 0; k < kSteps; ++k) {
     const double theta = kPi * ((k + 0.5) / kSteps - 0.5), phi = 2 * kPi * (k + 0.5) / kSteps - kPi;
-    m += lobes.longitudinal(std::sin(theta), std::cos(theta)) * (std::cos(theta) * kPi / kSteps);
-    n += lobes.azimuthal(phi) * (2 * kPi / kSteps);
+    const Eigen::Vector2d around(std::cos(phi), std::sin(phi));  // turned by phi from direction o
+    const Eigen::Vector2d o = lobes.azimuth_o;
+    const Vec3<double> in_plane(0, o.x() * around.x() - o.y() * around.y(), o.x() * around.y() + o.y() * around.x());
+    m += longitudinal_density(*lobes.widths, lobes.angles(direction(theta, 0))) * (std::cos(theta) * kPi / kSteps);
+    n += azimuthal_density(*lobes.widths, lobes.angles(in_plane)) * (2 * kPi / kSteps);
   }
   return (m * n * lobes.attenuation.col(channel)).sum();
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "renderer/scattering/thread_gradient.h"
 #include "scattering_statistics.h"
 
 namespace renderer {
@@ -167,6 +168,70 @@ TEST(ThreadTest, ValuesAndDerivativesAreFiniteAtGrazingOffsetsInclinationsAndExt
       }
     }
   }
+}
+
+// All derivatives of one channel in the order of Values; the two other channels' absorptions give none.
+std::array<double, kThreadParameterCount> slopes_of(const ThreadGradient<double>& gradient, int channel) {
+  std::array<double, kThreadParameterCount> slopes{};
+  slopes[static_cast<std::size_t>(channel)] = gradient.slopes(kSlopeSigma, channel);
+  for (int k = 1; k < kThreadSlopeCount; ++k) slopes[static_cast<std::size_t>(k + 2)] = gradient.slopes(k, channel);
+  return slopes;
+}
+
+template <class S>
+ThreadPoint<S> point_of(double theta, double h) {
+  const InnerChord<double> chord(h, std::sin(theta), std::cos(theta), kThreadEta);
+  return {static_cast<S>(std::cos(theta)), static_cast<S>(chord.length)};
+}
+
+TEST(ThreadTest, ClosedFormDerivativesAreThoseOfDualNumbers) {
+  std::array<Jet, kThreadParameterCount> jets;
+  for (std::size_t k = 0; k < jets.size(); ++k) jets[k] = Jet(kValues[k], static_cast<int>(k));
+  const ThreadModel<Jet> dual_model(thread_parameters(jets, false));
+  const ThreadGradientModel<double> model(thread_parameters(kValues, false));
+  for (double theta_o : {-1.45, -0.5, 0.0, 0.9})
+    for (double h : {-0.9, 0.1, 0.6})
+      for (double theta_i : {-0.8, 0.02, 0.6, 1.4})
+        for (double phi : {-3.0, -1.5, 0.2, 1.9}) {
+          const Vec3<double> wo = viewing_direction(theta_o, h), wi = direction(theta_i, phi);
+          const auto lobes = ThreadModel<double>(thread_parameters(kValues, false)).lobes_at(h, wo);
+          const auto expected = dual_model.lobes_at(h, wo).evaluate(wi);
+          const auto found = model.evaluate(point_of<double>(theta_o, h), lobes.angles(wi));
+          for (int channel = 0; channel < 3; ++channel) {
+            const Jet& jet = expected.f_cos[channel];
+            EXPECT_NEAR(found.f_cos[channel], jet.a, 1e-12 * (1 + jet.a));
+            for (std::size_t k = 0; k < jets.size(); ++k) {
+              const double slope = jet.v[static_cast<int>(k)];
+              EXPECT_NEAR(slopes_of(found, channel)[k], slope, 1e-10 * (jet.a + std::abs(slope)) + 1e-14)
+                  << "parameter " << k << " at " << theta_o << ' ' << h << ' ' << theta_i << ' ' << phi;
+            }
+          }
+        }
+}
+
+TEST(ThreadTest, ClosedFormDerivativesInFloatLoseNoMoreThanFloats) {
+  Values values = kValues;
+  values[8] = 0.03;  // the narrowest lobe there is: the largest derivatives
+  values[5] = 0.03;
+  const ThreadGradientModel<double> exact(thread_parameters(values, false));
+  std::array<float, kThreadParameterCount> single{};
+  for (std::size_t k = 0; k < single.size(); ++k) single[k] = static_cast<float>(values[k]);
+  const ThreadGradientModel<float> rounded(thread_parameters(single, false));
+  for (double h : {-0.9, 0.1, 0.6})
+    for (double theta_i : {-0.5, 0.45, 0.52}) {
+      const Vec3<double> wo = viewing_direction(-0.5, h);
+      const auto at =
+          ThreadModel<double>(thread_parameters(values, false)).lobes_at(h, wo).angles(direction(theta_i, 0.3));
+      const LobeAngles<float> at_float{at.distance2.cast<float>(), at.cos_cos.cast<float>(),
+                                       at.from_center.cast<float>()};
+      const auto expected = exact.evaluate(point_of<double>(-0.5, h), at);
+      const auto found = rounded.evaluate(point_of<float>(-0.5, h), at_float);
+      for (int k = 0; k < kThreadSlopeCount; ++k) {
+        const double slope = expected.slopes(k, 1);
+        // exp of arguments up to 100 in float: 1e-5; beside terms of the size f / roughness that cancel
+        EXPECT_NEAR(static_cast<double>(found.slopes(k, 1)), slope, 3e-4 * (std::abs(slope) + expected.f_cos[1]));
+      }
+    }
 }
 
 }  // namespace

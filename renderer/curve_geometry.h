@@ -1,0 +1,16 @@
+// Round curves inside Embree: seen from outside only, with exact normals (ray_scene.h).
+#pragma once
+
+#include "renderer/ray_scene.h"
+
+namespace renderer {
+
+// Adds the curves as one geometry, whose buffers stay in the set: it must outlive the scene and stay where it is.
+void add_curves(RTCDeviceTy* device, RTCSceneTy* scene, const CurveSet& curves);
+
+// Where a ray met segment `segment` at parameter u, as Embree reports it with an unnormalised normal; in the frame of
+// the curves. The ray's direction need not be a unit vector; the caller fills in the number of the curve set.
+CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u, const Eigen::Vector3f& hit_normal,
+                          const Ray& ray, float distance);
+
+}  // namespace renderer
