@@ -1,0 +1,52 @@
+#include "inversion/agreement.h"
+
+#include <cmath>
+
+#include "inversion/blocks.h"
+#include "renderer/path_tracer.h"
+
+namespace inversion {
+
+double ViewAgreement::relative_rmse() const {
+  return std::sqrt(mean_square) / mean_reference;
+}
+
+ViewAgreement agreement(const View& view, const cv::Mat3f& rendered, int block_px) {
+  const double diffuser = diffuser_radiance(view.light).mean();
+  ViewAgreement result;
+  double pixels = 0, difference_sum = 0;
+  for (const Block& block : mask_blocks(view.mask, block_px)) {
+    const auto weight = static_cast<double>(block.pixels.size());
+    const Eigen::Array3d reference = block_mean(block, view.image) / diffuser;
+    const Eigen::Array3d difference = block_mean(block, rendered) / diffuser - reference;
+    result.mean_square += weight * difference.square().mean();
+    result.mean_reference += weight * reference.mean();
+    difference_sum += weight * difference.mean();
+    pixels += weight;
+  }
+  result.relative_bias = difference_sum / result.mean_reference;
+  result.mean_square /= pixels;
+  result.mean_reference /= pixels;
+  return result;
+}
+
+double overall_relative_rmse(const std::vector<ViewAgreement>& views) {
+  double squares = 0, references = 0;
+  for (const ViewAgreement& view : views) {
+    squares += view.mean_square;
+    references += view.mean_reference;
+  }
+  const auto count = static_cast<double>(views.size());
+  return std::sqrt(squares / count) / (references / count);
+}
+
+cv::Mat3f fitted_view(const WrappedSpool& spool, const View& view, const renderer::ThreadParameters& thread,
+                      int samples_per_pixel, std::uint64_t seed, const std::function<bool(double)>& progress) {
+  const renderer::PathTracer tracer(view_scene(spool, thread, view.light));
+  renderer::RenderOptions options{.samples_per_pixel = samples_per_pixel, .seed = seed};
+  options.only = view.mask;
+  options.progress = progress;
+  return tracer.render(view.camera, options);
+}
+
+}  // namespace inversion

@@ -1,0 +1,29 @@
+// A view pooled to what the model can say: block averages of its masked pixels. The thread model has no detail below a
+// thread, photographs do, so pictures are compared where a block covers several threads.
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "inversion/view.h"
+#include "inversion/wrapped_spool.h"
+
+namespace inversion {
+
+struct Block {
+  cv::Point corner;                 // of the block's first pixel in the picture
+  std::vector<cv::Point> pixels{};  // the masked ones
+};
+
+// Square blocks of `side_px` over the mask, row by row; blocks without masked pixels are left out.
+std::vector<Block> mask_blocks(const cv::Mat1b& mask, int side_px);
+
+// Side of the blocks: kLeastBlock_px, or more where that does not cover two thread pitches in every view.
+int block_side_px(const WrappedSpool& spool, const std::vector<View>& views);
+inline constexpr int kLeastBlock_px = 8;
+
+// Mean over the block's masked pixels of a picture, RGB.
+Eigen::Array3d block_mean(const Block& block, const cv::Mat3f& picture);
+
+}  // namespace inversion

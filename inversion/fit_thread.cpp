@@ -1,0 +1,169 @@
+#include "inversion/fit_thread.h"
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "inversion/thread_objective.h"
+
+namespace inversion {
+namespace {
+
+using renderer::kThreadParameterCount;
+
+constexpr double kGamma = 1e-4;          // of eq. 6's trend of lambda_0
+constexpr double kTrendRounding = 1e-3;  // below this the hinge is rounded, so that it has a derivative
+constexpr int kEnergyAngles = 32;
+constexpr double kEnergyPenalty = 0.1;  // of the mean squared excess of energy: beside losses of about 1e-3
+constexpr int kMostSteps = 40;
+
+class DataTerm : public ceres::CostFunction {
+ public:
+  explicit DataTerm(const ThreadObjective& objective) : objective_(objective) {
+    set_num_residuals(objective.residual_count());
+    mutable_parameter_block_sizes()->push_back(kThreadParameterCount);
+  }
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    objective_.residuals(Eigen::Map<const ThreadUnknowns>(parameters[0]), residuals,
+                         jacobians ? jacobians[0] : nullptr);
+    return true;
+  }
+
+ private:
+  const ThreadObjective& objective_;
+};
+
+template <class S>
+renderer::BasicThreadParameters<S> energies_of(const S* u) {
+  using std::exp;
+  renderer::BasicThreadParameters<S> p;
+  p.r0a = -u[11], p.r0b = u[10] - u[9] + u[11], p.r0c = u[9];
+  p.r1a = u[12];
+  p.r2a = exp(u[13]), p.r2b = exp(u[14]), p.r2c = u[15] - S(1.0) / (p.r2a + p.r2b);
+  p.limit_energy = false;
+  return p;
+}
+
+// Energy beyond 1 at evenly spaced c.
+struct EnergyTerm {
+  template <class S>
+  bool operator()(const S* u, S* residuals) const {
+    const auto p = energies_of(u);
+    const double weight = std::sqrt(2 * kEnergyPenalty / kEnergyAngles);
+    for (int i = 0; i < kEnergyAngles; ++i) {
+      const double c = (i + 0.5) / kEnergyAngles;
+      const auto lambda = renderer::thread_lobe_energies<S>(p, c);
+      const S excess = lambda[0] + lambda[1] + lambda[2] - S(1.0);
+      residuals[i] = excess > S(0.0) ? S(weight) * excess : S(0.0);
+    }
+    return true;
+  }
+};
+
+// lambda_0(1) - lambda_0(0) where positive.
+struct TrendTerm {
+  template <class S>
+  bool operator()(const S* u, S* residual) const {
+    residual[0] = u[10] > u[9] ? u[10] - u[9] : S(0.0);
+    return true;
+  }
+};
+
+struct StopOnRequest : ceres::IterationCallback {
+  std::function<bool(int)> go_on;
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& step) override {
+    return go_on(step.iteration) ? ceres::SOLVER_CONTINUE : ceres::SOLVER_ABORT;
+  }
+};
+
+void set_bounds(ceres::Problem& problem, ThreadUnknowns& unknowns, const std::vector<ParameterGroup>& held) {
+  const ThreadUnknowns low = lower_bounds(), high = upper_bounds();
+  std::vector<int> constant;
+  for (int k = 0; k < kThreadParameterCount; ++k) {
+    problem.SetParameterLowerBound(unknowns.data(), k, low[k]);
+    problem.SetParameterUpperBound(unknowns.data(), k, high[k]);
+    if (std::find(held.begin(), held.end(), group_of(k)) != held.end()) constant.push_back(k);
+  }
+  if (static_cast<int>(constant.size()) == kThreadParameterCount)
+    problem.SetParameterBlockConstant(unknowns.data());
+  else if (!constant.empty())
+    problem.SetManifold(unknowns.data(), new ceres::SubsetManifold(kThreadParameterCount, constant));
+}
+
+FitRound solve(const ThreadObjective& objective, const std::vector<ParameterGroup>& held,
+               const std::function<bool(int)>& go_on, ThreadUnknowns& unknowns) {
+  ceres::Problem problem;
+  problem.AddResidualBlock(new DataTerm(objective), nullptr, unknowns.data());
+  problem.AddResidualBlock(
+      new ceres::AutoDiffCostFunction<EnergyTerm, kEnergyAngles, kThreadParameterCount>(new EnergyTerm), nullptr,
+      unknowns.data());
+  // Huber's loss is linear beyond the rounding: half of it times the scale is gamma |x|.
+  problem.AddResidualBlock(
+      new ceres::AutoDiffCostFunction<TrendTerm, 1, kThreadParameterCount>(new TrendTerm),
+      new ceres::ScaledLoss(new ceres::HuberLoss(kTrendRounding), kGamma / kTrendRounding, ceres::TAKE_OWNERSHIP),
+      unknowns.data());
+  set_bounds(problem, unknowns, held);
+
+  StopOnRequest callback;
+  callback.go_on = go_on;
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = kMostSteps;
+  options.function_tolerance = 1e-4;
+  options.initial_trust_region_radius = getenv("TR") ? atof(getenv("TR")) : 1;
+  options.logging_type = ceres::PER_MINIMIZER_ITERATION; options.minimizer_progress_to_stdout = getenv("FULL");
+  options.callbacks = {&callback};
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  if (getenv("FULL")) std::puts(summary.FullReport().c_str());
+  if (summary.termination_type == ceres::USER_FAILURE)
+    throw std::runtime_error("the fit was stopped on request; start it again for a thread");
+  if (!summary.IsSolutionUsable())
+    throw std::runtime_error("the fit found no thread: " + summary.message + "; look at the views and their masks");
+  return {.steps = static_cast<int>(summary.iterations.size()) - 1,
+          .loss_before = summary.initial_cost,
+          .loss_after = summary.final_cost,
+          .converged = summary.termination_type == ceres::CONVERGENCE};
+}
+
+}  // namespace
+
+renderer::ThreadParameters starting_thread() {
+  renderer::ThreadParameters p;
+  p.sigma_a.setConstant(0.3);
+  return p;
+}
+
+ThreadFit fit_thread(const WrappedSpool& spool, const std::vector<View>& views, const FitOptions& options) {
+  ThreadObjective objective(spool, views);
+  ThreadUnknowns unknowns = unknowns_of(options.start);
+  ThreadFit fit{.block_px = objective.block_px(), .blocks = objective.block_count()};
+  double whole = 0, done = 0;
+  for (int paths : options.paths_per_block) whole += paths;
+  for (std::size_t round = 0; round < options.paths_per_block.size(); ++round) {
+    const int paths = options.paths_per_block[round];
+    const std::string name =
+        "round " + std::to_string(round + 1) + " of " + std::to_string(options.paths_per_block.size());
+    const auto report = [&](const std::string& what, double share) {
+      if (options.progress && !options.progress(name + ", " + what, (done + share * paths) / whole))
+        throw std::runtime_error("the fit was stopped on request; start it again for a thread");
+    };
+    constexpr double kTracingShare = 0.4;
+    objective.trace(parameters_of(unknowns), paths, options.seed + 1000003 * round,
+                    [&](int views_done, int total) { report("tracing", kTracingShare * views_done / total); });
+    const auto go_on = [&](int step) {
+      return !options.progress ||
+             options.progress(name + ", step " + std::to_string(step),
+                              (done + paths * (kTracingShare + (1 - kTracingShare) * step / kMostSteps)) / whole);
+    };
+    fit.rounds.push_back(solve(objective, options.held, go_on, unknowns));
+    fit.rounds.back().paths_per_block = paths;
+    done += paths;
+  }
+  fit.parameters = parameters_of(unknowns);
+  fit.parameters.limit_energy = true;
+  return fit;
+}
+
+}  // namespace inversion

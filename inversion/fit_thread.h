@@ -1,0 +1,49 @@
+// Fits the thread model to photographs of a wrapped spool: minimises the loss of eq. 6 [Xia 2025]
+//
+//   L = sum over views i of  w_i sum over masked pixels ||I_i - I_ref,i||^2  +  penalties,      w_i = 1 / masked pixels
+//
+// over block averages (blocks.h), in units of the mean radiance of a perfect diffuser facing the lamp (view.h), by
+// Levenberg-Marquardt with bounds. The pictures I_i are path-traced: paths are recorded at the parameters known so far
+// and shaded for all others (light_paths.h); each round records anew, with more paths. Penalties: lobes' energies whose
+// sum exceeds 1 at some angle, and eq. 6's preference for lambda_0(1) <= lambda_0(0).
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "inversion/thread_unknowns.h"
+#include "inversion/view.h"
+
+namespace inversion {
+
+// A start that no thread is far from: grey, half rough, reflecting a third and passing a third of the light.
+renderer::ThreadParameters starting_thread();
+
+struct FitOptions {
+  renderer::ThreadParameters start = starting_thread();
+  std::vector<int> paths_per_block{32, 64, 192};  // one entry a round
+  std::vector<ParameterGroup> held{};             // left at the start
+  std::uint64_t seed = 1;
+  // Called between steps with what is done and the finished fraction; returning false stops the fit.
+  std::function<bool(const std::string&, double)> progress{};
+};
+
+struct FitRound {
+  int paths_per_block = 0;
+  int steps = 0;
+  double loss_before = 0, loss_after = 0;
+  bool converged = false;
+};
+
+struct ThreadFit {
+  renderer::ThreadParameters parameters;  // with limit_energy on
+  std::vector<FitRound> rounds;
+  int block_px = 0;
+  std::size_t blocks = 0;
+};
+
+// Errors: std::runtime_error when the views are unusable (none, no masked pixels, dark lamp) or the fit was stopped.
+ThreadFit fit_thread(const WrappedSpool& spool, const std::vector<View>& views, const FitOptions& options);
+
+}  // namespace inversion

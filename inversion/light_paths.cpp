@@ -1,0 +1,227 @@
+#include "inversion/light_paths.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "renderer/path_vertex.h"
+#include "renderer/pixel_rays.h"
+#include "renderer/sampler.h"
+#include "renderer/sphere_lights.h"
+
+namespace inversion {
+namespace {
+
+using Eigen::Array3f;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using renderer::CurveLobes;
+using renderer::ThreadModel;
+using Slopes = Eigen::Array<float, renderer::kThreadSlopeLanes, 3>;
+
+constexpr int kFirstRouletteVertex = 4;  // earlier vertices always go on
+constexpr int kMostVertices = 1000;      // a guard; roulette ends paths long before
+
+renderer::BasicThreadParameters<float> in_float(const renderer::ThreadParameters& p) {
+  renderer::BasicThreadParameters<float> f;
+  f.sigma_a = p.sigma_a.cast<float>();
+  for (std::size_t i = 0; i < 3; ++i) {
+    f.alpha[i] = static_cast<float>(p.alpha[i]);
+    f.beta[i] = static_cast<float>(p.beta[i]);
+  }
+  f.r0a = static_cast<float>(p.r0a), f.r0b = static_cast<float>(p.r0b), f.r0c = static_cast<float>(p.r0c);
+  f.r1a = static_cast<float>(p.r1a);
+  f.r2a = static_cast<float>(p.r2a), f.r2b = static_cast<float>(p.r2b), f.r2c = static_cast<float>(p.r2c);
+  f.limit_energy = p.limit_energy;
+  return f;
+}
+
+PathDirection stored(const renderer::LobeAngles<float>& at) {
+  return {at.distance2[0], at.cos_cos[0], {at.from_center[0], at.from_center[1], at.from_center[2]}};
+}
+
+renderer::LobeAngles<float> loaded(const PathDirection& direction) {
+  return {Eigen::Array4f::Constant(direction.distance2), Eigen::Array4f::Constant(direction.cos_cos),
+          Eigen::Array4f(direction.from_center[0], direction.from_center[1], direction.from_center[2], 0.0F)};
+}
+
+// Traces the paths of one view; the lamp has unit intensity.
+class PathRecorder {
+ public:
+  PathRecorder(const renderer::RayScene& rays, const View& view, const renderer::ThreadParameters& traced_with)
+      : rays_(rays), model_(in_float(traced_with)), lights_({unit_lamp(view.light)}) {}
+
+  void record(renderer::CameraRay camera_ray, renderer::Sampler& sampler, std::vector<PathEvent>& events) const {
+    if (!renderer::advance_to(rays_.bounds(), camera_ray)) return;
+    renderer::Ray ray{camera_ray.origin.cast<float>(), camera_ray.direction.cast<float>()};
+    float throughput = 1;
+    for (int vertex = 0; vertex < kMostVertices && throughput > 0; ++vertex) {
+      const std::optional<renderer::SurfaceHit> hit = rays_.intersect(ray);
+      const auto* curve = hit ? std::get_if<renderer::CurvePoint>(&hit->point) : nullptr;
+      if (!curve) {
+        if (vertex > 0) events.back().inverse_next_pdf = 0;  // nothing there: nothing to shade
+        return;
+      }
+      ray = record_event(*curve, ray.direction, vertex + 1 >= kFirstRouletteVertex, sampler, throughput, events);
+    }
+  }
+
+ private:
+  static renderer::SphereLight unit_lamp(NearLight light) {
+    light.intensity.setOnes();
+    return sphere_light(light);
+  }
+
+  // Appends the event; returns the ray that goes on and scales its throughput, which is 0 where the path ends.
+  renderer::Ray record_event(const renderer::CurvePoint& curve, const Vector3f& arriving, bool roulette,
+                             renderer::Sampler& sampler, float& throughput, std::vector<PathEvent>& events) const {
+    const Eigen::Matrix3f frame = renderer::local_from_world(curve);
+    const Vector3f wo = frame * -arriving;
+    const float h = renderer::viewing_offset(wo);
+    const CurveLobes<float> lobes = model_.lobes_at(h, wo);
+    const float cosine = std::hypot(wo.y(), wo.z());
+    const auto eta = static_cast<float>(renderer::kThreadEta);
+    PathEvent event{};
+    event.point = {cosine, renderer::InnerChord<float>(h, wo.x(), cosine, eta).length};
+    event.light_weight = record_light(curve.position, frame, lobes, sampler.next_2d(), event.light);
+
+    const Eigen::Vector2f u = sampler.next_2d(), u_angles = sampler.next_2d();
+    const Vector3f next = lobes.sample(u.x(), u.y(), u_angles.x(), u_angles.y());
+    event.next = stored(lobes.angles(next));
+    const renderer::ScatteringValue<float> scattering = lobes.evaluate(next);
+    float weight = scattering.pdf > 0 ? scattering.f_cos.maxCoeff() / scattering.pdf : 0.0F;
+    event.inverse_next_pdf = scattering.pdf > 0 ? 1 / scattering.pdf : 0.0F;
+    if (roulette) {
+      const float survival = std::min(0.97F, throughput * weight);
+      if (sampler.next_1d() < survival) {
+        event.inverse_next_pdf /= survival;
+        weight /= survival;
+      } else {
+        event.inverse_next_pdf = weight = 0;
+      }
+    }
+    throughput *= weight;
+    events.push_back(event);
+    return {curve.position, (frame.transpose() * next).normalized()};
+  }
+
+  float record_light(const Vector3f& position, const Eigen::Matrix3f& frame, const CurveLobes<float>& lobes,
+                     const Eigen::Vector2f& u, PathDirection& direction) const {
+    const Vector3d origin = position.cast<double>();
+    const std::optional<Vector3d> wi = lights_.sample(origin, 0, u);
+    const std::optional<renderer::LightHit> light = wi ? lights_.intersect(origin, *wi, false) : std::nullopt;
+    if (!light) return 0;  // rounding at the rim of the cone
+    direction = stored(lobes.angles(frame * wi->cast<float>()));
+    if (rays_.occluded({position, wi->cast<float>()}, static_cast<float>(light->distance))) return 0;
+    return light->radiance[0] / static_cast<float>(lights_.pdf(origin, *wi));
+  }
+
+  const renderer::RayScene& rays_;
+  ThreadModel<float> model_;
+  renderer::SphereLights lights_;
+};
+
+struct BlockPaths {
+  std::vector<PathEvent> events;
+  std::vector<std::uint32_t> ends;
+};
+
+BlockPaths trace_block(const PathRecorder& recorder, const View& view, const Block& block, int count,
+                       renderer::Sampler sampler) {
+  BlockPaths traced;
+  for (int i = 0; i < count; ++i) {
+    sampler.start_sample(static_cast<std::uint32_t>(i));
+    const auto chosen = static_cast<std::size_t>(sampler.next_1d() * static_cast<float>(block.pixels.size()));
+    const cv::Point& pixel = block.pixels[std::min(chosen, block.pixels.size() - 1)];
+    const Eigen::Vector2f u = sampler.next_2d();
+    const renderer::CameraRay ray = renderer::ray_through(view.camera, pixel.x + static_cast<double>(u.x()) - 0.5,
+                                                          pixel.y + static_cast<double>(u.y()) - 0.5);
+    recorder.record(ray, sampler, traced.events);
+    traced.ends.push_back(static_cast<std::uint32_t>(traced.events.size()));
+  }
+  return traced;
+}
+
+struct PathSum {
+  Array3f throughput = Array3f::Ones(), value = Array3f::Zero();
+  Slopes throughput_slopes = Slopes::Zero(), slopes = Slopes::Zero();
+
+  void add_plain(const PathEvent& event, const BlockModel& model) {
+    if (event.light_weight > 0)
+      value += throughput * model.f_cos(event.point, loaded(event.light)) * event.light_weight;
+    if (event.inverse_next_pdf > 0)
+      throughput *= model.f_cos(event.point, loaded(event.next)) * event.inverse_next_pdf;
+  }
+  void add_with_slopes(const PathEvent& event, const BlockModel& model) {
+    if (event.light_weight > 0) {
+      const auto f = model.evaluate(event.point, loaded(event.light));
+      for (int c = 0; c < 3; ++c) {
+        value[c] += throughput[c] * f.f_cos[c] * event.light_weight;
+        slopes.col(c) += throughput_slopes.col(c) * (f.f_cos[c] * event.light_weight) +
+                         f.slopes.col(c) * (throughput[c] * event.light_weight);
+      }
+    }
+    if (event.inverse_next_pdf > 0) {
+      const auto f = model.evaluate(event.point, loaded(event.next));
+      for (int c = 0; c < 3; ++c) {
+        throughput_slopes.col(c) = throughput_slopes.col(c) * (f.f_cos[c] * event.inverse_next_pdf) +
+                                   f.slopes.col(c) * (throughput[c] * event.inverse_next_pdf);
+        throughput[c] *= f.f_cos[c] * event.inverse_next_pdf;
+      }
+    }
+  }
+};
+
+}  // namespace
+
+renderer::RayScene spool_rays(const WrappedSpool& spool) {
+  return renderer::RayScene(view_scene(spool, renderer::ThreadParameters{}, NearLight{}));
+}
+
+BlockModel block_model(const renderer::ThreadParameters& parameters) {
+  return BlockModel(in_float(parameters));
+}
+
+LightPaths trace_light_paths(const renderer::RayScene& rays, const View& view, const std::vector<Block>& blocks,
+                             const renderer::ThreadParameters& traced_with, int paths_per_block, std::uint64_t seed) {
+  const PathRecorder recorder(rays, view, traced_with);
+  std::vector<BlockPaths> traced(blocks.size());
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+    traced[b] = trace_block(recorder, view, blocks[b], paths_per_block, renderer::Sampler(seed, b));
+  });
+  LightPaths paths;
+  for (const BlockPaths& block : traced) {
+    const auto first = static_cast<std::uint32_t>(paths.events.size());
+    paths.block_paths.push_back(static_cast<std::uint32_t>(paths.path_ends.size()));
+    paths.events.insert(paths.events.end(), block.events.begin(), block.events.end());
+    for (std::uint32_t end : block.ends) paths.path_ends.push_back(first + end);
+  }
+  paths.block_paths.push_back(static_cast<std::uint32_t>(paths.path_ends.size()));
+  return paths;
+}
+
+BlockEstimate shade_block(const LightPaths& paths, std::size_t block, const BlockModel& model, bool with_slopes) {
+  const std::uint32_t first = paths.block_paths[block], last = paths.block_paths[block + 1];
+  BlockEstimate estimate;
+  Eigen::Array3d squares = Eigen::Array3d::Zero();
+  for (std::uint32_t path = first; path < last; ++path) {
+    PathSum sum;
+    const std::uint32_t begin = path == 0 ? 0 : paths.path_ends[path - 1];
+    for (std::uint32_t e = begin; e < paths.path_ends[path]; ++e) {
+      if (with_slopes)
+        sum.add_with_slopes(paths.events[e], model);
+      else
+        sum.add_plain(paths.events[e], model);
+    }
+    estimate.value += sum.value.cast<double>();
+    squares += sum.value.cast<double>().square();
+    if (with_slopes) estimate.slopes += sum.slopes.cast<double>();
+  }
+  const double count = last - first;
+  estimate.value /= count;
+  estimate.slopes /= count;
+  estimate.variance = (squares / count - estimate.value.square()).max(0.0) / count;
+  return estimate;
+}
+
+}  // namespace inversion

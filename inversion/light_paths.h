@@ -1,0 +1,61 @@
+// Light paths through one view of the wrapped spool, traced once and then shaded with any thread parameters.
+//
+// Everything in a view but the thread's parameters is fixed: cameras, light, threads. So is what a path meets. A path
+// traced with some parameters (which decide how directions were drawn) therefore estimates the picture for all others
+// too: its contribution is f_cos / pdf at each vertex, with f_cos evaluated anew and the recorded pdf. That is unbiased
+// for any parameters and noisier the farther they are from those it was traced with; fits trace again on their way.
+//
+//   radiance of a block / intensity = mean over its paths of  sum_v  [prod_(u<v) f_u(next) / pdf_u]  f_v(light) w_v
+//
+// Light sampling only: the lamp is small, and no lobe is narrow enough (roughness >= 0.02) to prefer finding it by
+// chance. The holder's frame ends paths (view.h).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "inversion/blocks.h"
+#include "inversion/view.h"
+#include "renderer/ray_scene.h"
+#include "renderer/scattering/thread_gradient.h"
+
+namespace inversion {
+
+// LobeAngles of a thread: without tilt the lobes share the cone.
+struct PathDirection {
+  float distance2, cos_cos;
+  std::array<float, 3> from_center;
+};
+
+struct PathEvent {
+  renderer::ThreadPoint<float> point;
+  PathDirection light, next;
+  float light_weight;      // radiance per intensity / density of the direction, 1/mm^2; 0 in shadow
+  float inverse_next_pdf;  // includes roulette; 0 where the path ends
+};
+
+struct LightPaths {
+  std::vector<PathEvent> events;
+  std::vector<std::uint32_t> path_ends;    // index after each path's last event; paths without events have none
+  std::vector<std::uint32_t> block_paths;  // index of each block's first path, and the number of paths at the end
+};
+
+// The wrapped spool as rays meet it; the same for all views.
+renderer::RayScene spool_rays(const WrappedSpool& spool);
+
+// `paths_per_block` paths from random positions in each block's pixels.
+LightPaths trace_light_paths(const renderer::RayScene& rays, const View& view, const std::vector<Block>& blocks,
+                             const renderer::ThreadParameters& traced_with, int paths_per_block, std::uint64_t seed);
+
+// One block's estimate for the given parameters, per unit of intensity (1/mm^2), RGB.
+struct BlockEstimate {
+  Eigen::Array3d value = Eigen::Array3d::Zero();
+  Eigen::Array3d variance = Eigen::Array3d::Zero();  // of `value`
+  Eigen::Array<double, renderer::kThreadSlopeLanes, 3> slopes =
+      Eigen::Array<double, renderer::kThreadSlopeLanes, 3>::Zero();  // d value / d parameter (thread_gradient.h)
+};
+using BlockModel = renderer::ThreadGradientModel<float>;
+BlockEstimate shade_block(const LightPaths& paths, std::size_t block, const BlockModel& model, bool with_slopes);
+BlockModel block_model(const renderer::ThreadParameters& parameters);
+
+}  // namespace inversion

@@ -1,0 +1,47 @@
+// The data term of the fit as one vector of residuals: block averages of all views, rendered minus photographed.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "inversion/blocks.h"
+#include "inversion/light_paths.h"
+#include "inversion/thread_unknowns.h"
+
+namespace inversion {
+
+class ThreadObjective {
+ public:
+  ThreadObjective(const WrappedSpool& spool, const std::vector<View>& views);
+
+  // Records the light paths that residuals() shades from now on. Calls step(done, total) after each view.
+  void trace(const renderer::ThreadParameters& traced_with, int paths_per_block, std::uint64_t seed,
+             const std::function<void(int, int)>& step);
+
+  int residual_count() const { return static_cast<int>(3 * block_count_); }
+  std::size_t block_count() const { return block_count_; }
+  int block_px() const { return block_px_; }
+
+  // residuals: sqrt(2 w_i n_b) (I - I_ref) / diffuser, so that half their squared norm is the loss; block after block,
+  // RGB. jacobian: residuals x unknowns, row-major, or null. One call shades every path: the fit's whole cost.
+  void residuals(const ThreadUnknowns& unknowns, double* residuals, double* jacobian) const;
+
+ private:
+  struct ViewBlocks {
+    const View* view;
+    std::vector<Block> blocks;
+    Eigen::Array3d scale;  // block estimates times this are radiances over the diffuser's
+    double diffuser;       // mean radiance of the diffuser
+    double weight;         // w_i
+    LightPaths paths{};
+    std::size_t first_block;
+  };
+
+  renderer::RayScene rays_;
+  int block_px_;
+  std::size_t block_count_ = 0;
+  std::vector<ViewBlocks> views_;
+};
+
+}  // namespace inversion
