@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 #include <set>
+#include <stdexcept>
+#include <string>
 
 namespace renderer {
 namespace {
@@ -61,6 +63,15 @@ std::vector<int> threads_of(const YarnPatch& patch) {
   std::set<int> threads;
   for (const Yarn& yarn : patch.yarns) threads.insert(yarn.thread);
   return {threads.begin(), threads.end()};
+}
+
+void check_threads(const YarnPatch& patch, std::size_t count) {
+  for (const int thread : threads_of(patch)) {
+    if (thread >= 0 && static_cast<std::size_t>(thread) < count) continue;
+    throw std::runtime_error("cloth: the patch \"" + patch.name + "\" has a yarn of thread " +
+                             std::to_string(thread) + ", but " + std::to_string(count) +
+                             " threads are given (counted from 0); add the thread or correct the draft");
+  }
 }
 
 CurveSet curves_of(const YarnPatch& patch, int tiles_x, int tiles_y, int thread) {
