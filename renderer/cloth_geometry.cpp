@@ -159,10 +159,9 @@ CurvePoint ClothGeometry::point_at(const ClothHit& hit) const {
   return point;
 }
 
-std::size_t ClothGeometry::patch_bytes() const {
+std::size_t ClothGeometry::yarn_bytes() const {
   std::size_t bytes = 0;
-  for (const CurveSet& set : threads_)
-    bytes += set.control_points.size() * sizeof(Eigen::Vector4f) + set.segments.size() * sizeof(std::uint32_t);
+  for (const CurveSet& set : threads_) bytes += bytes_of(set);
   return bytes;
 }
 

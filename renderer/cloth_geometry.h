@@ -38,7 +38,7 @@ class ClothGeometry {
   // A hit in world coordinates.
   CurvePoint point_at(const ClothHit& hit) const;
   // Control points and segments of the column: all that is stored of the yarns.
-  std::size_t patch_bytes() const;
+  std::size_t yarn_bytes() const;
 
  private:
   template <class Visit>

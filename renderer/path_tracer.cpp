@@ -40,7 +40,9 @@ float mis_weight(float pdf, float other) {
 
 struct PathTracer::Impl {
   explicit Impl(Scene scene)
-      : rays(std::move(scene)), models(prepare_curve_models(scattering_models(rays.scene()))), lights(rays.scene().lights) {}
+      : rays(std::move(scene)),
+        models(prepare_curve_models(scattering_models(rays.scene()))),
+        lights(rays.scene().lights) {}
 
   Array3f radiance(CameraRay camera_ray, Sampler& sampler, int max_vertices) const;
   Array3f direct_light(const PathVertex& vertex, Sampler& sampler) const;

@@ -101,6 +101,13 @@ bool RayScene::meets_curve_first(const Ray& ray) const {
          (found.hit.geomID < first_mesh || found.hit.geomID >= first_cloth);
 }
 
+std::size_t RayScene::yarn_bytes() const {
+  std::size_t bytes = 0;
+  for (const CurveSet& curves : scene_.curves) bytes += bytes_of(curves);
+  for (const auto& cloth : cloths_) bytes += cloth->yarn_bytes();
+  return bytes;
+}
+
 MeshPoint RayScene::mesh_point(std::uint32_t mesh_index, std::uint32_t triangle, float u, float v,
                                const Ray& ray) const {
   const TriangleMesh& mesh = scene_.meshes[mesh_index];

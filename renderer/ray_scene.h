@@ -54,6 +54,10 @@ class RayScene {
   // True when the first hit is on a curve, be it a cloth's.
   bool meets_curve_first(const Ray& ray) const;
 
+  // Control points and segments of all yarns and fibers: the same for every size of a two-scale cloth. Embree's tree
+  // and the cells of surfaces come on top.
+  std::size_t yarn_bytes() const;
+
   const Eigen::AlignedBox3d& bounds() const { return bounds_; }
   const Scene& scene() const { return scene_; }
 
