@@ -34,7 +34,7 @@ ClothGeometry::ClothGeometry(const Cloth& cloth, std::uint32_t first_curve_set, 
     : shell_(make_shell(cloth.surface, shell_heights(cloth.patch))),
       period_mm_(cloth.patch.period_x_mm, cloth.patch.period_y_mm),
       first_curve_set_(first_curve_set) {
-  check_threads(cloth.patch, cloth.threads.size());
+  check_cloth(cloth.patch, cloth.threads.size());
   const SurfaceRange heights = shell_heights(cloth.patch);
   // A ray that crosses the cloth at 45 degrees stays in the column in which it starts.
   margin_mm_ = heights.high_mm - heights.low_mm;

@@ -133,7 +133,7 @@ std::vector<CurveSet> explicit_curves(const ClothShape& shape, const YarnPatch& 
     throw std::runtime_error("cloth: brute force would need " + std::to_string(tiles.x) + " x " +
                              std::to_string(tiles.y) + " repeats of \"" + patch.name +
                              "\" as curves, more than memory should hold; use two_scale or a smaller cloth");
-  check_threads(patch, threads.size());
+  check_cloth(patch, threads.size());
   const double around_mm = tiles.x * patch.period_x_mm;
   std::vector<CurveSet> sets;
   for (const int thread : threads_of(patch)) {
