@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double kCellPeriods =
     8;  // periods along a side of a flat quad: its boxes are then about as flat as the cloth
-constexpr double kBendRad = 0.0123;  // between neighbouring facets of a cylinder: 512 facets
+constexpr double kBendRad = 0.0246;  // between neighbouring facets of a cylinder: 256 facets
 constexpr int kMostQuads = 512;      // along one side
 
 int quads_along(double length_mm, double period_mm) {

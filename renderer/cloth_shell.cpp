@@ -60,6 +60,7 @@ struct Corner {
   double height_mm;
 };
 
+// The affine map that takes four corners of the world to their places in the patch, and their barycentric weights.
 ShellCell make_cell(const ClothSurface& surface, const std::array<Corner, 4>& corners, std::size_t triangle) {
   Eigen::Matrix4d world, patch;  // homogeneous, one column per corner
   ShellCell cell;
@@ -78,10 +79,27 @@ ShellCell make_cell(const ClothSurface& surface, const std::array<Corner, 4>& co
     refuse(triangle,
            "turns the wrong way round in the patch, or the surface bends more sharply than the cloth is thick; check "
            "normals and order of corners, or take a smoother surface");
-  cell.weights_from_world = world.inverse();
-  cell.patch_from_world = patch.topRows<3>() * cell.weights_from_world;
+  cell.inside_from_world.topRows<4>() = world.inverse();
+  cell.patch_from_world = patch.topRows<3>() * cell.inside_from_world.topRows<4>();
   cell.world_from_patch = world.topRows<3>() * patch.inverse();
   return cell;
+}
+
+// Turns the tetrahedron a, b, c, over_c into the whole prism: c's weight takes in that of over_c, which is the height.
+ShellCell whole_prism(ShellCell cell, const ClothSurface& surface, const Triangle& v, const SurfaceRange& heights) {
+  cell.faces = 5, cell.corners = 3;
+  cell.inside_from_world.row(2) += cell.inside_from_world.row(3);
+  cell.inside_from_world.row(4) = Eigen::RowVector4d::UnitW() - cell.inside_from_world.row(3);
+  for (const std::uint32_t vertex : v)
+    cell.bounds.extend(surface.vertices[vertex] + heights.high_mm * surface.normals[vertex].normalized());
+  return cell;
+}
+
+bool is_flat(const ClothSurface& surface, const Triangle& v) {
+  constexpr double kParallel = 1e-12;
+  const Vector3d a = surface.normals[v[0]].normalized();
+  return (surface.normals[v[1]].normalized() - a).norm() < kParallel &&
+         (surface.normals[v[2]].normalized() - a).norm() < kParallel;
 }
 
 }  // namespace
@@ -97,6 +115,10 @@ ClothShell make_shell(const ClothSurface& surface, const SurfaceRange& heights) 
     const Corner a{v[0], heights.low_mm}, b{v[1], heights.low_mm}, c{v[2], heights.low_mm};
     const Corner over_a{v[0], heights.high_mm}, over_b{v[1], heights.high_mm}, over_c{v[2], heights.high_mm};
     shell.cells.push_back(make_cell(surface, {a, b, c, over_c}, i));
+    if (is_flat(surface, v)) {
+      shell.cells.back() = whole_prism(shell.cells.back(), surface, v, heights);
+      continue;
+    }
     shell.cells.push_back(make_cell(surface, {a, b, over_b, over_c}, i));
     shell.cells.push_back(make_cell(surface, {a, over_a, over_b, over_c}, i));
   }
@@ -105,10 +127,11 @@ ClothShell make_shell(const ClothSurface& surface, const SurfaceRange& heights) 
 
 std::optional<RaySpan> clip(const ShellCell& cell, const Vector3d& origin, const Vector3d& direction,
                             RaySpan within) {
-  const Eigen::Vector4d start = cell.weights_from_world * origin.homogeneous();
-  const Eigen::Vector4d slope = cell.weights_from_world.leftCols<3>() * direction;
+  using FaceDistances = Eigen::Matrix<double, 5, 1>;
+  const FaceDistances start = cell.inside_from_world * origin.homogeneous();
+  const FaceDistances slope = cell.inside_from_world.leftCols<3>() * direction;
   double begin = -std::numeric_limits<double>::infinity(), end = -begin;
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < cell.faces; ++k) {
     if (slope[k] > 0)
       begin = std::max(begin, -start[k] / slope[k]);
     else if (slope[k] < 0)
@@ -124,9 +147,9 @@ std::optional<RaySpan> clip(const ShellCell& cell, const Vector3d& origin, const
 }
 
 Matrix3d frame_at(const ClothShell& shell, const ShellCell& cell, const Vector3d& world) {
-  const Eigen::Vector4d weights = cell.weights_from_world * world.homogeneous();
+  const Eigen::Matrix<double, 5, 1> weights = cell.inside_from_world * world.homogeneous();
   Vector3d along = Vector3d::Zero(), normal = Vector3d::Zero();
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < cell.corners; ++k) {
     const Matrix3d& frame = shell.frames[cell.vertex[static_cast<std::size_t>(k)]];
     along += weights[k] * frame.col(0);
     normal += weights[k] * frame.col(2);

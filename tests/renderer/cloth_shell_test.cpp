@@ -26,7 +26,7 @@ ClothShell shell_of(const ClothShape& shape) {
 
 const ShellCell* cell_at(const ClothShell& shell, const Vector3d& world) {
   for (const ShellCell& cell : shell.cells)
-    if ((cell.weights_from_world * world.homogeneous()).minCoeff() > -1e-9) return &cell;
+    if ((cell.inside_from_world * world.homogeneous()).topRows(cell.faces).minCoeff() > -1e-9) return &cell;
   return nullptr;
 }
 
@@ -51,13 +51,13 @@ TEST(ClothShellTest, OnACylinderHeightsGoOutwardsAndThePatchGoesRound) {
       const Vector3d at = (41 + height) * normal + Vector3d(0, 0, 23);
       const ShellCell* cell = cell_at(shell, at);
       ASSERT_TRUE(cell) << angle << ' ' << height;
-      // Faces of 0.7 degrees lie up to 0.8 um inside the cylinder.
+      // Inside a face, places are interpolated between corners 1 mm apart. Faces of 1.4 degrees lie up to 3 um inside the cylinder.
       EXPECT_LT(
           (cell->patch_from_world * at.homogeneous() - Vector3d(around_mm * angle / (2 * kPi), 23, height)).norm(),
-          2e-3);
+          1e-2);
       const Eigen::Matrix3d frame = frame_at(shell, *cell, at);
-      EXPECT_LT((frame.col(2) - normal).norm(), 1e-4);
-      EXPECT_LT((frame.col(0) - along).norm(), 1e-4);
+      EXPECT_LT((frame.col(2) - normal).norm(), 2e-4);
+      EXPECT_LT((frame.col(0) - along).norm(), 2e-4);
       EXPECT_LT((frame.col(1) - Vector3d::UnitZ()).norm(), 1e-9);
       EXPECT_LT((cell->world_from_patch * (cell->patch_from_world * at.homogeneous()).homogeneous() - at).norm(),
                 1e-9);
@@ -81,7 +81,7 @@ TEST(ClothShellTest, CellsLeaveNoGaps) {
     for (double t = -3; t < 3; t += 0.01) {
       const Vector3d at = through + t * direction;
       const double height = std::hypot(at.x(), at.y()) - 5;
-      if (height < -0.399 || height > 0.599) continue;  // the faces lie up to 0.1 um inside the cylinder
+      if (height < -0.399 || height > 0.599) continue;  // the faces lie up to 0.4 um inside the cylinder
       ++places;
       const auto holds = [&](const RaySpan& span) { return span.begin <= t && t <= span.end; };
       ASSERT_TRUE(std::any_of(spans.begin(), spans.end(), holds)) << at.transpose();
