@@ -128,21 +128,20 @@ template <class Work>
 void for_each_pixel(const Camera& camera, int threads, const std::function<bool(double)>& progress,
                     const Work& work) {
   const int columns = (camera.width + kTile - 1) / kTile, rows = (camera.height + kTile - 1) / kTile;
-  std::atomic<int> done{0};
+  std::atomic<std::int64_t> done{0};  // pixels
   std::atomic<bool> stopped{false};
   const std::thread::id caller = std::this_thread::get_id();
   const auto draw_tile = [&](int tile) {
-    if (stopped) return;
     const int column = tile % columns * kTile, row = tile / columns * kTile;
     const int width = std::min(kTile, camera.width - column), height = std::min(kTile, camera.height - row);
     const PixelRays rays(camera, column, row, width, height);
-    for (int y = row; y < row + height; ++y) {
+    for (int y = row; y < row + height && !stopped; ++y) {
       for (int x = column; x < column + width; ++x) work(rays, x, y);
-    }
-    const int finished = ++done;
-    if (progress && std::this_thread::get_id() == caller &&
-        !progress(static_cast<double>(finished) / (columns * rows))) {
-      stopped = true;
+      const std::int64_t finished = done += width;
+      if (progress && std::this_thread::get_id() == caller &&
+          !progress(static_cast<double>(finished) / (static_cast<double>(camera.width) * camera.height))) {
+        stopped = true;
+      }
     }
   };
   const int cores = tbb::info::default_concurrency();
