@@ -108,8 +108,7 @@ void ClothGeometry::intersect(const RTCIntersectFunctionNArguments& arguments) c
     rtcIntersect1(column_.get(), &context, &found);
     if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     const auto distance = static_cast<float>(start + static_cast<double>(found.ray.tfar));
-    if (!(distance <= ray.tfar)) return true;
-    ray.tfar = distance;
+    ray.tfar = std::min(ray.tfar, distance);
     query->hit = found.hit;
     query->hit.geomID = arguments.geomID;
     query->hit.primID = arguments.primID;

@@ -3,6 +3,8 @@
 
 #include <embree3/rtcore.h>
 
+#include <type_traits>
+
 #include "renderer/cloth_geometry.h"
 
 namespace renderer {
@@ -23,5 +25,7 @@ inline RTCRay embree_ray(const Ray& ray, float distance) {
   r.mask = ~0u;
   return r;
 }
+
+static_assert(std::is_standard_layout_v<ClothQuery>, "a pointer to the context must be a pointer to the query");
 
 }  // namespace renderer

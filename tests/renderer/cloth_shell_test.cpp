@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -88,6 +89,34 @@ TEST(ClothShellTest, CellsLeaveNoGaps) {
     }
   }
   EXPECT_GT(places, 10000);
+}
+
+// Cells that share a point of a face send it to the same place of the patch, but for whole turns round the cylinder.
+TEST(ClothShellTest, TheMapHasNoJumps) {
+  const ClothShell shell = shell_of(CylinderShape{5, 60});  // of several rows of triangles
+  const double around_mm = 2 * std::round(kPi * 5);
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> u(0.01, 1);
+  int shared = 0;
+  for (std::size_t i = 0; i < shell.cells.size(); i += 5) {
+    const ShellCell& cell = shell.cells[i];
+    ASSERT_EQ(cell.faces, 4);
+    for (int face = 0; face < 4; ++face) {
+      Eigen::Vector4d weights(u(random), u(random), u(random), u(random));
+      weights[face] = 0;
+      weights /= weights.sum();
+      const Vector3d at = (cell.inside_from_world.topRows<4>().inverse() * weights).head<3>();
+      const Vector3d place = cell.patch_from_world * at.homogeneous();
+      for (const ShellCell& other : shell.cells) {
+        if (&other == &cell || (other.inside_from_world * at.homogeneous()).head<4>().minCoeff() < -1e-9) continue;
+        ++shared;
+        Vector3d jump = other.patch_from_world * at.homogeneous() - place;
+        jump.x() = std::remainder(jump.x(), around_mm);
+        EXPECT_LT(jump.norm(), 1e-6);
+      }
+    }
+  }
+  EXPECT_GT(shared, 1000);
 }
 
 TEST(ClothShellTest, ASpanLiesWithinTheAskedPart) {

@@ -173,6 +173,7 @@ TEST(ClothTest, LayersOfClothCurvesAndMeshesHideOneAnother) {
     const Vector3d at(-4 + 8 * (i % 50 + 0.5) / 50, -4 + 8 * (i / 50 + 0.5) / 40, 5);
     const auto hit = rays.intersect({at.cast<float>(), {0, 0, -1}});
     ASSERT_TRUE(hit);  // gaps of both layers never coincide
+    EXPECT_EQ(rays.meets_curve_first({at.cast<float>(), {0, 0, -1}}), std::holds_alternative<CurvePoint>(hit->point));
     if (const auto* curve = std::get_if<CurvePoint>(&hit->point)) {
       ++(curve->curve_set < 2 ? first : second);
       EXPECT_TRUE(curve->curve_set < 2 || at.x() > -0.01);
