@@ -54,6 +54,10 @@ void add_curves(RTCDevice device, RTCScene scene, const CurveSet& curves) {
   rtcReleaseGeometry(geometry);
 }
 
+std::size_t bytes_of(const CurveSet& curves) {
+  return curves.control_points.size() * sizeof(Eigen::Vector4f) + curves.segments.size() * sizeof(std::uint32_t);
+}
+
 CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u, const Vector3f& hit_normal,
                           const Ray& ray, float distance) {
   const Eigen::Vector4f* p = &curves.control_points[curves.segments[segment]];

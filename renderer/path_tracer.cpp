@@ -40,10 +40,13 @@ float mis_weight(float pdf, float other) {
 
 struct PathTracer::Impl {
   explicit Impl(Scene scene)
-      : rays(std::move(scene)), models(prepare_curve_models(rays.scene().curves)), lights(rays.scene().lights) {}
+      : rays(std::move(scene)),
+        models(prepare_curve_models(scattering_models(rays.scene()))),
+        lights(rays.scene().lights) {}
 
-  Array3f radiance(CameraRay camera_ray, Sampler& sampler, int max_vertices) const;
-  Array3f direct_light(const PathVertex& vertex, Sampler& sampler) const;
+  // Both count the rays that they trace.
+  Array3f radiance(CameraRay camera_ray, Sampler& sampler, int max_vertices, std::uint64_t& traced) const;
+  Array3f direct_light(const PathVertex& vertex, Sampler& sampler, std::uint64_t& traced) const;
 
   RayScene rays;
   std::vector<CurveModel> models;
@@ -51,7 +54,7 @@ struct PathTracer::Impl {
 };
 
 // Light sampling's share of the light that reaches a vertex directly and goes on along the path.
-Array3f PathTracer::Impl::direct_light(const PathVertex& vertex, Sampler& sampler) const {
+Array3f PathTracer::Impl::direct_light(const PathVertex& vertex, Sampler& sampler, std::uint64_t& traced) const {
   const Vector3d origin = vertex.position().cast<double>();
   const Eigen::Vector2f u = sampler.next_2d();
   const std::optional<Vector3d> direction = lights.sample(origin, lights.size() > 1 ? sampler.next_1d() : 0.0f, u);
@@ -63,13 +66,15 @@ Array3f PathTracer::Impl::direct_light(const PathVertex& vertex, Sampler& sample
   if (!(scattering.f_cos.maxCoeff() > 0)) return Array3f::Zero();
   const float chance = vertex.is_curve() ? std::min(1.0f, scattering.f_cos.maxCoeff() / kFaintScattering) : 1.0f;
   if (!(sampler.next_1d() < chance)) return Array3f::Zero();
+  ++traced;
   if (rays.occluded({vertex.position(), wi}, static_cast<float>(light->distance))) return Array3f::Zero();
   const auto pdf = static_cast<float>(lights.pdf(origin, *direction));
   return scattering.f_cos * light->radiance * (mis_weight(pdf, scattering.pdf) / (pdf * chance));
 }
 
 // L = sum over path lengths of  prod(f_cos / pdf) * emitted; both sampling strategies meet each light once, weighted.
-Array3f PathTracer::Impl::radiance(CameraRay camera_ray, Sampler& sampler, int max_vertices) const {
+Array3f PathTracer::Impl::radiance(CameraRay camera_ray, Sampler& sampler, int max_vertices,
+                                   std::uint64_t& traced) const {
   Array3f sum = Array3f::Zero(), throughput = Array3f::Ones();
   const bool may_hit = advance_to(rays.bounds(), camera_ray);
   Vector3d origin = camera_ray.origin, direction = camera_ray.direction;
@@ -80,7 +85,10 @@ Array3f PathTracer::Impl::radiance(CameraRay camera_ray, Sampler& sampler, int m
     const std::optional<LightHit> light = lights.intersect(origin, direction, vertices == 0);
     if ((last && !light) || (vertices == 0 && !may_hit && !light)) break;
     std::optional<SurfaceHit> hit;
-    if (vertices > 0 || may_hit) hit = rays.intersect(ray);
+    if (vertices > 0 || may_hit) {
+      hit = rays.intersect(ray);
+      ++traced;
+    }
     if (light && (!hit || light->distance < static_cast<double>(hit->distance))) {
       const float weight =
           vertices == 0 ? 1.0f : mis_weight(scattering_pdf, static_cast<float>(lights.pdf(origin, direction)));
@@ -90,7 +98,7 @@ Array3f PathTracer::Impl::radiance(CameraRay camera_ray, Sampler& sampler, int m
     if (!hit || last) break;
 
     const PathVertex vertex(*hit, -ray.direction, models);
-    sum += throughput * direct_light(vertex, sampler);
+    sum += throughput * direct_light(vertex, sampler, traced);
     const Vector3f wi = vertex.sample(sampler);
     const ScatteringValue<float> scattering = vertex.evaluate(wi);
     if (!(scattering.pdf > 0)) break;
@@ -120,21 +128,20 @@ template <class Work>
 void for_each_pixel(const Camera& camera, int threads, const std::function<bool(double)>& progress,
                     const Work& work) {
   const int columns = (camera.width + kTile - 1) / kTile, rows = (camera.height + kTile - 1) / kTile;
-  std::atomic<int> done{0};
+  std::atomic<std::int64_t> done{0};  // pixels
   std::atomic<bool> stopped{false};
   const std::thread::id caller = std::this_thread::get_id();
   const auto draw_tile = [&](int tile) {
-    if (stopped) return;
     const int column = tile % columns * kTile, row = tile / columns * kTile;
     const int width = std::min(kTile, camera.width - column), height = std::min(kTile, camera.height - row);
     const PixelRays rays(camera, column, row, width, height);
-    for (int y = row; y < row + height; ++y) {
+    for (int y = row; y < row + height && !stopped; ++y) {
       for (int x = column; x < column + width; ++x) work(rays, x, y);
-    }
-    const int finished = ++done;
-    if (progress && std::this_thread::get_id() == caller &&
-        !progress(static_cast<double>(finished) / (columns * rows))) {
-      stopped = true;
+      const std::int64_t finished = done += width;
+      if (progress && std::this_thread::get_id() == caller &&
+          !progress(static_cast<double>(finished) / (static_cast<double>(camera.width) * camera.height))) {
+        stopped = true;
+      }
     }
   };
   const int cores = tbb::info::default_concurrency();
@@ -150,20 +157,25 @@ cv::Mat3f PathTracer::render(const Camera& camera, const RenderOptions& options)
   if (!options.only.empty() && options.only.size() != image.size())
     throw std::runtime_error("the region to render has another size than the picture; make it height x width");
   const int max_vertices = options.max_vertices > 0 ? options.max_vertices : kMostVertices;
+  std::atomic<std::uint64_t> samples{0}, all_traced{0};
   const auto draw = [&](const PixelRays& rays, int column, int row) {
     if (!options.only.empty() && options.only(row, column) == 0) return;
     Sampler sampler(options.seed, static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(camera.width) +
                                       static_cast<std::uint64_t>(column));
     Eigen::Array3d sum = Eigen::Array3d::Zero();
+    std::uint64_t traced = 0;
     for (int s = 0; s < options.samples_per_pixel; ++s) {
       sampler.start_sample(static_cast<std::uint32_t>(s));
       const CameraRay ray = rays.at(column, row, sampler.next_2d());
-      sum += impl_->radiance(ray, sampler, max_vertices).cast<double>();
+      sum += impl_->radiance(ray, sampler, max_vertices, traced).cast<double>();
     }
     const Array3f mean = (sum / options.samples_per_pixel).cast<float>();
     image(row, column) = {mean[0], mean[1], mean[2]};
+    samples += static_cast<std::uint64_t>(options.samples_per_pixel);
+    all_traced += traced;
   };
   for_each_pixel(camera, options.threads, options.progress, draw);
+  if (options.statistics) *options.statistics = {samples, all_traced};
   return image;
 }
 

@@ -12,6 +12,12 @@
 
 namespace renderer {
 
+// What a rendering did.
+struct RenderStatistics {
+  std::uint64_t samples = 0;  // camera rays
+  std::uint64_t rays = 0;     // nearest hits and shadows that were asked for, camera rays that meet no box left out
+};
+
 struct RenderOptions {
   int samples_per_pixel = 16;
   std::uint64_t seed = 1;
@@ -21,6 +27,7 @@ struct RenderOptions {
   cv::Mat1b only{};  // when not empty: pixels that are 0 here are left black; height x width
   // Called now and then from one thread with the finished fraction; returning false stops the rendering.
   std::function<bool(double)> progress{};
+  RenderStatistics* statistics = nullptr;  // when given: written at the end
 };
 
 // A scene committed to Embree, rendered as often as wanted.

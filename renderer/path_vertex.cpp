@@ -37,13 +37,17 @@ ThreadModel<float> prepare(const ThreadParameters& p) {
 
 }  // namespace
 
-std::vector<CurveModel> prepare_curve_models(const std::vector<CurveSet>& curves) {
+std::vector<CurveModel> prepare_curve_models(const std::vector<ScatteringModel>& scattering) {
   std::vector<CurveModel> models;
-  for (const CurveSet& set : curves) {
-    models.push_back(
-        std::visit([](const auto& parameters) { return CurveModel(prepare(parameters)); }, set.scattering));
-  }
+  for (const ScatteringModel& model : scattering)
+    models.push_back(std::visit([](const auto& parameters) { return CurveModel(prepare(parameters)); }, model));
   return models;
+}
+
+std::vector<CurveModel> prepare_curve_models(const std::vector<CurveSet>& curves) {
+  std::vector<ScatteringModel> scattering;
+  for (const CurveSet& set : curves) scattering.push_back(set.scattering);
+  return prepare_curve_models(scattering);
 }
 
 Matrix3f local_from_world(const CurvePoint& point) {

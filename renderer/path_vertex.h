@@ -12,8 +12,9 @@
 
 namespace renderer {
 
-// The scattering models of a scene's curve sets, in float and with everything precomputed.
+// The scattering models of a scene's curves (scattering_models()), in float and with everything precomputed.
 using CurveModel = std::variant<FiberModel<float>, ThreadModel<float>>;
+std::vector<CurveModel> prepare_curve_models(const std::vector<ScatteringModel>& scattering);
 std::vector<CurveModel> prepare_curve_models(const std::vector<CurveSet>& curves);
 
 // Rotation into the scattering models' frame at a point of a curve: x = tangent, z = outward normal.

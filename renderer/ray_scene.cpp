@@ -7,6 +7,10 @@
 #include <limits>
 #include <stdexcept>
 
+#include "renderer/cloth_geometry.h"
+#include "renderer/cloth_query.h"
+#include "renderer/curve_geometry.h"
+
 namespace renderer {
 namespace {
 
@@ -15,30 +19,12 @@ using Eigen::Vector3f;
 // How far above a mesh they start, relative to its coordinates.
 constexpr float kMeshLift = 1e-5f;
 
-RTCRay embree_ray(const Ray& ray, float distance) {
-  RTCRay r{};
-  r.org_x = ray.origin.x(), r.org_y = ray.origin.y(), r.org_z = ray.origin.z();
-  r.dir_x = ray.direction.x(), r.dir_y = ray.direction.y(), r.dir_z = ray.direction.z();
-  r.tnear = 0;
-  r.tfar = distance;
-  r.mask = ~0u;
-  return r;
-}
-
-RTCRayHit nearest(RTCScene scene, const Ray& ray) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  RTCRayHit query{};
-  query.ray = embree_ray(ray, std::numeric_limits<float>::infinity());
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(scene, &context, &query);
-  return query;
-}
-
-void attach(RTCScene scene, RTCGeometry geometry) {
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene, geometry);
-  rtcReleaseGeometry(geometry);
+RTCRayHit nearest(RTCScene scene, const Ray& ray, ClothQuery& query) {
+  RTCRayHit found{};
+  found.ray = embree_ray(ray, std::numeric_limits<float>::infinity());
+  found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(scene, &query.context, &found);
+  return found;
 }
 
 }  // namespace
@@ -49,8 +35,14 @@ RayScene::RayScene(Scene scene) : scene_(std::move(scene)) {
     throw std::runtime_error("ray tracing: Embree could not start on this processor; it needs SSE2 or better");
   embree_ = {rtcNewScene(device_.get()), rtcReleaseScene};
   rtcSetSceneBuildQuality(embree_.get(), RTC_BUILD_QUALITY_HIGH);
-  for (const CurveSet& curves : scene_.curves) add_curves(curves);
+  for (const CurveSet& curves : scene_.curves) add_curves(device_.get(), embree_.get(), curves);
   for (const TriangleMesh& mesh : scene_.meshes) add_mesh(mesh);
+  auto curve_set = static_cast<std::uint32_t>(scene_.curves.size());
+  for (const Cloth& cloth : scene_.cloths) {
+    cloths_.push_back(std::make_shared<ClothGeometry>(cloth, curve_set, device_.get()));
+    cloths_.back()->attach_to(device_.get(), embree_.get());
+    curve_set += static_cast<std::uint32_t>(cloth.threads.size());
+  }
   rtcCommitScene(embree_.get());
   if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) {
     throw std::runtime_error(
@@ -71,20 +63,26 @@ void RayScene::add_mesh(const TriangleMesh& mesh) {
   std::copy(mesh.vertices.begin(), mesh.vertices.end(), static_cast<Vector3f*>(vertices));
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
                              sizeof(std::array<std::uint32_t, 3>), mesh.triangles.size());
-  attach(embree_.get(), geometry);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(embree_.get(), geometry);
+  rtcReleaseGeometry(geometry);
 }
 
 std::optional<SurfaceHit> RayScene::intersect(const Ray& ray) const {
-  const RTCRayHit found = nearest(embree_.get(), ray);
+  ClothQuery query;
+  const RTCRayHit found = nearest(embree_.get(), ray, query);
   if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  const auto curve_sets = static_cast<std::uint32_t>(scene_.curves.size());
-  if (found.hit.geomID < curve_sets) {
-    const Vector3f normal(found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z);
+  const auto first_mesh = static_cast<std::uint32_t>(scene_.curves.size());
+  const auto first_cloth = first_mesh + static_cast<std::uint32_t>(scene_.meshes.size());
+  if (found.hit.geomID >= first_cloth)
+    return SurfaceHit{found.ray.tfar, cloths_[found.hit.geomID - first_cloth]->point_at(query.cloth)};
+  if (found.hit.geomID >= first_mesh)
     return SurfaceHit{found.ray.tfar,
-                      curve_point(found.hit.geomID, found.hit.primID, found.hit.u, normal, ray, found.ray.tfar)};
-  }
-  return SurfaceHit{found.ray.tfar,
-                    mesh_point(found.hit.geomID - curve_sets, found.hit.primID, found.hit.u, found.hit.v, ray)};
+                      mesh_point(found.hit.geomID - first_mesh, found.hit.primID, found.hit.u, found.hit.v, ray)};
+  CurvePoint point = point_on_curve(scene_.curves[found.hit.geomID], found.hit.primID, found.hit.u,
+                                    {found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z}, ray, found.ray.tfar);
+  point.curve_set = found.hit.geomID;
+  return SurfaceHit{found.ray.tfar, point};
 }
 
 bool RayScene::occluded(const Ray& ray, float distance) const {
@@ -96,8 +94,18 @@ bool RayScene::occluded(const Ray& ray, float distance) const {
 }
 
 bool RayScene::meets_curve_first(const Ray& ray) const {
-  const RTCRayHit found = nearest(embree_.get(), ray);
-  return found.hit.geomID != RTC_INVALID_GEOMETRY_ID && found.hit.geomID < scene_.curves.size();
+  ClothQuery query;
+  const RTCRayHit found = nearest(embree_.get(), ray, query);
+  const std::size_t first_mesh = scene_.curves.size(), first_cloth = first_mesh + scene_.meshes.size();
+  return found.hit.geomID != RTC_INVALID_GEOMETRY_ID &&
+         (found.hit.geomID < first_mesh || found.hit.geomID >= first_cloth);
+}
+
+std::size_t RayScene::yarn_bytes() const {
+  std::size_t bytes = 0;
+  for (const CurveSet& curves : scene_.curves) bytes += bytes_of(curves);
+  for (const auto& cloth : cloths_) bytes += cloth->yarn_bytes();
+  return bytes;
 }
 
 MeshPoint RayScene::mesh_point(std::uint32_t mesh_index, std::uint32_t triangle, float u, float v,

@@ -1,7 +1,8 @@
 // A Scene inside Embree: nearest hits and occlusion, with the surface frame at a hit.
 //
 // Curves are seen from outside only: a ray that is inside a curve leaves it without a hit, because the scattering
-// models describe everything that happens between entering and leaving a fiber.
+// models describe everything that happens between entering and leaving a fiber. Cloth (cloth_shell.h) is met as the
+// curves it stands for.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,13 +18,15 @@ struct RTCSceneTy;
 
 namespace renderer {
 
+class ClothGeometry;
+
 struct Ray {
   Eigen::Vector3f origin;
   Eigen::Vector3f direction;  // unit
 };
 
 struct CurvePoint {
-  std::uint32_t curve_set;
+  std::uint32_t curve_set;  // number of the scattering model, as in scattering_models()
   Eigen::Vector3f
       position;  // just below the surface, where scattered rays start: they cannot meet the same spot again
   Eigen::Vector3f tangent, normal;  // unit, perpendicular to each other; normal points outwards
@@ -48,21 +51,23 @@ class RayScene {
   std::optional<SurfaceHit> intersect(const Ray& ray) const;
   // True when anything lies within `distance` along the ray.
   bool occluded(const Ray& ray, float distance) const;
-  // True when the first hit is on a curve.
+  // True when the first hit is on a curve, be it a cloth's.
   bool meets_curve_first(const Ray& ray) const;
+
+  // Control points and segments of all yarns and fibers: the same for every size of a two-scale cloth. Embree's tree
+  // and the cells of surfaces come on top.
+  std::size_t yarn_bytes() const;
 
   const Eigen::AlignedBox3d& bounds() const { return bounds_; }
   const Scene& scene() const { return scene_; }
 
  private:
-  void add_curves(const CurveSet& curves);
   void add_mesh(const TriangleMesh& mesh);
-  CurvePoint curve_point(std::uint32_t set, std::uint32_t segment, float u, const Eigen::Vector3f& hit_normal,
-                         const Ray& ray, float distance) const;
   MeshPoint mesh_point(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Ray& ray) const;
 
   Scene scene_;
   std::shared_ptr<RTCDeviceTy> device_;
+  std::vector<std::shared_ptr<const ClothGeometry>> cloths_;  // outlive the scene, which calls them
   std::shared_ptr<RTCSceneTy> embree_;
   Eigen::AlignedBox3d bounds_;  // empty for a scene without surfaces
 };

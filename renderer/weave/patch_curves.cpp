@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 #include <set>
+#include <stdexcept>
+#include <string>
 
 namespace renderer {
 namespace {
@@ -61,6 +63,22 @@ std::vector<int> threads_of(const YarnPatch& patch) {
   std::set<int> threads;
   for (const Yarn& yarn : patch.yarns) threads.insert(yarn.thread);
   return {threads.begin(), threads.end()};
+}
+
+void check_cloth(const YarnPatch& patch, std::size_t threads) {
+  for (const int thread : threads_of(patch)) {
+    if (thread >= 0 && static_cast<std::size_t>(thread) < threads) continue;
+    throw std::runtime_error("cloth: the patch \"" + patch.name + "\" has a yarn of thread " +
+                             std::to_string(thread) + ", but " + std::to_string(threads) +
+                             " threads are given (counted from 0); add the thread or correct the draft");
+  }
+  double height = 0;
+  for (const Yarn& yarn : patch.yarns)
+    for (const Eigen::Vector3d& p : yarn.control_points) height = std::max(height, std::abs(p.z()) + yarn.radius_mm);
+  const double reach = std::max(stray_of(patch), 2 * height) / std::min(patch.period_x_mm, patch.period_y_mm);
+  if (!(reach <= kMostReach))
+    throw std::runtime_error("cloth: yarns of the patch \"" + patch.name + "\" reach " + std::to_string(reach) +
+                             " periods beyond their cell or its plane; correct its periods or control points");
 }
 
 CurveSet curves_of(const YarnPatch& patch, int tiles_x, int tiles_y, int thread) {

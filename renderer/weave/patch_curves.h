@@ -13,6 +13,10 @@ namespace renderer {
 
 // Thread indices that occur in the patch, rising.
 std::vector<int> threads_of(const YarnPatch& patch);
+// Throws std::runtime_error, one line, when the patch cannot be a cloth of `threads` threads: a yarn of another thread,
+// or yarns that reach farther than `kMostReach` periods out of their cell, sideways or up and down.
+inline constexpr double kMostReach = 50;
+void check_cloth(const YarnPatch& patch, std::size_t threads);
 
 // tiles_x x tiles_y periods, for brute-force rendering: every yarn runs in one piece from one border of the sheet
 // [0, tiles_x period_x] x [0, tiles_y period_y] to the other and ends there; curves have no end caps.

@@ -11,6 +11,7 @@ void add_capture_command(CLI::App& app);
 void add_demo_command(CLI::App& app);
 void add_develop_command(CLI::App& app);
 void add_devices_command(CLI::App& app);
+void add_render_command(CLI::App& app);
 void add_report_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
 void add_weave_command(CLI::App& app);

@@ -143,6 +143,19 @@ TEST(PathTracerTest, OnlyTheAskedRegionIsRenderedAndItIsTheSamePicture) {
   EXPECT_THROW(tracer.render(camera, {.only = cv::Mat1b(3, 3)}), std::runtime_error);
 }
 
+TEST(PathTracerTest, StatisticsCountSamplesAndRays) {
+  RenderStatistics statistics;
+  const RenderOptions options{.samples_per_pixel = 3, .max_vertices = 1, .statistics = &statistics};
+  PathTracer({.meshes = {white_floor(0.5f)}, .lights = {{.center = {0, 0, 100}, .radius_mm = 20}}})
+      .render(small_camera({0, 0, 20}, 4), options);
+  EXPECT_EQ(statistics.samples, 24u * 16 * 3);
+  // The floor, the light, and what the scattered ray meets where that can still be a light.
+  EXPECT_GE(statistics.rays, 2 * statistics.samples);
+  EXPECT_LE(statistics.rays, 3 * statistics.samples);
+  PathTracer(Scene{}).render(small_camera({0, 0, 20}, 4), options);
+  EXPECT_EQ(statistics.rays, 0u);
+}
+
 TEST(PathTracerTest, LightsAreSeenByCamerasOnlyWhenVisible) {
   SphereLight light{.radius_mm = 20, .radiance = {7, 6, 5}};
   const Camera camera = small_camera({0, 0, 100}, 10);

@@ -1,0 +1,43 @@
+// Simple shapes that cloth and bodies take, and cloth as explicit curves on the same shapes.
+//
+// Each shape lies in a frame of its own (mm); patch coordinates are millimetres on the shape, so threads keep their size.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <variant>
+#include <vector>
+
+#include "renderer/scene.h"
+
+namespace renderer {
+
+// Flat: [-width / 2, width / 2] x [-height / 2, height / 2] at z = 0, the face towards +z, the weft along x. The patch
+// starts at the lower left corner.
+struct SwatchShape {
+  double width_mm = 100.0, height_mm = 100.0;
+};
+
+// A tube round the z axis from z = 0 to the height, open at both ends, the face outwards, the weft around it. The patch
+// is stretched round it by at most half a period, so that a whole number of periods closes it without a seam.
+struct CylinderShape {
+  double radius_mm = 41.0, height_mm = 171.0;
+};
+
+using ClothShape = std::variant<SwatchShape, CylinderShape>;
+
+// Where the patch lies on the shape. Errors: std::runtime_error with one line when a tube is narrower than half a period
+// of the patch.
+ClothSurface surface_of(const ClothShape& shape, const YarnPatch& patch, const Eigen::Isometry3d& world_from_cloth);
+
+// The same cloth as curves, one set per thread that occurs, in whole periods (rounded up, so that it can be larger than
+// the shape along x and y). Yarns bend smoothly on a cylinder and keep their round cross-section. Errors: as surface_of;
+// a thread that is not among `threads`; more than `kMostExplicitSegments` segments.
+inline constexpr double kMostExplicitSegments = 2e7;  // about 4 GB with Embree's tree
+std::vector<CurveSet> explicit_curves(const ClothShape& shape, const YarnPatch& patch,
+                                      const std::vector<ScatteringModel>& threads,
+                                      const Eigen::Isometry3d& world_from_cloth);
+
+// Diffuse surfaces of the same shapes, both ends of the cylinder open.
+TriangleMesh body_of(const ClothShape& shape, const Eigen::Isometry3d& world_from_body, const cv::Vec3f& albedo);
+
+}  // namespace renderer

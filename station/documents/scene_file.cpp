@@ -1,0 +1,201 @@
+#include "station/documents/scene_file.h"
+
+#include <cmath>
+
+#include "station/documents/draft_file.h"
+#include "station/documents/patch_file.h"
+#include "station/documents/reader.h"
+#include "station/documents/thread_file.h"
+
+namespace station {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using nlohmann::json;
+using renderer::ClothShape;
+
+constexpr double kLeastSize = 0.01, kMostSize = 1e4;  // mm
+constexpr double kMostCoordinate = 1e6;               // mm
+constexpr double kSurroundings_mm = 1e7;              // radius of the sphere that an environment is
+constexpr int kMostSide = 16384;                      // pixels
+constexpr double kMostPixels = 1e8;
+
+Isometry3d pose(ObjectReader& reader, const std::string& key) {
+  if (!reader.has(key)) return Isometry3d::Identity();
+  const Isometry3d found = reader.transform(key);
+  if (found.translation().cwiseAbs().maxCoeff() > kMostCoordinate)
+    reader.refuse(key, "moves by more than a kilometre; lengths are millimetres");
+  return found;
+}
+
+Vector3d point(ObjectReader& reader, const std::string& key) {
+  const Vector3d found = reader.vector3(key);
+  if (found.cwiseAbs().maxCoeff() > kMostCoordinate)
+    reader.refuse(key, "lies more than a kilometre away; lengths are millimetres");
+  return found;
+}
+
+ClothShape parse_shape(ObjectReader& reader, std::initializer_list<const char*> kinds) {
+  const bool flat = reader.choice("kind", kinds) != "cylinder";
+  const double size = reader.number(flat ? "width_mm" : "radius_mm", kLeastSize, kMostSize);
+  const double height = reader.number("height_mm", kLeastSize, kMostSize);
+  if (flat) return renderer::SwatchShape{size, height};
+  return renderer::CylinderShape{size, height};
+}
+
+void replace_threads(ObjectReader& cloth, const std::string& key, renderer::YarnSystem& system) {
+  if (!cloth.has(key)) return;
+  system.threads.clear();
+  for (const double thread : cloth.numbers(key)) {
+    if (!(thread >= 0 && thread < renderer::kMostThreads && thread == std::floor(thread)))
+      cloth.refuse(key, "found " + json(thread).dump() + ", expected numbers of threads, counted from 0");
+    system.threads.push_back(static_cast<int>(thread));
+  }
+  if (system.threads.empty()) cloth.refuse(key, "the list is empty; name the thread of at least one yarn");
+}
+
+renderer::YarnPatch parse_weave(ObjectReader& cloth, const std::filesystem::path& folder) {
+  if (cloth.has("patch") == cloth.has("draft"))
+    cloth.refuse("draft", "give either a draft or a patch, not both and not none");
+  if (cloth.has("patch")) return read_patch(folder / cloth.text("patch"));
+  renderer::Draft draft = read_draft(folder / cloth.text("draft"));
+  replace_threads(cloth, "warp_threads", draft.warp);
+  replace_threads(cloth, "weft_threads", draft.weft);
+  if (const auto problem = renderer::check_draft(draft)) cloth.refuse("draft", *problem);
+  return renderer::initial_patch(draft);
+}
+
+void check_threads(const ObjectReader& cloth, const renderer::YarnPatch& patch, std::size_t count) {
+  for (const renderer::Yarn& yarn : patch.yarns)
+    if (static_cast<std::size_t>(yarn.thread) >= count)
+      cloth.refuse("draft", "\"" + patch.name + "\" has a yarn of thread " + std::to_string(yarn.thread) +
+                                ", but the scene lists " + std::to_string(count) +
+                                " threads (counted from 0); add the thread or change the order of threads");
+}
+
+SceneCloth parse_cloth(ObjectReader reader, const std::filesystem::path& folder, std::size_t threads) {
+  SceneCloth cloth;
+  cloth.patch = parse_weave(reader, folder);
+  check_threads(reader, cloth.patch, threads);
+  ObjectReader shape = reader.object("shape");
+  cloth.shape = parse_shape(shape, {"swatch", "cylinder"});
+  shape.finish();
+  cloth.world_from_cloth = pose(reader, "world_from_cloth");
+  if (reader.has("method")) cloth.two_scale = reader.choice("method", {"two_scale", "brute_force"}) == "two_scale";
+  reader.finish();
+  return cloth;
+}
+
+Vector3d at_least_zero(ObjectReader& reader, const std::string& key, double most) {
+  const Vector3d found = reader.vector3(key);
+  if (!(found.minCoeff() >= 0 && found.maxCoeff() <= most))
+    reader.refuse(key, "found " + to_json(found).dump() + ", expected R, G, B from 0 to " + json(most).dump());
+  return found;
+}
+
+SceneBody parse_object(ObjectReader reader) {
+  SceneBody body;
+  body.shape = parse_shape(reader, {"plane", "cylinder"});
+  body.world_from_object = pose(reader, "world_from_object");
+  const Vector3d albedo = at_least_zero(reader, "albedo", 1);
+  for (int c = 0; c < 3; ++c) body.albedo[c] = static_cast<float>(albedo[c]);
+  reader.finish();
+  return body;
+}
+
+renderer::SphereLight parse_light(ObjectReader reader) {
+  constexpr double kMostRadiance = 1e12;
+  renderer::SphereLight light;
+  if (reader.choice("kind", {"sphere", "environment"}) == "environment") {
+    light.radius_mm = kSurroundings_mm;
+    light.radiance = at_least_zero(reader, "radiance", kMostRadiance);
+  } else {
+    light.center = point(reader, "position_mm");
+    light.radius_mm = reader.number("radius_mm", 1e-3, kMostCoordinate);
+    if (reader.has("radiance") == reader.has("intensity_mm2"))
+      reader.refuse("radiance", "give either radiance or intensity_mm2, not both and not none");
+    if (reader.has("radiance"))
+      light.radiance = at_least_zero(reader, "radiance", kMostRadiance);
+    else
+      light.radiance =
+          at_least_zero(reader, "intensity_mm2", kMostRadiance) / (renderer::kPi * light.radius_mm * light.radius_mm);
+  }
+  if (reader.has("visible")) light.visible = reader.flag("visible");
+  reader.finish();
+  return light;
+}
+
+renderer::Camera parse_camera(ObjectReader reader) {
+  const Vector3d eye = point(reader, "eye_mm"), target = point(reader, "target_mm");
+  const Vector3d up = reader.has("up") ? reader.vector3("up") : Vector3d::UnitZ();
+  if (!((target - eye).norm() > 0)) reader.refuse("target_mm", "is where the eye is; look at something else");
+  if (!(up.cross(target - eye).norm() > 1e-6 * up.norm() * (target - eye).norm()))
+    reader.refuse("up",
+                  "points along the view (its default is [0, 0, 1]); give a direction that is up in the picture");
+  renderer::Camera camera = renderer::look_at(eye, target, up);
+  camera.width = reader.integer("width_px", 1, kMostSide);
+  camera.height = reader.integer("height_px", 1, kMostSide);
+  if (static_cast<double>(camera.width) * camera.height > kMostPixels)
+    reader.refuse("width_px", "the picture has more than 100 million pixels; make it smaller");
+  camera.fx = camera.fy = reader.number("focal_length_px", 1, 1e7);
+  camera.cx = (camera.width - 1) / 2.0, camera.cy = (camera.height - 1) / 2.0;
+  reader.finish();
+  return camera;
+}
+
+void read_threads(ObjectReader& reader, const std::filesystem::path& folder, SceneFile& scene) {
+  const json& names = reader.raw("threads");
+  if (!names.is_array()) reader.refuse("threads", "expected a list of thread files");
+  for (const json& name : names) {
+    if (!name.is_string()) reader.refuse("threads", "found " + name.dump() + ", expected the name of a thread file");
+    const ThreadFile thread = read_thread(folder / name.get<std::string>());
+    if (scene.threads.empty()) scene.linear_srgb_from_camera = thread.linear_srgb_from_camera;
+    scene.threads.push_back(thread.parameters);
+  }
+}
+
+}  // namespace
+
+SceneFile parse_scene(const json& document, const std::string& source, const std::filesystem::path& folder) {
+  ObjectReader reader(document, source, "scene", 1);
+  SceneFile scene;
+  scene.name = reader.text("name");
+  read_threads(reader, folder, scene);
+  for (const ObjectReader& cloth : reader.objects("cloths"))
+    scene.cloths.push_back(parse_cloth(cloth, folder, scene.threads.size()));
+  if (reader.has("objects"))
+    for (const ObjectReader& object : reader.objects("objects")) scene.objects.push_back(parse_object(object));
+  for (const ObjectReader& light : reader.objects("lights")) scene.lights.push_back(parse_light(light));
+  if (scene.lights.empty()) reader.refuse("lights", "the list is empty and the picture would be black; add a light");
+  scene.camera = parse_camera(reader.object("camera"));
+  if (reader.has("samples_per_pixel")) scene.samples_per_pixel = reader.integer("samples_per_pixel", 1, 1 << 20);
+  if (reader.has("exposure")) scene.exposure = reader.number("exposure", 1e-12, 1e12);
+  reader.finish();
+  return scene;
+}
+
+SceneFile read_scene(const std::filesystem::path& file) {
+  return parse_scene(read_json_file(file), file.string(), file.parent_path());
+}
+
+renderer::Scene to_scene(const SceneFile& file) {
+  renderer::Scene scene;
+  const std::vector<renderer::ScatteringModel> threads(file.threads.begin(), file.threads.end());
+  for (const SceneCloth& cloth : file.cloths) {
+    if (cloth.two_scale) {
+      scene.cloths.push_back(
+          {renderer::surface_of(cloth.shape, cloth.patch, cloth.world_from_cloth), cloth.patch, threads});
+    } else {
+      for (renderer::CurveSet& set :
+           renderer::explicit_curves(cloth.shape, cloth.patch, threads, cloth.world_from_cloth))
+        scene.curves.push_back(std::move(set));
+    }
+  }
+  for (const SceneBody& body : file.objects)
+    scene.meshes.push_back(renderer::body_of(body.shape, body.world_from_object, body.albedo));
+  scene.lights = file.lights;
+  return scene;
+}
+
+}  // namespace station

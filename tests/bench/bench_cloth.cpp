@@ -1,0 +1,35 @@
+// Samples per second of cloth in two scales beside the same cloth as explicit curves: flat, and round a cylinder.
+#include <benchmark/benchmark.h>
+
+#include "../renderer/cloth_scenes.h"
+#include "renderer/path_tracer.h"
+#include "renderer/ray_scene.h"
+
+namespace renderer {
+namespace {
+
+constexpr int kSamples = 4;
+
+void path_tracing(benchmark::State& state, const ClothShape& shape, bool two_scale) {
+  const bool flat = std::holds_alternative<SwatchShape>(shape);
+  Scene scene = two_scale ? two_scale_scene(shape, satin_patch(), red_and_blue_threads())
+                          : brute_force_scene(shape, satin_patch(), red_and_blue_threads());
+  scene.lights = {{.center = {300, -200, 400}, .radius_mm = 30, .radiance = {100, 100, 100}, .visible = false}};
+  if (!flat) scene.meshes = {body_of(CylinderShape{40.4, 171}, Eigen::Isometry3d::Identity(), {0, 0, 0})};
+  const Camera camera = flat ? camera_on({60, 0, 400}, {0, 0, 0}, {0, 1, 0}, 80, 128, 128)
+                             : camera_on({500, 0, 85}, {0, 0, 85}, {0, 0, 1}, 80, 128, 128);
+  const PathTracer tracer(scene);
+  for (auto _ : state) benchmark::DoNotOptimize(tracer.render(camera, {.samples_per_pixel = kSamples}));
+  state.SetItemsProcessed(state.iterations() * kSamples * camera.width * camera.height);
+  state.counters["yarn_bytes"] = static_cast<double>(RayScene(scene).yarn_bytes());
+}
+
+#define CLOTH(name, shape, two_scale) \
+  BENCHMARK_CAPTURE(path_tracing, name, shape, two_scale)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()
+CLOTH(swatch_two_scale, (SwatchShape{110, 110}), true);
+CLOTH(swatch_brute_force, (SwatchShape{110, 110}), false);
+CLOTH(cylinder_two_scale, (CylinderShape{41, 171}), true);
+CLOTH(cylinder_brute_force, (CylinderShape{41, 171}), false);
+
+}  // namespace
+}  // namespace renderer

@@ -1,0 +1,121 @@
+// The render command, as a person types it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "renderer/image_file.h"
+#include "station/documents/reader.h"
+#include "tests/station/program.h"
+
+namespace station_test {
+namespace {
+
+using nlohmann::json;
+
+// A ready scene in few pixels, with its files named absolutely.
+json small_scene(const std::string& name) {
+  json scene = station::read_json_file(std::string(FIXTURES_DIR) + "/scenes/" + name + ".json");
+  for (json& thread : scene["threads"]) thread = std::string(FIXTURES_DIR) + "/scenes/" + thread.get<std::string>();
+  for (json& cloth : scene["cloths"])
+    cloth["draft"] = std::string(FIXTURES_DIR) + "/scenes/" + cloth["draft"].get<std::string>();
+  const int divisor = 12;
+  scene["camera"]["width_px"] = scene["camera"]["width_px"].get<int>() / divisor;
+  scene["camera"]["height_px"] = scene["camera"]["height_px"].get<int>() / divisor;
+  scene["camera"]["focal_length_px"] = scene["camera"]["focal_length_px"].get<double>() / divisor;
+  scene["samples_per_pixel"] = 2;
+  return scene;
+}
+
+class Render : public ::testing::Test {
+ protected:
+  std::string written(const std::string& name, const json& scene) {
+    station::write_json_file(folder_ / name, scene);
+    return folder_ / name;
+  }
+  ProgramResult render(const std::string& scene, const std::string& out, std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments{"render", scene, "--out", folder_ / out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_threadstation(arguments);
+  }
+  void expect_one_line(const ProgramResult& result, const std::string& must_name) {
+    EXPECT_EQ(result.status, 1) << result.error;
+    EXPECT_EQ(result.error_lines(), 1) << result.error;
+    EXPECT_NE(result.error.find(must_name), std::string::npos) << result.error;
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(Render, WritesLinearAndDisplayPictures) {
+  const std::string scene = written("scene.json", small_scene("plain_swatch"));
+  const ProgramResult exr = render(scene, "a.exr", {"--json"});
+  ASSERT_EQ(exr.status, 0) << exr.error;
+  const json report = json::parse(exr.out);
+  EXPECT_EQ(report.at("samples"), 40 * 40 * 2);
+  EXPECT_GT(report.at("rays"), report.at("samples"));
+  renderer::ImageHeader header;
+  const cv::Mat3f linear = renderer::read_exr(folder_ / "a.exr", &header);
+  EXPECT_EQ(linear.size(), cv::Size(40, 40));
+  EXPECT_GT(cv::mean(linear)[0], 1.5 * cv::mean(linear)[2]) << "red and gold threads";
+  EXPECT_EQ(header.at("threadstation/scene"), "plain cloth, light from the front");
+  const ProgramResult png = render(scene, "a.png", {"--time", "--quiet", "--exposure", "3"});
+  ASSERT_EQ(png.status, 0) << png.error;
+  EXPECT_NE(png.out.find("samples/s"), std::string::npos) << png.out;
+  EXPECT_EQ(png.error, "");
+  EXPECT_GT(std::filesystem::file_size(folder_ / "a.png"), 100u);
+}
+
+TEST_F(Render, TheSameSeedGivesTheSamePictureOnAnyNumberOfThreads) {
+  const std::string scene = written("scene.json", small_scene("satin_cylinder"));
+  ASSERT_EQ(render(scene, "a.exr", {"--seed", "5", "--threads", "1"}).status, 0);
+  ASSERT_EQ(render(scene, "b.exr", {"--seed", "5", "--threads", "2"}).status, 0);
+  ASSERT_EQ(render(scene, "c.exr", {"--seed", "6"}).status, 0);
+  const cv::Mat3f a = renderer::read_exr(folder_ / "a.exr");
+  EXPECT_EQ(cv::norm(a, renderer::read_exr(folder_ / "b.exr"), cv::NORM_INF), 0);
+  EXPECT_GT(cv::norm(a, renderer::read_exr(folder_ / "c.exr"), cv::NORM_INF), 0);
+}
+
+TEST_F(Render, BadFilesGiveOneClearLine) {
+  const json good = small_scene("plain_swatch");
+  expect_one_line(render(folder_ / "none.json", "a.exr"), "no such file");
+  expect_one_line(render(written("scene.json", good), "a.jpg"), "expected .exr");
+  expect_one_line(render(written("scene.json", good), "no/such/a.exr"), "there is no folder");
+  json bad = good;
+  bad["cloths"][0]["weft_threads"] = {7};
+  expect_one_line(render(written("scene.json", bad), "a.exr"), "has a yarn of thread 7");
+  bad = good;
+  bad["threads"][1] = "thread.json";
+  written("thread.json", {{"format", "threadstation/thread"}, {"version", 1}, {"name", "empty"}});
+  expect_one_line(render(written("scene.json", bad), "a.exr"), "thread.json: key \"diameter_mm\": is missing");
+  bad = good;
+  bad["cloths"][0]["shape"] = {{"kind", "cylinder"}, {"radius_mm", 0.1}, {"height_mm", 5}};
+  expect_one_line(render(written("scene.json", bad), "a.exr"), "cannot hold one repeat");
+  bad["cloths"][0]["shape"]["radius_mm"] = 0.35;
+  expect_one_line(render(written("scene.json", bad), "a.exr"), "bends more sharply");
+  bad = good;
+  bad["cloths"][0]["shape"]["width_mm"] = bad["cloths"][0]["shape"]["height_mm"] = 1e4;
+  bad["cloths"][0]["method"] = "brute_force";
+  expect_one_line(render(written("scene.json", bad), "a.exr"), "use two_scale");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.exr"));
+  const ProgramResult wrong_use = render(written("scene.json", good), "a.exr", {"--spp", "0"});
+  EXPECT_EQ(wrong_use.status, 2) << wrong_use.error;
+}
+
+TEST_F(Render, CtrlCStopsItInOneLineAndLeavesNoPicture) {
+  json scene = small_scene("plain_swatch");
+  scene["samples_per_pixel"] = 256;
+  scene["camera"]["width_px"] = scene["camera"]["height_px"] = 4000;  // hours
+  const std::string out = folder_ / "a.exr", pipe = folder_ / "pipe";
+  const std::string render =
+      std::string(THREADSTATION_PROGRAM) + " render " + written("scene.json", scene) + " --out " + out;
+  // Interrupts it as soon as the first line of progress is there, and prints what it says from then on.
+  const ProgramResult result =
+      run_shell("mkfifo " + pipe + "; " + render + " 2> " + pipe +
+                " & program=$!; { read first; kill -INT $program; cat; } < " + pipe + "; wait $program");
+  EXPECT_EQ(result.status, 1) << result.out << result.error;
+  EXPECT_NE(result.out.find("threadstation: rendering was stopped on request"), std::string::npos) << result.out;
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+}  // namespace
+}  // namespace station_test

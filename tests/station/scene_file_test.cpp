@@ -1,0 +1,156 @@
+#include "station/documents/scene_file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "renderer/ray_scene.h"
+#include "station/documents/draft_file.h"
+#include "station/documents/patch_file.h"
+#include "station/documents/reader.h"
+#include "station/documents/thread_file.h"
+#include "tests/station/program.h"
+#include "tests/station/refusal.h"
+
+namespace station {
+namespace {
+
+using nlohmann::json;
+using station_test::refusal;
+namespace fs = std::filesystem;
+
+const fs::path kScenes = fs::path(FIXTURES_DIR) / "scenes";
+const fs::path kThreads = fs::path(FIXTURES_DIR) / "threads";
+
+json plain_scene() {
+  return read_json_file(kScenes / "plain_swatch.json");
+}
+
+TEST(SceneFile, ReadyScenesAreReadAndBecomeScenes) {
+  int read = 0;
+  for (const auto& entry : fs::directory_iterator(kScenes)) {
+    if (entry.path().extension() != ".json") continue;
+    const SceneFile scene = read_scene(entry.path());
+    ++read;
+    EXPECT_FALSE(scene.cloths.empty()) << entry.path();
+    EXPECT_EQ(to_scene(scene).cloths.size(), scene.cloths.size()) << "ready scenes are in two scales";
+    EXPECT_EQ(to_scene(scene).meshes.size(), scene.objects.size());
+  }
+  EXPECT_EQ(read, 5);
+}
+
+TEST(SceneFile, ReadyThreadsAreReadAndWrittenAgainAsTheyAre) {
+  int read = 0;
+  for (const auto& entry : fs::directory_iterator(kThreads)) {
+    if (entry.path().extension() != ".json") continue;
+    const ThreadFile thread = read_thread(entry.path());
+    EXPECT_EQ(to_json(parse_thread(to_json(thread), "again")), to_json(thread));
+    ++read;
+  }
+  EXPECT_EQ(read, 4);
+}
+
+TEST(SceneFile, WhatItSaysIsWhereItBelongs) {
+  json document = read_json_file(kScenes / "satin_cylinder.json");
+  document["cloths"][0]["world_from_cloth"] = {{1, 0, 0, 5}, {0, 1, 0, 6}, {0, 0, 1, 7}, {0, 0, 0, 1}};
+  document["exposure"] = 2.5;
+  const SceneFile scene = parse_scene(document, "scene", kScenes);
+  ASSERT_EQ(scene.threads.size(), 2u);
+  EXPECT_EQ(scene.threads[1].sigma_a, read_thread(kThreads / "silk_gold.json").parameters.sigma_a);
+  EXPECT_EQ(std::get<renderer::CylinderShape>(scene.cloths[0].shape).radius_mm, 41);
+  EXPECT_EQ(scene.cloths[0].world_from_cloth.translation(), Eigen::Vector3d(5, 6, 7));
+  EXPECT_EQ(scene.cloths[0].patch.yarns.front().thread, 0);
+  EXPECT_EQ(scene.cloths[0].patch.yarns.back().thread, 1);
+  EXPECT_TRUE(scene.cloths[0].two_scale);
+  EXPECT_DOUBLE_EQ(scene.lights[0].radiance.x() * renderer::kPi * 40 * 40, 600000);
+  EXPECT_FALSE(scene.lights[0].visible);
+  EXPECT_EQ(scene.lights[1].radiance.x(), 0.15);
+  EXPECT_EQ(scene.camera.width, 400);
+  EXPECT_LT((renderer::project(scene.camera, {0, 0, 84}) - Eigen::Vector2d(199.5, 299.5)).norm(), 1e-9);
+  EXPECT_EQ(scene.exposure, 2.5);
+}
+
+TEST(SceneFile, BruteForceTurnsClothIntoCurvesOfItsThreads) {
+  json document = plain_scene();
+  document["cloths"][0]["method"] = "brute_force";
+  const renderer::Scene scene = to_scene(parse_scene(document, "scene", kScenes));
+  EXPECT_TRUE(scene.cloths.empty());
+  EXPECT_EQ(scene.curves.size(), 2u);
+}
+
+TEST(SceneFile, APatchServesAsWellAsItsDraft) {
+  const station_test::TemporaryFolder folder;
+  const renderer::YarnPatch patch =
+      renderer::initial_patch(read_draft(fs::path(FIXTURES_DIR) / "drafts" / "plain.json"));
+  write_json_file(folder / "patch.json", to_json(patch));
+  json document = plain_scene();
+  document["threads"] = {(kThreads / "silk_red.json").string()};
+  document["cloths"][0].erase("draft");
+  document["cloths"][0].erase("warp_threads");
+  document["cloths"][0].erase("weft_threads");
+  document["cloths"][0]["patch"] = "patch.json";
+  EXPECT_EQ(parse_scene(document, "scene", folder.path()).cloths[0].patch.yarns.size(), patch.yarns.size());
+}
+
+TEST(SceneFile, EachMistakeIsRefusedInOneLineThatNamesIt) {
+  struct Mistake {
+    std::string pointer;
+    json value;  // null: the key is removed
+    std::string named;
+  };
+  const std::vector<Mistake> mistakes{
+      {"/format", "threadstation/draft", "expected a \"threadstation/scene\" document"},
+      {"/colour", 1, "unknown key \"colour\""},
+      {"/threads", "silk_red.json", "threads"},
+      {"/threads/0", "none.json", "none.json: no such file"},
+      {"/threads/0", "../drafts/plain.json", "expected a \"threadstation/thread\" document"},
+      {"/cloths/0/draft", "../threads/silk_red.json", "expected a \"threadstation/draft\" document"},
+      {"/cloths/0/patch", "p.json", "either a draft or a patch"},
+      {"/cloths/0/draft", nullptr, "either a draft or a patch"},
+      {"/cloths/0/weft_threads", {2}, "has a yarn of thread 2, but the scene lists 2 threads"},
+      {"/cloths/0/weft_threads", {0.5}, "cloths[0].weft_threads"},
+      {"/cloths/0/weft_threads", {-1}, "cloths[0].weft_threads"},
+      {"/cloths/0/weft_threads", json::array(), "the list is empty"},
+      {"/cloths/0/shape/kind", "sphere", "cloths[0].shape.kind"},
+      {"/cloths/0/shape/width_mm", 0, "cloths[0].shape.width_mm"},
+      {"/cloths/0/shape/radius_mm", 3, "unknown key \"cloths[0].shape.radius_mm\""},
+      {"/cloths/0/method", "fast", "cloths[0].method"},
+      {"/cloths/0/world_from_cloth", {1, 2}, "4 x 4 rigid transform"},
+      {"/objects",
+       {{{"kind", "plane"}, {"width_mm", 1}, {"height_mm", 1}, {"albedo", {2, 0, 0}}}},
+       "objects[0].albedo"},
+      {"/lights", json::array(), "lights"},
+      {"/lights/0/radiance", {1, 1, 1}, "either radiance or intensity_mm2"},
+      {"/lights/0/intensity_mm2", {1, -1, 1}, "from 0 to"},
+      {"/lights/0/radius_mm", -1, "lights[0].radius_mm"},
+      {"/camera/eye_mm", {0, 0, 0}, "camera.target_mm"},
+      {"/camera/up", {0, 0, 1}, "camera.up"},
+      {"/camera/width_px", 0, "camera.width_px"},
+      {"/camera/focal_length_px", nullptr, "camera.focal_length_px"},
+      {"/samples_per_pixel", 0.5, "samples_per_pixel"},
+      {"/exposure", -1, "exposure"}};
+  for (const Mistake& mistake : mistakes) {
+    json document = plain_scene();
+    const json::json_pointer at(mistake.pointer);
+    if (mistake.value.is_null())
+      document[at.parent_pointer()].erase(at.back());
+    else
+      document[at] = mistake.value;
+    const std::string line = refusal([&] { parse_scene(document, "scene.json", kScenes); });
+    EXPECT_NE(line.find(mistake.named), std::string::npos) << mistake.pointer << ": " << line;
+    EXPECT_NE(line.find(".json"), std::string::npos) << "names no file: " << line;
+  }
+}
+
+TEST(SceneFile, APatchThatReachesFarBeyondItsCellIsRefused) {
+  const SceneFile good = parse_scene(plain_scene(), "scene", kScenes);
+  SceneFile far = good;
+  far.cloths[0].patch.yarns[0].control_points[1].z() = 1e5;
+  EXPECT_NE(refusal([&] { renderer::RayScene(to_scene(far)); }).find("periods beyond"), std::string::npos);
+  far = good;
+  far.cloths[0].patch.period_x_mm = 1e-6;
+  EXPECT_NE(refusal([&] { renderer::RayScene(to_scene(far)); }).find("periods beyond"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace station
