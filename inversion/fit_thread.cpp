@@ -111,12 +111,11 @@ FitRound solve(const ThreadObjective& objective, const std::vector<ParameterGrou
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = kMostSteps;
   options.function_tolerance = 1e-4;
-  options.initial_trust_region_radius = getenv("TR") ? atof(getenv("TR")) : 1;
-  options.logging_type = ceres::PER_MINIMIZER_ITERATION; options.minimizer_progress_to_stdout = getenv("FULL");
+  options.initial_trust_region_radius = 1;  // the start is far: full Gauss-Newton steps end at the bounds
+  options.logging_type = ceres::SILENT;
   options.callbacks = {&callback};
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
-  if (getenv("FULL")) std::puts(summary.FullReport().c_str());
   if (summary.termination_type == ceres::USER_FAILURE)
     throw std::runtime_error("the fit was stopped on request; start it again for a thread");
   if (!summary.IsSolutionUsable())

@@ -34,7 +34,8 @@ renderer::Scene view_scene(const WrappedSpool& spool, const renderer::Scattering
                            const NearLight& light);
 
 // Mask of the threads: the non-zero region of a rendering of the threads from this view before anything is fitted
-// [Xia 2025, section 4]. 255 inside. `samples_per_pixel` rays per pixel decide.
+// [Xia 2025, section 4], less a border of two pixels where photographs mix threads with what is beside them. 255
+// inside. `samples_per_pixel` rays per pixel decide.
 cv::Mat1b thread_mask(const WrappedSpool& spool, const renderer::Camera& camera, const NearLight& light,
                       int samples_per_pixel);
 
