@@ -130,20 +130,17 @@ std::optional<RaySpan> clip(const ShellCell& cell, const Vector3d& origin, const
   using FaceDistances = Eigen::Matrix<double, 5, 1>;
   const FaceDistances start = cell.inside_from_world * origin.homogeneous();
   const FaceDistances slope = cell.inside_from_world.leftCols<3>() * direction;
-  double begin = -std::numeric_limits<double>::infinity(), end = -begin;
   for (int k = 0; k < cell.faces; ++k) {
+    const double crossing = -start[k] / slope[k];
     if (slope[k] > 0)
-      begin = std::max(begin, -start[k] / slope[k]);
+      within.begin = std::max(within.begin, crossing - kShellOverlap);
     else if (slope[k] < 0)
-      end = std::min(end, -start[k] / slope[k]);
+      within.end = std::min(within.end, crossing + kShellOverlap);
     else if (start[k] < 0)
       return std::nullopt;
+    if (!(within.begin <= within.end)) return std::nullopt;
   }
-  if (!(begin <= end)) return std::nullopt;
-  begin = std::max(begin - kShellOverlap, within.begin);
-  end = std::min(end + kShellOverlap, within.end);
-  if (!(begin <= end)) return std::nullopt;
-  return RaySpan{begin, end};
+  return within;
 }
 
 Matrix3d frame_at(const ClothShell& shell, const ShellCell& cell, const Vector3d& world) {
