@@ -1,0 +1,53 @@
+#include <iostream>
+
+#include "station/commands/commands.h"
+#include "station/commands/output_options.h"
+#include "station/invert/invert_session.h"
+
+namespace station {
+namespace {
+
+struct Arguments {
+  InvertRequest request;
+  std::string model = "thread", solver = "lm", out;
+  std::vector<std::string> held;
+  OutputOptions output;
+};
+
+void run(Arguments& arguments) {
+  InvertRequest& request = arguments.request;
+  if (!arguments.out.empty()) request.out = arguments.out;
+  for (inversion::ParameterGroup group : inversion::kParameterGroups)
+    for (const std::string& name : arguments.held)
+      if (name == inversion::name_of(group)) request.fit.held.push_back(group);
+  request.progress_style = arguments.output.progress_style();
+  const InvertResult result = invert_session(request);
+  if (arguments.output.json)
+    std::cout << to_json(result).dump() << "\n";
+  else if (!arguments.output.quiet)
+    std::cout << describe(result);
+}
+
+}  // namespace
+
+void add_invert_command(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("invert", "fit a thread to a session's developed views");
+  command->add_option("session", arguments->request.session, "session folder")->required();
+  command->add_option("--out", arguments->out, "write thread.json here as well");
+  command->add_option("--model", arguments->model, "scattering model")->check(CLI::IsMember({"thread"}));
+  command->add_option("--solver", arguments->solver, "lm: Levenberg-Marquardt")->check(CLI::IsMember({"lm"}));
+  std::vector<std::string> groups;
+  for (inversion::ParameterGroup group : inversion::kParameterGroups) groups.push_back(inversion::name_of(group));
+  command->add_option("--hold", arguments->held, "leave this group of parameters at its start")
+      ->check(CLI::IsMember(groups));
+  command->add_option("--paths", arguments->request.fit.paths_per_block, "light paths per block, one number a round")
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--spp", arguments->request.samples_per_pixel, "samples per pixel of the fitted views")
+      ->check(CLI::Range(1, 65536));
+  command->add_option("--seed", arguments->request.fit.seed, "of the light paths");
+  arguments->output.add_to(*command);
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace station

@@ -1,0 +1,50 @@
+// A developed session to a digitized thread: the fit, the views as the fitted thread gives them, and how well they
+// agree; everything under result/ of the session.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "inversion/agreement.h"
+#include "inversion/fit_thread.h"
+#include "station/documents/thread_file.h"
+#include "station/progress.h"
+
+namespace station {
+
+struct InvertRequest {
+  std::filesystem::path session;
+  std::optional<std::filesystem::path> out;  // thread.json goes there as well
+  inversion::FitOptions fit;                 // its progress is replaced
+  int samples_per_pixel = 16;                // of the fitted views
+  ProgressStyle progress_style = ProgressStyle::automatic;
+};
+
+struct FittedView {
+  std::string id;
+  bool transmission = false;
+  inversion::ViewAgreement agreement;
+};
+
+struct InvertResult {
+  ThreadFile thread;
+  std::filesystem::path thread_file;
+  std::vector<FittedView> views;
+  double relative_rmse = 0;  // overall (inversion/agreement.h)
+};
+
+// Writes result/thread.json, result/fitted/<view>.exr and result/residual/<view>.exr (fitted minus photographed; both
+// linear camera RGB, radiance unit, zero outside the mask). Ctrl-C stops it; thread.json is written last, so that it
+// always belongs to whole pictures. Errors: those of read_views and fit_thread.
+InvertResult invert_session(const InvertRequest& request);
+
+std::string describe(const InvertResult& result);
+nlohmann::json to_json(const InvertResult& result);
+
+// The fitted view and residual that invert_session left, for reports. Empty when there are none.
+std::filesystem::path thread_file_of(const std::filesystem::path& session);
+std::filesystem::path fitted_file_of(const std::filesystem::path& session, const std::string& view);
+
+}  // namespace station
