@@ -18,11 +18,11 @@ std::vector<Block> mask_blocks(const cv::Mat1b& mask, int side_px) {
   return blocks;
 }
 
-int block_side_px(const WrappedSpool& spool, const std::vector<View>& views) {
-  double side = kLeastBlock_px;
+int pooled_px(const WrappedSpool& spool, const std::vector<View>& views) {
+  double side = 1;
   for (const View& view : views) {
     const double pixels_per_mm = view.camera.fx / view.camera.world_from_camera.translation().norm();
-    side = std::max(side, 2 * spool.thread_diameter_mm * pixels_per_mm);
+    side = std::max(side, kPooledPitches * spool.thread_diameter_mm * pixels_per_mm);
   }
   return static_cast<int>(std::ceil(side));
 }

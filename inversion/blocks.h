@@ -19,9 +19,11 @@ struct Block {
 // Square blocks of `side_px` over the mask, row by row; blocks without masked pixels are left out.
 std::vector<Block> mask_blocks(const cv::Mat1b& mask, int side_px);
 
-// Side of the blocks: kLeastBlock_px, or more where that does not cover two thread pitches in every view.
-int block_side_px(const WrappedSpool& spool, const std::vector<View>& views);
-inline constexpr int kLeastBlock_px = 8;
+// Pixels of the photograph, per side, that make one pooled pixel: as many as cover two thread pitches in every view.
+int pooled_px(const WrappedSpool& spool, const std::vector<View>& views);
+inline constexpr double kPooledPitches = 2;
+// Blocks of the fit and of its agreement are kBlock_pooled x kBlock_pooled pooled pixels.
+inline constexpr int kBlock_pooled = 8;
 
 // Mean over the block's masked pixels of a picture, RGB.
 Eigen::Array3d block_mean(const Block& block, const cv::Mat3f& picture);

@@ -15,7 +15,8 @@ using renderer::kThreadParameterCount;
 constexpr double kGamma = 1e-4;          // of eq. 6's trend of lambda_0
 constexpr double kTrendRounding = 1e-3;  // below this the hinge is rounded, so that it has a derivative
 constexpr int kEnergyAngles = 32;
-constexpr double kEnergyPenalty = 0.1;  // of the mean squared excess of energy: beside losses of about 1e-3
+constexpr double kEnergyPenalty =
+    30;  // of the mean squared excess: 1 % of it costs as much as a tenth of the data term
 constexpr int kMostSteps = 40;
 
 class DataTerm : public ceres::CostFunction {

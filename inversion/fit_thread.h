@@ -22,8 +22,8 @@ renderer::ThreadParameters starting_thread();
 
 struct FitOptions {
   renderer::ThreadParameters start = starting_thread();
-  std::vector<int> paths_per_block{32, 64, 192};  // one entry a round
-  std::vector<ParameterGroup> held{};             // left at the start
+  std::vector<int> paths_per_block{256, 256, 512, 1024, 2048};  // one entry a round
+  std::vector<ParameterGroup> held{};                           // left at the start
   std::uint64_t seed = 1;
   // Called between steps with what is done and the finished fraction; returning false stops the fit.
   std::function<bool(const std::string&, double)> progress{};

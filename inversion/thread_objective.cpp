@@ -32,7 +32,7 @@ Row parameter_row(const Eigen::Array<double, renderer::kThreadSlopeLanes, 3>& sl
 }  // namespace
 
 ThreadObjective::ThreadObjective(const WrappedSpool& spool, const std::vector<View>& views)
-    : rays_(spool_rays(spool)), block_px_(block_side_px(spool, views)) {
+    : rays_(spool_rays(spool)), block_px_(kBlock_pooled * pooled_px(spool, views)) {
   if (views.empty()) throw std::runtime_error("there is no view to fit a thread to; develop the session first");
   for (const View& view : views) {
     check(view);
