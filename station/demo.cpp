@@ -4,14 +4,18 @@
 
 #include "station/calibrate/calibrate_rig.h"
 #include "station/capture_session.h"
+#include "station/cloth_preview.h"
 #include "station/develop/develop_session.h"
 #include "station/documents/reader.h"
+#include "station/invert/invert_session.h"
 #include "station/report/session_report.h"
 
 namespace station {
 namespace {
 
 constexpr const char* kFixtures = THREADSTATION_FIXTURES;
+const std::vector<int> kQuickPaths{128, 256, 512};
+constexpr int kQuickSamples = 8;
 
 nlohmann::json demo_rig(bool quick) {
   nlohmann::json rig = read_json_file(std::filesystem::path(kFixtures) / "rigs" / "simulated.json");
@@ -59,7 +63,22 @@ DemoResult run_demo(const DemoRequest& request) {
   if (outcome == RunOutcome::interrupted)
     throw std::runtime_error("the demo was interrupted; the same command goes on from here");
   develop_session(session, request.progress_style);
-  return {.session = session, .report = write_session_report(session), .kept = kept};
+  InvertRequest inversion{.session = session, .progress_style = request.progress_style};
+  if (request.quick) {
+    inversion.fit.paths_per_block = kQuickPaths;
+    inversion.samples_per_pixel = kQuickSamples;
+  }
+  const InvertResult thread = invert_session(inversion);
+  preview_cloth({.session = session,
+                 .draft = std::filesystem::path(kFixtures) / "drafts" / "twill_2_2.json",
+                 .quick = request.quick,
+                 .progress_style = request.progress_style});
+  return {.session = session,
+          .thread = thread.thread_file,
+          .relative_rmse = thread.relative_rmse,
+          .cloth = cloth_pictures(session),
+          .report = write_session_report(session),
+          .kept = kept};
 }
 
 }  // namespace station

@@ -1,7 +1,8 @@
-// The whole job on the simulated bench: calibrate, capture, develop, report.
+// The whole job on the simulated bench: calibrate, capture, develop, invert, weave, render, report.
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "station/progress.h"
 
@@ -15,12 +16,15 @@ struct DemoRequest {
 };
 
 struct DemoResult {
-  std::filesystem::path session, report;
+  std::filesystem::path session, thread;
+  double relative_rmse = 0;  // of the fitted thread
+  std::vector<std::filesystem::path> cloth;
+  std::filesystem::path report;
   bool kept = false;  // pictures of an earlier demo on the same rig were kept
 };
 
 // Keeps what an earlier demo on the same rig left whole in the folder: an interrupted one goes on, a finished one is only
-// developed and reported again. Another rig (or --quick against full) starts from the beginning.
+// developed, fitted and reported again. Another rig (or --quick against full) starts from the beginning.
 DemoResult run_demo(const DemoRequest& request);
 
 }  // namespace station

@@ -3,6 +3,7 @@
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
 #include "station/demo.h"
+#include "station/report/html.h"
 
 namespace station {
 namespace {
@@ -12,15 +13,29 @@ struct Arguments {
   OutputOptions output;
 };
 
+std::string clothes(const DemoResult& result) {
+  std::string names;
+  for (const std::filesystem::path& picture : result.cloth) names += (names.empty() ? "" : ", ") + picture.string();
+  return names;
+}
+
 void run(Arguments& arguments) {
   arguments.request.progress_style = arguments.output.progress_style();
   const DemoResult result = run_demo(arguments.request);
   if (arguments.output.json)
-    std::cout << nlohmann::json{{"session", result.session}, {"report", result.report}}.dump() << "\n";
+    std::cout << nlohmann::json{{"session", result.session},
+                                {"thread", result.thread},
+                                {"relative_rmse", result.relative_rmse},
+                                {"cloth", result.cloth},
+                                {"report", result.report}}
+                     .dump()
+              << "\n";
   else
     std::cout << (result.kept ? "kept the pictures of an earlier demo in this folder; --fresh takes them again\n"
                               : "")
-              << "session  " << result.session.string() << "\nreport   " << result.report.string() << "\n";
+              << "session  " << result.session.string() << "\nthread   " << result.thread.string()
+              << "  (relative RMSE " << number_text(100 * result.relative_rmse, 1) << " %)\n"
+              << "cloth    " << clothes(result) << "\nreport   " << result.report.string() << "\n";
 }
 
 }  // namespace

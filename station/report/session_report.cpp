@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "renderer/image_file.h"
+#include "station/capture/manifest.h"
 #include "station/documents/calibration_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
@@ -11,6 +12,7 @@
 #include "station/report/contact_sheet.h"
 #include "station/report/display.h"
 #include "station/report/html.h"
+#include "station/report/thread_report.h"
 
 namespace station {
 namespace {
@@ -92,9 +94,14 @@ std::filesystem::path write_session_report(const std::filesystem::path& session)
                                  {"rig", asked.rig.name},
                                  {"captured", asked.utc},
                                  {"software", asked.software}});
+  body += cloth_section(session, developed) + thread_section(session, developed);
   body += view_tiles(developed, false) + view_tiles(developed, true);
   body += "<h2>Calibration</h2>\n" + calibration_table(calibration);
   renderer::write_png(session / "result" / "contact_sheet.png", contact_sheet(developed));
+  if (const cv::Mat3b overview = overview_picture(session, developed); !overview.empty())
+    renderer::write_png(session / "result" / "overview.png", overview);
+  FileSystem disk;
+  write_manifest(session / "result", disk);
   const std::filesystem::path file = session / "report.html";
   write_text_file(file, html_page("Thread session: " + asked.spool.name, body));
   return file;

@@ -1,0 +1,96 @@
+#include "station/cloth_preview.h"
+
+#include <array>
+#include <stdexcept>
+
+#include "renderer/image_file.h"
+#include "station/documents/draft_file.h"
+#include "station/documents/patch_file.h"
+#include "station/documents/reader.h"
+#include "station/documents/thread_file.h"
+#include "station/invert/invert_session.h"
+#include "station/render_scene.h"
+#include "station/report/display.h"
+
+namespace station {
+namespace {
+
+using nlohmann::json;
+
+// A picture's stage: a ready scene whose cloth and thread are replaced.
+struct Stage {
+  const char* name;
+  const char* scene;  // in fixtures/scenes
+  int width_px, height_px, samples_per_pixel;
+};
+constexpr std::array<Stage, 2> kStages{Stage{"swatch", "twill_swatch.json", 360, 360, 32},
+                                       Stage{"cylinder", "satin_cylinder.json", 280, 420, 32}};
+constexpr int kQuickReduction = 2;  // of sizes and samples
+
+std::filesystem::path cloth_folder(const std::filesystem::path& session) {
+  return session / "result" / "cloth";
+}
+
+renderer::Draft scaled_draft(renderer::Draft draft, double diameter_mm) {
+  const double scale = diameter_mm / draft.warp.diameter_mm;
+  for (renderer::YarnSystem* system : {&draft.warp, &draft.weft}) {
+    system->diameter_mm *= scale;
+    system->pitch_mm *= scale;
+    system->threads = {0};
+  }
+  return draft;
+}
+
+json scene_of(const Stage& stage, bool quick) {
+  json scene = read_json_file(std::filesystem::path(THREADSTATION_FIXTURES) / "scenes" / stage.scene);
+  scene["name"] = std::string("the thread as a ") + stage.name;
+  scene["threads"] = {"../thread.json"};
+  for (json& cloth : scene["cloths"]) {
+    for (const char* key : {"draft", "warp_threads", "weft_threads"}) cloth.erase(key);
+    cloth["patch"] = "patch.json";
+  }
+  json& camera = scene["camera"];
+  const int reduction = quick ? kQuickReduction : 1;
+  const double zoom = static_cast<double>(stage.width_px) / camera["width_px"].get<double>() / reduction;
+  camera["width_px"] = stage.width_px / reduction;
+  camera["height_px"] = stage.height_px / reduction;
+  camera["focal_length_px"] = camera["focal_length_px"].get<double>() * zoom;
+  scene["samples_per_pixel"] = stage.samples_per_pixel / reduction;
+  return scene;
+}
+
+}  // namespace
+
+void preview_cloth(const ClothPreviewRequest& request) {
+  const ThreadFile thread = read_thread(thread_file_of(request.session));
+  const std::filesystem::path folder = cloth_folder(request.session);
+  std::error_code code;
+  std::filesystem::create_directories(folder, code);
+  if (code)
+    throw std::runtime_error("cannot make " + folder.string() + ": " + code.message() +
+                             "; is the session's folder writable?");
+  const renderer::Draft draft = scaled_draft(read_draft(request.draft), thread.diameter_mm);
+  write_json_file(folder / "draft.json", to_json(draft));
+  write_json_file(folder / "patch.json", to_json(renderer::initial_patch(draft)));
+  for (const Stage& stage : kStages) {
+    const std::filesystem::path scene = folder / (std::string(stage.name) + ".json");
+    write_json_file(scene, scene_of(stage, request.quick));
+    std::filesystem::path picture = scene;
+    picture.replace_extension(".exr");
+    render_scene({.scene = scene, .out = picture, .progress = request.progress_style});
+    const cv::Mat3f linear = renderer::read_exr(picture);
+    const double exposure = display_scale(linear, cv::Mat1b(linear.size(), uchar{255}));
+    renderer::write_png(picture.replace_extension(".png"), display(linear, exposure, thread.linear_srgb_from_camera));
+  }
+}
+
+std::vector<std::filesystem::path> cloth_pictures(const std::filesystem::path& session) {
+  std::vector<std::filesystem::path> pictures;
+  for (const Stage& stage : kStages) {
+    const std::filesystem::path file = cloth_folder(session) / (std::string(stage.name) + ".exr");
+    if (std::filesystem::exists(file)) pictures.push_back(file);
+  }
+  return pictures;
+}
+
+}  // namespace station

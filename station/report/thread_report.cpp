@@ -1,0 +1,156 @@
+#include "station/report/thread_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "inversion/blocks.h"
+#include "renderer/image_file.h"
+#include "station/cloth_preview.h"
+#include "station/documents/thread_file.h"
+#include "station/invert/invert_session.h"
+#include "station/report/display.h"
+#include "station/report/html.h"
+#include "station/report/plot.h"
+
+namespace station {
+namespace {
+
+constexpr int kMargin_px = 24;
+constexpr double kGrey = 0.5;  // where the residual is zero
+
+std::string three(double a, double b, double c) {
+  return number_text(a, 3) + ", " + number_text(b, 3) + ", " + number_text(c, 3);
+}
+
+std::string parameter_table(const ThreadFile& thread) {
+  const renderer::ThreadParameters& p = thread.parameters;
+  return fact_table(
+      {{"agreement with the photographs",
+        number_text(100 * thread.fit.at("relative_rmse").get<double>(), 1) + " % relative RMSE over blocks of " +
+            std::to_string(thread.fit.at("block_px").get<int>()) + " px, all views alike"},
+       {"absorption sigma_a (R, G, B)", three(p.sigma_a[0], p.sigma_a[1], p.sigma_a[2]) + " per thread radius"},
+       {"longitudinal roughness alpha (R, TT, TRT)", three(p.alpha[0], p.alpha[1], p.alpha[2])},
+       {"azimuthal roughness beta (R, TT, TRT)", three(p.beta[0], p.beta[1], p.beta[2])},
+       {"r0", three(p.r0a, p.r0b, p.r0c)},
+       {"r1", number_text(p.r1a, 3)},
+       {"r2", three(p.r2a, p.r2b, p.r2c)},
+       {"thread diameter", number_text(thread.diameter_mm, 3) + " mm"}});
+}
+
+std::string energy_plot(const renderer::ThreadParameters& parameters) {
+  constexpr int kSteps = 100;
+  std::vector<PlotLine> lines{{"R: lambda_0", {}}, {"TT: lambda_1", {}}, {"TRT: lambda_2", {}}, {"sum", {}}};
+  for (int i = 0; i <= kSteps; ++i) {
+    const double c = static_cast<double>(i) / kSteps;
+    const auto lambda = renderer::thread_lobe_energies<double>(parameters, c);
+    for (std::size_t p = 0; p < 3; ++p) lines[p].points.emplace_back(c, lambda[p]);
+    lines[3].points.emplace_back(c, lambda[0] + lambda[1] + lambda[2]);
+  }
+  return line_plot("cos theta", "scale factor", lines);
+}
+
+// Fitted minus photographed, averaged over the fit's blocks, round a middle grey.
+cv::Mat3f residual_picture(const inversion::View& view, const cv::Mat3f& fitted, int block_px, double scale) {
+  cv::Mat3f picture(fitted.size(), cv::Vec3f(0, 0, 0));
+  for (const inversion::Block& block : inversion::mask_blocks(view.mask, block_px)) {
+    const Eigen::Array3d difference =
+        kGrey / scale + inversion::block_mean(block, fitted) - inversion::block_mean(block, view.image);
+    for (const cv::Point& at : block.pixels)
+      for (int c = 0; c < 3; ++c) picture(at)[c] = static_cast<float>(std::max(0.0, difference[c]));
+  }
+  return picture;
+}
+
+std::string figures_of(const nlohmann::json& fit, const std::string& id) {
+  for (const nlohmann::json& view : fit.at("views"))
+    if (view.at("id") == id)
+      return "relative RMSE " + number_text(100 * view.at("relative_rmse").get<double>(), 1) + " %, bias " +
+             number_text(100 * view.at("relative_bias").get<double>(), 1) + " %";
+  return "not fitted";
+}
+
+std::string fitted_tile(const std::filesystem::path& session, const DevelopedView& developed,
+                        const ThreadFile& thread, const std::array<double, 9>& colour) {
+  const inversion::View& view = developed.view;
+  const cv::Mat3f fitted = renderer::read_exr(fitted_file_of(session, view.id));
+  cv::Mat3f photographed(view.image.size(), cv::Vec3f(0, 0, 0));
+  view.image.copyTo(photographed, view.mask);
+  const double scale = display_scale(view.image, view.mask);
+  const cv::Rect box = threads_box(view.mask, kMargin_px);
+  const auto shown = [&](const cv::Mat3f& picture, const std::string& what) {
+    return embedded_image(display(picture, scale, colour)(box).clone(), view.id + " " + what);
+  };
+  return "<figure>" + shown(photographed, "photographed") + shown(fitted, "fitted") +
+         shown(residual_picture(view, fitted, thread.fit.at("block_px").get<int>(), scale), "residual") +
+         "<figcaption>" + escaped(view.id) + ": photographed, fitted, fitted minus photographed (grey is none)<br>" +
+         figures_of(thread.fit, view.id) + "</figcaption></figure>\n";
+}
+
+cv::Mat3b cloth_display(const std::filesystem::path& file, const std::array<double, 9>& colour) {
+  const cv::Mat3f picture = renderer::read_exr(file);
+  return display(picture, display_scale(picture, cv::Mat1b(picture.size(), uchar{255})), colour);
+}
+
+cv::Mat3b fitted_into(const cv::Mat3b& picture, cv::Size size) {
+  const double scale =
+      std::min(static_cast<double>(size.width) / picture.cols, static_cast<double>(size.height) / picture.rows);
+  cv::Mat3b small;
+  cv::resize(picture, small, {cvRound(scale * picture.cols), cvRound(scale * picture.rows)}, 0, 0, cv::INTER_AREA);
+  cv::Mat3b tile(size, cv::Vec3b(255, 255, 255));
+  small.copyTo(tile(cv::Rect((size.width - small.cols) / 2, (size.height - small.rows) / 2, small.cols, small.rows)));
+  return tile;
+}
+
+}  // namespace
+
+std::string thread_section(const std::filesystem::path& session, const DevelopedViews& developed) {
+  if (!std::filesystem::exists(thread_file_of(session))) return {};
+  const ThreadFile thread = read_thread(thread_file_of(session));
+  std::string html = "<h2>Thread</h2>\n" + parameter_table(thread) + energy_plot(thread.parameters) +
+                     "\n<h2>Photographs and their fitted twins</h2>\n<div class=\"sheet\">\n";
+  for (const DevelopedView& view : developed.views)
+    html += fitted_tile(session, view, thread, developed.linear_srgb_from_camera);
+  return html + "</div>\n";
+}
+
+std::string cloth_section(const std::filesystem::path& session, const DevelopedViews& developed) {
+  std::string html;
+  for (const std::filesystem::path& file : cloth_pictures(session))
+    html += "<figure>" +
+            embedded_image(cloth_display(file, developed.linear_srgb_from_camera), file.stem().string()) +
+            "<figcaption>" + escaped(file.stem().string()) + "</figcaption></figure>\n";
+  return html.empty() ? html : "<h2>Predicted cloth</h2>\n<div class=\"sheet\">\n" + html + "</div>\n";
+}
+
+cv::Mat3b overview_picture(const std::filesystem::path& session, const DevelopedViews& developed) {
+  const auto cloths = cloth_pictures(session);
+  if (cloths.empty() || !std::filesystem::exists(thread_file_of(session))) return {};
+  constexpr int kShown = 6, kTile_px = 200, kTileHeight_px = 134;
+  cv::Mat3b left;
+  for (std::size_t i = 0; i < developed.views.size();
+       i += std::max<std::size_t>(1, developed.views.size() / kShown)) {
+    const inversion::View& view = developed.views[i].view;
+    const cv::Rect box = threads_box(view.mask, kMargin_px);
+    const double scale = display_scale(view.image, view.mask);
+    cv::Mat3f fitted = renderer::read_exr(fitted_file_of(session, view.id)),
+              photograph(view.image.size(), cv::Vec3f(0, 0, 0));
+    view.image.copyTo(photograph, view.mask);
+    cv::Mat3b row;
+    cv::hconcat(
+        fitted_into(display(photograph, scale, developed.linear_srgb_from_camera)(box), {kTile_px, kTileHeight_px}),
+        fitted_into(display(fitted, scale, developed.linear_srgb_from_camera)(box), {kTile_px, kTileHeight_px}), row);
+    if (left.empty())
+      left = row;
+    else
+      cv::vconcat(left, row, left);
+  }
+  cv::Mat3b sheet = left;
+  for (const std::filesystem::path& file : cloths) {
+    const cv::Mat3b cloth = cloth_display(file, developed.linear_srgb_from_camera);
+    cv::hconcat(sheet, fitted_into(cloth, {left.rows * cloth.cols / cloth.rows, left.rows}), sheet);
+  }
+  return sheet;
+}
+
+}  // namespace station
