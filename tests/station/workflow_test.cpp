@@ -1,6 +1,8 @@
 // The commands one after the other on the simulated bench, as a person types them: calibrate, capture, develop, report,
 // each alone from the files that the one before it left; pulled plugs, full disks and wrong files on the way.
 
+#include "tests/station/workflow.h"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -16,66 +18,15 @@
 #include "station/documents/calibration_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
+#include "station/documents/thread_file.h"
 #include "station/documents/views_file.h"
 #include "station/views.h"
-#include "tests/station/program.h"
 
 namespace station_test {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-void expect_success(const ProgramResult& result) {
-  EXPECT_EQ(result.status, 0) << result.error;
-}
-
-// One clear line on standard error and exit status 1.
-void expect_one_line(const ProgramResult& result, const std::string& must_name) {
-  EXPECT_EQ(result.status, 1) << result.error;
-  EXPECT_EQ(result.error_lines(), 1) << result.error;
-  EXPECT_NE(result.error.find(must_name), std::string::npos) << result.error;
-}
-
-class Workflow : public ::testing::Test {
- protected:
-  // One calibrated rig and one captured session for all tests; few samples a pixel, so that drawing takes little time.
-  static void SetUpTestSuite() {
-    folder_ = new TemporaryFolder;
-    json rig = station::read_json_file(std::string(FIXTURES_DIR) + "/rigs/simulated.json");
-    rig["simulation"]["samples_per_pixel"] = 1;
-    rig["simulation"]["target_samples_per_pixel"] = 4;
-    station::write_json_file(path("rig.json"), rig);
-    rig["simulation"]["target_samples_per_pixel"] = 1;
-    station::write_json_file(path("hasty_rig.json"), rig);
-    expect_success(
-        run_threadstation({"calibrate", "--rig", path("rig.json"), "--out", path("calibration"), "--quiet"}));
-    expect_success(capture(path("session")));
-  }
-  static void TearDownTestSuite() {
-    delete folder_;
-    folder_ = nullptr;
-  }
-
-  static std::string path(const std::string& name) { return *folder_ / name; }
-  static std::vector<std::string> capture_arguments(const std::string& session, const std::string& rig = "rig.json") {
-    return {"capture",
-            "--rig",
-            path(rig),
-            "--calibration",
-            path("calibration"),
-            "--spool",
-            std::string(FIXTURES_DIR) + "/spools/silk_red.json",
-            "--out",
-            session,
-            "--unattended",
-            "--quiet"};
-  }
-  static ProgramResult capture(const std::string& session) { return run_threadstation(capture_arguments(session)); }
-
-  static TemporaryFolder* folder_;
-};
-TemporaryFolder* Workflow::folder_ = nullptr;
 
 TEST_F(Workflow, CalibrationFindsTheBenchAsItIs) {
   const station::RigCalibration found = station::read_calibration(path("calibration"));
@@ -296,7 +247,12 @@ TEST_F(Workflow, TheDemoDoesItAllAndRunAgainKeepsItsPictures) {
   const std::string out = path("demo");
   const ProgramResult first = run_threadstation({"demo", "--quick", "--out", out, "--json"});
   expect_success(first);
-  EXPECT_TRUE(fs::exists(json::parse(first.out)["report"].get<std::string>()));
+  const json said = json::parse(first.out);
+  EXPECT_TRUE(fs::exists(said["report"].get<std::string>()));
+  EXPECT_EQ(station::read_thread(said["thread"].get<std::string>()).name, "silk, blue");
+  EXPECT_LT(said["relative_rmse"].get<double>(), 0.25);  // noisy pictures; FittedThreads has the real ones
+  ASSERT_EQ(said["cloth"].size(), 2U);
+  for (const json& picture : said["cloth"]) EXPECT_TRUE(fs::exists(picture.get<std::string>()));
   EXPECT_TRUE(fs::exists(out + "/session/result/contact_sheet.png"));
   expect_success(run_threadstation({"verify", out + "/session"}));
   const auto pictures = [&] {

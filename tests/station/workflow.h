@@ -1,0 +1,31 @@
+// One calibrated simulated rig and one captured session, for all tests that run the program's commands one after the
+// other; few samples a pixel, so that drawing takes little time.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/station/program.h"
+
+namespace station_test {
+
+void expect_success(const ProgramResult& result);
+// One clear line on standard error and exit status 1.
+void expect_one_line(const ProgramResult& result, const std::string& must_name);
+
+class Workflow : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite();
+  static void TearDownTestSuite();
+
+  static std::string path(const std::string& name);
+  // Rig files in path(): rig.json, and hasty_rig.json with still fewer samples.
+  static std::vector<std::string> capture_arguments(const std::string& session, const std::string& rig = "rig.json",
+                                                    const std::string& spool = "silk_red");
+  static ProgramResult capture(const std::string& session);
+};
+
+}  // namespace station_test
