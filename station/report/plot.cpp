@@ -35,9 +35,9 @@ class Script {
 
 std::string script_text(const std::string& x_label, const std::string& y_label, const std::vector<PlotLine>& lines) {
   std::ostringstream script;
-  script << "set terminal svg size 560,340 font 'sans-serif,13' background '#ffffff'\n"
-         << "set xlabel '" << x_label << "'\nset ylabel '" << y_label
-         << "'\nset grid lc rgb '#dddddd'\nset key top left\n";
+  script << "set terminal svg size 680,340 font 'sans-serif,13' background '#ffffff'\n"
+         << "set xlabel '" << x_label << "'\nset yrange [0:*]\nset ylabel '" << y_label
+         << "'\nset grid lc rgb '#dddddd'\nset key outside right\n";
   for (std::size_t i = 0; i < lines.size(); ++i) {
     script << "$line" << i << " << EOD\n";
     for (const auto& [x, y] : lines[i].points) script << x << ' ' << y << '\n';

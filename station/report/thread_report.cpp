@@ -126,7 +126,7 @@ std::string cloth_section(const std::filesystem::path& session, const DevelopedV
 cv::Mat3b overview_picture(const std::filesystem::path& session, const DevelopedViews& developed) {
   const auto cloths = cloth_pictures(session);
   if (cloths.empty() || !std::filesystem::exists(thread_file_of(session))) return {};
-  constexpr int kShown = 6, kTile_px = 200, kTileHeight_px = 134;
+  constexpr int kShown = 6, kTile_px = 111, kTileHeight_px = 74;
   cv::Mat3b left;
   for (std::size_t i = 0; i < developed.views.size();
        i += std::max<std::size_t>(1, developed.views.size() / kShown)) {
