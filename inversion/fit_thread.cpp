@@ -18,6 +18,7 @@ constexpr int kEnergyAngles = 32;
 constexpr double kEnergyPenalty =
     30;  // of the mean squared excess: 1 % of it costs as much as a tenth of the data term
 constexpr int kMostSteps = 40;
+constexpr const char* kStopped = "the fit was stopped on request; start it again for a thread";
 
 class DataTerm : public ceres::CostFunction {
  public:
@@ -117,8 +118,7 @@ FitRound solve(const ThreadObjective& objective, const std::vector<ParameterGrou
   options.callbacks = {&callback};
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
-  if (summary.termination_type == ceres::USER_FAILURE)
-    throw std::runtime_error("the fit was stopped on request; start it again for a thread");
+  if (summary.termination_type == ceres::USER_FAILURE) throw std::runtime_error(kStopped);
   if (!summary.IsSolutionUsable())
     throw std::runtime_error("the fit found no thread: " + summary.message + "; look at the views and their masks");
   return {.steps = static_cast<int>(summary.iterations.size()) - 1,
@@ -135,33 +135,84 @@ renderer::ThreadParameters starting_thread() {
   return p;
 }
 
+std::vector<renderer::ThreadParameters> other_starting_threads() {
+  renderer::ThreadParameters clear = starting_thread(), dark = starting_thread();
+  clear.sigma_a.setConstant(0.1);
+  clear.alpha = {0.4, 0.3, 0.3};
+  clear.beta = {0.9, 0.6, 0.6};
+  dark.sigma_a.setConstant(0.6);
+  dark.alpha = {0.15, 0.3, 0.8};
+  dark.beta = {0.9, 0.6, 0.3};
+  return {clear, dark};
+}
+
+namespace {
+
+// One search from one start, round after round.
+struct Search {
+  int start = 0;
+  ThreadUnknowns unknowns;
+  std::vector<FitRound> rounds{};
+  double loss() const { return rounds.empty() ? 0 : rounds.back().loss_after; }
+};
+
+class RoundRunner {
+ public:
+  RoundRunner(ThreadObjective& objective, const FitOptions& options, std::size_t starts)
+      : objective_(objective), options_(options) {
+    const std::vector<int>& paths = options.paths_per_block;
+    for (std::size_t round = 0; round < paths.size(); ++round)
+      whole_ += paths[round] * (round + 1 < paths.size() ? static_cast<double>(starts) : 1.0);
+  }
+
+  void run(Search& search, std::size_t round) {
+    constexpr double kTracingShare = 0.4;
+    const int paths = options_.paths_per_block[round];
+    const std::string name = "start " + std::to_string(search.start + 1) + ", round " + std::to_string(round + 1) +
+                             " of " + std::to_string(options_.paths_per_block.size());
+    const auto go_on = [&](const std::string& what, double share) {
+      return !options_.progress || options_.progress(name + ", " + what, (done_ + share * paths) / whole_);
+    };
+    // The same paths for every start: their losses are compared.
+    objective_.trace(parameters_of(search.unknowns), paths, options_.seed + 1000003 * round,
+                     [&](int views_done, int total) {
+                       if (!go_on("tracing", kTracingShare * views_done / total)) throw std::runtime_error(kStopped);
+                     });
+    search.rounds.push_back(solve(
+        objective_, options_.held,
+        [&](int step) {
+          return go_on("step " + std::to_string(step), kTracingShare + (1 - kTracingShare) * step / kMostSteps);
+        },
+        search.unknowns));
+    search.rounds.back().paths_per_block = paths;
+    done_ += paths;
+  }
+
+ private:
+  ThreadObjective& objective_;
+  const FitOptions& options_;
+  double whole_ = 0, done_ = 0;
+};
+
+}  // namespace
+
 ThreadFit fit_thread(const WrappedSpool& spool, const std::vector<View>& views, const FitOptions& options) {
   ThreadObjective objective(spool, views);
-  ThreadUnknowns unknowns = unknowns_of(options.start);
-  ThreadFit fit{.block_px = objective.block_px(), .blocks = objective.block_count()};
-  double whole = 0, done = 0;
-  for (int paths : options.paths_per_block) whole += paths;
-  for (std::size_t round = 0; round < options.paths_per_block.size(); ++round) {
-    const int paths = options.paths_per_block[round];
-    const std::string name =
-        "round " + std::to_string(round + 1) + " of " + std::to_string(options.paths_per_block.size());
-    const auto report = [&](const std::string& what, double share) {
-      if (options.progress && !options.progress(name + ", " + what, (done + share * paths) / whole))
-        throw std::runtime_error("the fit was stopped on request; start it again for a thread");
-    };
-    constexpr double kTracingShare = 0.4;
-    objective.trace(parameters_of(unknowns), paths, options.seed + 1000003 * round,
-                    [&](int views_done, int total) { report("tracing", kTracingShare * views_done / total); });
-    const auto go_on = [&](int step) {
-      return !options.progress ||
-             options.progress(name + ", step " + std::to_string(step),
-                              (done + paths * (kTracingShare + (1 - kTracingShare) * step / kMostSteps)) / whole);
-    };
-    fit.rounds.push_back(solve(objective, options.held, go_on, unknowns));
-    fit.rounds.back().paths_per_block = paths;
-    done += paths;
-  }
-  fit.parameters = parameters_of(unknowns);
+  std::vector<Search> searches{{.start = 0, .unknowns = unknowns_of(options.start)}};
+  for (const renderer::ThreadParameters& start : options.other_starts)
+    searches.push_back({.start = static_cast<int>(searches.size()), .unknowns = unknowns_of(start)});
+  RoundRunner runner(objective, options, searches.size());
+  const std::size_t last = options.paths_per_block.size() - 1;
+  for (Search& search : searches)
+    for (std::size_t round = 0; round < last; ++round) runner.run(search, round);
+  Search& best = *std::min_element(searches.begin(), searches.end(),
+                                   [](const Search& a, const Search& b) { return a.loss() < b.loss(); });
+  runner.run(best, last);
+  ThreadFit fit{.parameters = parameters_of(best.unknowns),
+                .rounds = best.rounds,
+                .start = best.start,
+                .block_px = objective.block_px(),
+                .blocks = objective.block_count()};
   fit.parameters.limit_energy = true;
   return fit;
 }

@@ -19,11 +19,16 @@ namespace inversion {
 
 // A start that no thread is far from: grey, half rough, reflecting a third and passing a third of the light.
 renderer::ThreadParameters starting_thread();
+// The loss has local minima where the lobes have changed roles; others from which the search starts as well: clearer
+// with lobes of like width, darker with a narrow reflection.
+std::vector<renderer::ThreadParameters> other_starting_threads();
 
 struct FitOptions {
   renderer::ThreadParameters start = starting_thread();
-  std::vector<int> paths_per_block{256, 256, 512, 1024, 2048};  // one entry a round
-  std::vector<ParameterGroup> held{};                           // left at the start
+  std::vector<renderer::ThreadParameters> other_starts = other_starting_threads();  // may be empty
+  // One entry a round. Every start goes through all rounds but the last, which is for the one that has got farthest.
+  std::vector<int> paths_per_block{256, 256, 512, 1024, 2048};
+  std::vector<ParameterGroup> held{};  // left at the start
   std::uint64_t seed = 1;
   // Called between steps with what is done and the finished fraction; returning false stops the fit.
   std::function<bool(const std::string&, double)> progress{};
@@ -38,7 +43,8 @@ struct FitRound {
 
 struct ThreadFit {
   renderer::ThreadParameters parameters;  // with limit_energy on
-  std::vector<FitRound> rounds;
+  std::vector<FitRound> rounds;           // of the start that got farthest
+  int start = 0;                          // 0: FitOptions::start, then other_starts
   int block_px = 0;
   std::size_t blocks = 0;
 };

@@ -66,6 +66,7 @@ DemoResult run_demo(const DemoRequest& request) {
   InvertRequest inversion{.session = session, .progress_style = request.progress_style};
   if (request.quick) {
     inversion.fit.paths_per_block = kQuickPaths;
+    inversion.fit.other_starts.clear();
     inversion.samples_per_pixel = kQuickSamples;
   }
   const InvertResult thread = invert_session(inversion);

@@ -41,6 +41,7 @@ json fit_json(const inversion::ThreadFit& fit, const InvertRequest& request, con
           {"held", held},
           {"block_px", fit.block_px},
           {"blocks", fit.blocks},
+          {"start", fit.start},
           {"rounds", rounds},
           {"relative_rmse", result.relative_rmse},
           {"samples_per_pixel", request.samples_per_pixel},
