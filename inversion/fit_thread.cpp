@@ -14,7 +14,7 @@ using renderer::kThreadParameterCount;
 
 constexpr double kGamma = 1e-4;          // of eq. 6's trend of lambda_0
 constexpr double kTrendRounding = 1e-3;  // below this the hinge is rounded, so that it has a derivative
-constexpr int kEnergyAngles = 32;
+constexpr int kEnergyAngles = 33;        // c = 0, where no view sees how high lambda_2 rises, to c = 1
 constexpr double kEnergyPenalty =
     30;  // of the mean squared excess: 1 % of it costs as much as a tenth of the data term
 constexpr int kMostSteps = 40;
@@ -47,14 +47,14 @@ renderer::BasicThreadParameters<S> energies_of(const S* u) {
   return p;
 }
 
-// Energy beyond 1 at evenly spaced c.
+// Energy beyond 1 at evenly spaced c, both ends included: it is there that fits exceed it first.
 struct EnergyTerm {
   template <class S>
   bool operator()(const S* u, S* residuals) const {
     const auto p = energies_of(u);
     const double weight = std::sqrt(2 * kEnergyPenalty / kEnergyAngles);
     for (int i = 0; i < kEnergyAngles; ++i) {
-      const double c = (i + 0.5) / kEnergyAngles;
+      const double c = i / (kEnergyAngles - 1.0);
       const auto lambda = renderer::thread_lobe_energies<S>(p, c);
       const S excess = lambda[0] + lambda[1] + lambda[2] - S(1.0);
       residuals[i] = excess > S(0.0) ? S(weight) * excess : S(0.0);

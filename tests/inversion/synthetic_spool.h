@@ -1,0 +1,38 @@
+// Views of a wrapped spool whose thread is known, as the tests of the fit need them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "inversion/view.h"
+#include "renderer/scattering/thread.h"
+
+namespace inversion {
+
+// A thread with every lobe at work, far from any fit's start; its energies sum to less than 0.94 at every angle.
+renderer::ThreadParameters known_thread();
+
+// The three energies at c without the limit.
+std::array<double, 3> energies_at(renderer::ThreadParameters parameters, double c);
+
+// Where camera and lamp stand: directions from the holder's middle, in degrees. Azimuth turns in the plane of the
+// thread's axis and the front's normal, elevation leaves it.
+struct Standpoint {
+  const char* id;
+  double camera_azimuth_deg, camera_elevation_deg;
+  double lamp_azimuth_deg, lamp_elevation_deg;
+  bool threads_upright = false;
+};
+
+// Without picture; the mask is that of the threads. The picture is 3:2 and shows the whole sheet.
+View unlit_view(const WrappedSpool& spool, const Standpoint& standpoint, int width_px);
+
+// Reflections with lying and upright threads, transmissions.
+std::vector<Standpoint> six_standpoints();
+
+// The thread photographed without noise but that of the path tracer.
+View photographed(View view, const WrappedSpool& spool, const renderer::ThreadParameters& thread,
+                  int samples_per_pixel, std::uint64_t seed);
+
+}  // namespace inversion
