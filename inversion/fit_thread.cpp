@@ -199,8 +199,9 @@ class RoundRunner {
 ThreadFit fit_thread(const WrappedSpool& spool, const std::vector<View>& views, const FitOptions& options) {
   ThreadObjective objective(spool, views);
   std::vector<Search> searches{{.start = 0, .unknowns = unknowns_of(options.start)}};
-  for (const renderer::ThreadParameters& start : options.other_starts)
-    searches.push_back({.start = static_cast<int>(searches.size()), .unknowns = unknowns_of(start)});
+  if (options.held.empty())
+    for (const renderer::ThreadParameters& start : options.other_starts)
+      searches.push_back({.start = static_cast<int>(searches.size()), .unknowns = unknowns_of(start)});
   RoundRunner runner(objective, options, searches.size());
   const std::size_t last = options.paths_per_block.size() - 1;
   for (Search& search : searches)

@@ -28,7 +28,7 @@ struct FitOptions {
   std::vector<renderer::ThreadParameters> other_starts = other_starting_threads();  // may be empty
   // One entry a round. Every start goes through all rounds but the last, which is for the one that has got farthest.
   std::vector<int> paths_per_block{256, 256, 512, 1024, 2048};
-  std::vector<ParameterGroup> held{};  // left at the start
+  std::vector<ParameterGroup> held{};  // left at `start`, the only one then
   std::uint64_t seed = 1;
   // Called between steps with what is done and the finished fraction; returning false stops the fit.
   std::function<bool(const std::string&, double)> progress{};

@@ -107,11 +107,12 @@ TEST_F(FitThreadTest, ProgressNeverGoesBackAndNamesTheRound) {
     return true;
   };
   quick_fit(*views_, options);
-  EXPECT_THAT(words, AllOf(HasSubstr("round 1 of 2, tracing"), HasSubstr("round 2 of 2, step 1")));
+  EXPECT_THAT(words, AllOf(HasSubstr("start 1, round 1 of 2, tracing"), HasSubstr("round 2 of 2, step 1")));
 }
 
 TEST_F(FitThreadTest, AFitIsStoppedOnRequestWhileTracingAndBetweenSteps) {
-  for (const std::string moment : {"round 1 of 2, tracing", "round 1 of 2, step 1", "round 2 of 2, step 0"}) {
+  for (const std::string moment :
+       {"start 1, round 1 of 2, tracing", "start 1, round 1 of 2, step 1", "start 1, round 2 of 2, step 0"}) {
     FitOptions options;
     options.progress = [&](const std::string& what, double) { return what != moment; };
     EXPECT_THAT([&] { quick_fit(*views_, options); }, refuses_with("the fit was stopped on request")) << moment;
