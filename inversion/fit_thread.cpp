@@ -36,22 +36,13 @@ class DataTerm : public ceres::CostFunction {
   const ThreadObjective& objective_;
 };
 
-template <class S>
-renderer::BasicThreadParameters<S> energies_of(const S* u) {
-  using std::exp;
-  renderer::BasicThreadParameters<S> p;
-  p.r0a = -u[11], p.r0b = u[10] - u[9] + u[11], p.r0c = u[9];
-  p.r1a = u[12];
-  p.r2a = exp(u[13]), p.r2b = exp(u[14]), p.r2c = u[15] - S(1.0) / (p.r2a + p.r2b);
-  p.limit_energy = false;
-  return p;
-}
-
 // Energy beyond 1 at evenly spaced c, both ends included: it is there that fits exceed it first.
 struct EnergyTerm {
   template <class S>
   bool operator()(const S* u, S* residuals) const {
-    const auto p = energies_of(u);
+    renderer::BasicThreadParameters<S> p;
+    set_energies(u, p);
+    p.limit_energy = false;
     const double weight = std::sqrt(2 * kEnergyPenalty / kEnergyAngles);
     for (int i = 0; i < kEnergyAngles; ++i) {
       const double c = i / (kEnergyAngles - 1.0);
@@ -67,7 +58,7 @@ struct EnergyTerm {
 struct TrendTerm {
   template <class S>
   bool operator()(const S* u, S* residual) const {
-    residual[0] = u[10] > u[9] ? u[10] - u[9] : S(0.0);
+    residual[0] = u[kL1] > u[kL0] ? u[kL1] - u[kL0] : S(0.0);
     return true;
   }
 };

@@ -22,20 +22,6 @@ using Slopes = Eigen::Array<float, renderer::kThreadSlopeLanes, 3>;
 constexpr int kFirstRouletteVertex = 4;  // earlier vertices always go on
 constexpr int kMostVertices = 1000;      // a guard; roulette ends paths long before
 
-renderer::BasicThreadParameters<float> in_float(const renderer::ThreadParameters& p) {
-  renderer::BasicThreadParameters<float> f;
-  f.sigma_a = p.sigma_a.cast<float>();
-  for (std::size_t i = 0; i < 3; ++i) {
-    f.alpha[i] = static_cast<float>(p.alpha[i]);
-    f.beta[i] = static_cast<float>(p.beta[i]);
-  }
-  f.r0a = static_cast<float>(p.r0a), f.r0b = static_cast<float>(p.r0b), f.r0c = static_cast<float>(p.r0c);
-  f.r1a = static_cast<float>(p.r1a);
-  f.r2a = static_cast<float>(p.r2a), f.r2b = static_cast<float>(p.r2b), f.r2c = static_cast<float>(p.r2c);
-  f.limit_energy = p.limit_energy;
-  return f;
-}
-
 PathDirection stored(const renderer::LobeAngles<float>& at) {
   return {at.distance2[0], at.cos_cos[0], {at.from_center[0], at.from_center[1], at.from_center[2]}};
 }
@@ -49,7 +35,7 @@ renderer::LobeAngles<float> loaded(const PathDirection& direction) {
 class PathRecorder {
  public:
   PathRecorder(const renderer::RayScene& rays, const View& view, const renderer::ThreadParameters& traced_with)
-      : rays_(rays), model_(in_float(traced_with)), lights_({unit_lamp(view.light)}) {}
+      : rays_(rays), model_(renderer::in_scalar<float>(traced_with)), lights_({unit_lamp(view.light)}) {}
 
   void record(renderer::CameraRay camera_ray, renderer::Sampler& sampler, std::vector<PathEvent>& events) const {
     if (!renderer::advance_to(rays_.bounds(), camera_ray)) return;
@@ -179,7 +165,7 @@ renderer::RayScene spool_rays(const WrappedSpool& spool) {
 }
 
 BlockModel block_model(const renderer::ThreadParameters& parameters) {
-  return BlockModel(in_float(parameters));
+  return BlockModel(renderer::in_scalar<float>(parameters));
 }
 
 LightPaths trace_light_paths(const renderer::RayScene& rays, const View& view, const std::vector<Block>& blocks,

@@ -11,8 +11,6 @@ constexpr double kMostEnergyTerm = 4;  // of lambda; the energy penalty keeps su
 // lambda_2 near grazing is not seen by any view; without this bound 1 / r2b runs away (models.md 1.7).
 constexpr double kLeastR2b = 1e-2, kMostR2 = 1e4, kLeastR2a = 1e-4;
 
-enum Unknown { kSigma = 0, kAlpha = 3, kBeta = 6, kL0 = 9, kL1, kConcavity, kR1a, kLogR2a, kLogR2b, kN2 };
-
 }  // namespace
 
 ThreadUnknowns unknowns_of(const renderer::ThreadParameters& p) {
@@ -30,13 +28,7 @@ renderer::ThreadParameters parameters_of(const ThreadUnknowns& u) {
     p.alpha[static_cast<std::size_t>(i)] = u[kAlpha + i];
     p.beta[static_cast<std::size_t>(i)] = u[kBeta + i];
   }
-  p.r0a = -u[kConcavity];
-  p.r0b = u[kL1] - u[kL0] + u[kConcavity];
-  p.r0c = u[kL0];
-  p.r1a = u[kR1a];
-  p.r2a = std::exp(u[kLogR2a]);
-  p.r2b = std::exp(u[kLogR2b]);
-  p.r2c = u[kN2] - 1 / (p.r2a + p.r2b);
+  set_energies(u.data(), p);
   return p;
 }
 

@@ -10,13 +10,15 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "renderer/scattering/thread.h"
 
 namespace inversion {
 
-// Order: sigma_a R G B, alpha 3, beta 3, L0, L1, k, r1a, log r2a, log r2b, n2.
+// Their order; sigma_a is R G B, alpha and beta are three each.
+enum Unknown { kSigma = 0, kAlpha = 3, kBeta = 6, kL0 = 9, kL1, kConcavity, kR1a, kLogR2a, kLogR2b, kN2 };
 using ThreadUnknowns = Eigen::Matrix<double, renderer::kThreadParameterCount, 1>;
 using ThreadJacobian = Eigen::Matrix<double, renderer::kThreadParameterCount, renderer::kThreadParameterCount>;
 
@@ -25,6 +27,19 @@ ThreadUnknowns unknowns_of(const renderer::ThreadParameters& parameters);
 renderer::ThreadParameters parameters_of(const ThreadUnknowns& unknowns);
 // d parameter (order of renderer::thread_parameters) / d unknown.
 ThreadJacobian parameters_by_unknowns(const ThreadUnknowns& unknowns);
+
+// The part of parameters_of that sets the lobes' energies r, for dual numbers too.
+template <class S>
+void set_energies(const S* u, renderer::BasicThreadParameters<S>& p) {
+  using std::exp;
+  p.r0a = -u[kConcavity];
+  p.r0b = u[kL1] - u[kL0] + u[kConcavity];
+  p.r0c = u[kL0];
+  p.r1a = u[kR1a];
+  p.r2a = exp(u[kLogR2a]);
+  p.r2b = exp(u[kLogR2b]);
+  p.r2c = u[kN2] - S(1.0) / (p.r2a + p.r2b);
+}
 
 ThreadUnknowns lower_bounds();
 ThreadUnknowns upper_bounds();

@@ -20,19 +20,13 @@ float single(double value) {
   return static_cast<float>(value);
 }
 
-std::array<float, 3> single(const std::array<double, 3>& v) {
-  return {single(v[0]), single(v[1]), single(v[2])};
-}
-
 FiberModel<float> prepare(const FiberParameters& p) {
   return FiberModel<float>(
       {single(p.eta), p.sigma_a.cast<float>(), single(p.beta_m), single(p.beta_n), single(p.tilt_rad)});
 }
 
 ThreadModel<float> prepare(const ThreadParameters& p) {
-  return ThreadModel<float>({p.sigma_a.cast<float>(), single(p.alpha), single(p.beta), single(p.r0a), single(p.r0b),
-                             single(p.r0c), single(p.r1a), single(p.r2a), single(p.r2b), single(p.r2c),
-                             p.limit_energy});
+  return ThreadModel<float>(in_scalar<float>(p));
 }
 
 }  // namespace

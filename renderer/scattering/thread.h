@@ -52,6 +52,17 @@ BasicThreadParameters<S> thread_parameters(const std::array<S, kThreadParameterC
           limit_energy};
 }
 
+// The same parameters in another scalar.
+template <class T, class S>
+BasicThreadParameters<T> in_scalar(const BasicThreadParameters<S>& p) {
+  const auto three = [](const std::array<S, 3>& v) {
+    return std::array<T, 3>{static_cast<T>(v[0]), static_cast<T>(v[1]), static_cast<T>(v[2])};
+  };
+  return {p.sigma_a.template cast<T>(), three(p.alpha),        three(p.beta),         static_cast<T>(p.r0a),
+          static_cast<T>(p.r0b),        static_cast<T>(p.r0c), static_cast<T>(p.r1a), static_cast<T>(p.r2a),
+          static_cast<T>(p.r2b),        static_cast<T>(p.r2c), p.limit_energy};
+}
+
 // lambda_0, lambda_1, lambda_2 at c = |cos theta_o|, limited when the parameters say so.
 template <class S>
 std::array<S, 3> thread_lobe_energies(const BasicThreadParameters<S>& p, const Geometry<S>& c) {
