@@ -81,13 +81,8 @@ TEST(FitRecoveryTest, HoldingAnyGroupAtItsStartMakesTheLossClearlyWorse) {
 }
 
 TEST(FitRecoveryTest, AWhiteThreadThatKeepsNearlyAllLightIsFittedWithoutEnergyBeyondOne) {
-  renderer::ThreadParameters white = known_thread();
-  white.sigma_a = {0.02, 0.02, 0.05};
-  white.r0a = 0, white.r0b = -0.3, white.r0c = 0.75;  // the limit acts near c = 0
-  white.r1a = 0.5;
-  white.r2a = 10, white.r2b = 5;
   const WrappedSpool spool;
-  const ThreadFit fit = fit_thread(spool, photographs(spool, white), {});
+  const ThreadFit fit = fit_thread(spool, photographs(spool, white_thread()), {});
   double most = 0;
   for (int k = 0; k <= 10000; ++k) {
     const auto lambda = energies_at(fit.parameters, k / 10000.0);
