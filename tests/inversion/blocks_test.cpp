@@ -58,10 +58,10 @@ TEST(BlocksTest, APooledPixelCoversTwoPitchesInTheNearestViewAndNoMore) {
   const WrappedSpool spool;
   std::vector<View> views(2);
   for (std::size_t i = 0; i < 2; ++i) {
-    views[i].camera = renderer::look_at({i == 0 ? 700.0 : 450.0, 0, 0}, {0, 0, 0}, {0, 0, 1});
+    views[i].camera = renderer::look_at({i == 0 ? 450.0 : 700.0, 0, 0}, {0, 0, 0}, {0, 0, 1});
     views[i].camera.fx = views[i].camera.fy = 2345;
   }
-  const renderer::Camera& nearest = views[1].camera;
+  const renderer::Camera& nearest = views[0].camera;
   const double two_pitches_px = (renderer::project(nearest, {0, 0, spool.thread_diameter_mm}) -
                                  renderer::project(nearest, {0, 0, -spool.thread_diameter_mm}))
                                     .norm();

@@ -50,18 +50,18 @@ TEST(FitRecoveryTest, AKnownThreadIsRecoveredFromItsPictures) {
   EXPECT_LT(overall_relative_rmse(found), 0.015);
 
   // Transmission can be strong and absorbed or weak and not: r1a and the colours' common part of sigma_a trade places
-  // at almost no loss. Four seeds gave 0 .. 0.19 for 0.15; differences between colours stay within 6 %.
+  // at almost no loss. Four seeds gave 0 .. 0.10 for 0.15; differences between colours stay within 6 %.
   const renderer::ThreadParameters &fitted = fit.parameters, known = known_thread();
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(fitted.sigma_a[c], known.sigma_a[c], 0.2) << c;
   for (int c = 1; c < 3; ++c) {
     const double difference = known.sigma_a[c] - known.sigma_a[0];
     EXPECT_NEAR(fitted.sigma_a[c] - fitted.sigma_a[0], difference, 0.12 * difference) << c;
   }
-  // What the lobes keep together is not affected: four seeds stay within 3 % at the angles that the views show.
+  // What the lobes keep together is not affected: within 2 % for this seed, 4 % for four.
   for (double c : {0.7, 0.85, 1.0})
     for (int channel = 0; channel < 3; ++channel)
       EXPECT_NEAR(albedo(fitted, c)[channel] / albedo(known, c)[channel], 1, 0.05) << channel << " at c = " << c;
-  // Reflection does not pass the thread; near c = 0 no view sees it.
+  // Reflection does not pass the thread (four seeds: within 9 %); near c = 0 no view sees it.
   for (double c : {0.85, 0.95, 1.0})
     EXPECT_NEAR(energies_at(fitted, c)[0] / energies_at(known, c)[0], 1, 0.2) << "at c = " << c;
   for (std::size_t p = 0; p < 3; ++p) EXPECT_NEAR(fitted.alpha[p], known.alpha[p], 0.08) << p;
@@ -81,13 +81,8 @@ TEST(FitRecoveryTest, HoldingAnyGroupAtItsStartMakesTheLossClearlyWorse) {
 }
 
 TEST(FitRecoveryTest, AWhiteThreadThatKeepsNearlyAllLightIsFittedWithoutEnergyBeyondOne) {
-  renderer::ThreadParameters white = known_thread();
-  white.sigma_a = {0.02, 0.02, 0.05};
-  white.r0a = 0, white.r0b = -0.3, white.r0c = 0.75;  // the limit acts near c = 0
-  white.r1a = 0.5;
-  white.r2a = 10, white.r2b = 5;
   const WrappedSpool spool;
-  const ThreadFit fit = fit_thread(spool, photographs(spool, white), {});
+  const ThreadFit fit = fit_thread(spool, photographs(spool, white_thread()), {});
   double most = 0;
   for (int k = 0; k <= 10000; ++k) {
     const auto lambda = energies_at(fit.parameters, k / 10000.0);

@@ -29,6 +29,15 @@ renderer::ThreadParameters known_thread() {
   return p;
 }
 
+renderer::ThreadParameters white_thread() {
+  renderer::ThreadParameters p = known_thread();
+  p.sigma_a = {0, 0.02, 0.05};
+  p.r0a = 0, p.r0b = -0.3, p.r0c = 0.7;
+  p.r1a = 0.5;
+  p.r2a = 10, p.r2b = 5;
+  return p;
+}
+
 std::array<double, 3> energies_at(renderer::ThreadParameters parameters, double c) {
   parameters.limit_energy = false;
   return renderer::thread_lobe_energies(parameters, c);

@@ -13,6 +13,9 @@ namespace inversion {
 // A thread with every lobe at work, far from any fit's start; its energies sum to less than 0.94 at every angle.
 renderer::ThreadParameters known_thread();
 
+// A thread that keeps nearly all light: energies sum to between 0.89 and 0.97, almost nothing is absorbed.
+renderer::ThreadParameters white_thread();
+
 // The three energies at c without the limit.
 std::array<double, 3> energies_at(renderer::ThreadParameters parameters, double c);
 
