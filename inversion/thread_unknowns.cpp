@@ -7,9 +7,7 @@ namespace {
 
 constexpr double kMostAbsorption = 50;  // per thread radius: black
 constexpr double kLeastRoughness = 0.02;
-constexpr double kMostEnergyTerm = 4;  // of lambda; the energy penalty keeps sums near 1
-// lambda_2 near grazing is not seen by any view; without this bound 1 / r2b runs away (models.md 1.7).
-constexpr double kLeastR2b = 1e-2, kMostR2 = 1e4, kLeastR2a = 1e-4;
+using renderer::kLeastR2a, renderer::kLeastR2b, renderer::kMostR2, renderer::kMostEnergyTerm;
 
 }  // namespace
 
@@ -28,7 +26,7 @@ renderer::ThreadParameters parameters_of(const ThreadUnknowns& u) {
     p.alpha[static_cast<std::size_t>(i)] = u[kAlpha + i];
     p.beta[static_cast<std::size_t>(i)] = u[kBeta + i];
   }
-  set_energies(u.data(), p);
+  renderer::set_energies(u.data() + kL0, p);
   return p;
 }
 

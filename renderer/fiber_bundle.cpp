@@ -17,15 +17,17 @@ double uniform(std::mt19937_64& engine) {
 
 }  // namespace
 
-std::vector<Eigen::Vector2d> pack_fibers(double thread_radius_mm, double fiber_radius_mm, double min_gap_mm,
-                                         int max_attempts, int max_fibers, std::uint64_t seed) {
+std::vector<Eigen::Vector2d> pack_fibers(double thread_radius, double fiber_radius, double min_gap, int max_attempts,
+                                         int max_fibers, std::uint64_t seed, FiberPlacement placement) {
   std::vector<Eigen::Vector2d> centers;
-  const double reach = thread_radius_mm - fiber_radius_mm;
+  const double reach = thread_radius - fiber_radius;
   if (reach < 0) return centers;
-  const double apart = 2 * fiber_radius_mm + min_gap_mm;
+  const double apart = 2 * fiber_radius + min_gap;
   std::mt19937_64 engine(seed);
   for (int attempt = 0; attempt < max_attempts && std::cmp_less(centers.size(), max_fibers); ++attempt) {
-    const double radius = reach * std::sqrt(uniform(engine)), angle = 2 * kPi * uniform(engine);
+    const double u = uniform(engine);
+    const double radius = reach * (placement == FiberPlacement::area_uniform ? std::sqrt(u) : u);
+    const double angle = 2 * kPi * uniform(engine);
     const Eigen::Vector2d center(radius * std::cos(angle), radius * std::sin(angle));
     const bool free = std::none_of(centers.begin(), centers.end(),
                                    [&](const Eigen::Vector2d& other) { return (other - center).norm() < apart; });

@@ -8,12 +8,16 @@
 
 namespace renderer {
 
-// Centres (mm, relative to the thread's axis) of up to `max_fibers` fibers: each of at most `max_attempts` tries
-// draws a centre uniformly over the area in which the fiber lies inside the thread, and keeps it when its surface is
-// at least `min_gap_mm` away from every fiber kept before. The same seed gives the same bundle on every machine.
-// Empty when a fiber is thicker than the thread. (The paper's published code draws the radius uniformly, which crowds
-// the centre; the area is uniform here.)
-std::vector<Eigen::Vector2d> pack_fibers(double thread_radius_mm, double fiber_radius_mm, double min_gap_mm,
-                                         int max_attempts, int max_fibers, std::uint64_t seed);
+// How the centres of tries are spread: evenly over the area, or evenly over the radius as in the paper's published
+// code, which crowds the middle.
+enum class FiberPlacement { area_uniform, radius_uniform };
+
+// Centres (relative to the thread's axis, in the unit of the arguments) of up to `max_fibers` fibers: each of at most
+// `max_attempts` tries draws a centre from the circle in which the fiber lies inside the thread, and keeps it when its
+// surface is at least `min_gap` away from every fiber kept before. The same seed gives the same bundle on every
+// machine. Empty when a fiber is thicker than the thread.
+std::vector<Eigen::Vector2d> pack_fibers(double thread_radius, double fiber_radius, double min_gap, int max_attempts,
+                                         int max_fibers, std::uint64_t seed,
+                                         FiberPlacement placement = FiberPlacement::area_uniform);
 
 }  // namespace renderer

@@ -7,11 +7,13 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "renderer/random_stream.h"
+
 namespace renderer {
 
 class Sampler {
  public:
-  Sampler(std::uint64_t seed, std::uint64_t pixel) : pixel_key_(mix(seed + mix(pixel + 1))) {}
+  Sampler(std::uint64_t seed, std::uint64_t pixel) : pixel_key_(mixed_bits(seed + mixed_bits(pixel + 1))) {}
 
   void start_sample(std::uint32_t index) {
     index_ = index;
@@ -19,10 +21,10 @@ class Sampler {
   }
 
   Eigen::Vector2f next_2d() {
-    const std::uint64_t key = mix(pixel_key_ + 0x9e3779b97f4a7c15u * ++dimension_);
+    const std::uint64_t key = mixed_bits(pixel_key_ + 0x9e3779b97f4a7c15u * ++dimension_);
     const auto low = static_cast<std::uint32_t>(key), high = static_cast<std::uint32_t>(key >> 32);
     if (dimension_ > kSobolDimensions) {
-      const std::uint64_t random = mix(key + index_);
+      const std::uint64_t random = mixed_bits(key + index_);
       return {to_unit(static_cast<std::uint32_t>(random)), to_unit(static_cast<std::uint32_t>(random >> 32))};
     }
     const std::uint32_t shuffled = reversed(scrambled(reversed(index_), low ^ high));
@@ -34,13 +36,6 @@ class Sampler {
   static constexpr std::uint64_t kSobolDimensions = 16;
 
   static float to_unit(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
-
-  // A bijection of 64 bits whose output looks random (the finaliser of SplitMix64, Steele et al. 2014).
-  static std::uint64_t mix(std::uint64_t x) {
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
-  }
 
   static std::uint32_t reversed(std::uint32_t x) {
     x = __builtin_bswap32(x);

@@ -69,9 +69,10 @@ S fresnel_dielectric(const S& cos_i, const S& eta) {
   const S sin2_t = (S(1.0) - cos_i * cos_i) / (eta * eta);
   if (!(sin2_t < S(1.0))) return S(1.0);
   const S cos_t = sqrt(S(1.0) - sin2_t);
-  const S parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-  const S perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-  return S(0.5) * (parallel * parallel + perpendicular * perpendicular);
+  const S parallel = (eta * cos_i - cos_t) * (cos_i + eta * cos_t);
+  const S perpendicular = (cos_i - eta * cos_t) * (eta * cos_i + cos_t);
+  const S both = (eta * cos_i + cos_t) * (cos_i + eta * cos_t);  // the common denominator: one division
+  return S(0.5) * (parallel * parallel + perpendicular * perpendicular) / (both * both);
 }
 
 // The straight way through the fiber after the first refraction, in the plane's effective index eta' (Bravais).

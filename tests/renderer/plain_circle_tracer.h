@@ -1,0 +1,12 @@
+// The multi-fiber simulation as a first program would do it, as the oracle and the pace of the fast one: every segment
+// of a ray asks every circle, every reflection inside a circle is traced, nothing is known about circles in advance.
+#pragma once
+
+#include "renderer/scattering/multi_fiber.h"
+
+namespace renderer {
+
+// Like simulate_multi_fiber, on one core; fills density, miss, albedo, back, mean_entered and rays.
+MultiFiberScattering trace_circles_plainly(const MultiFiberOptions& options);
+
+}  // namespace renderer
