@@ -52,6 +52,18 @@ struct BasicYarnParameters {
 };
 using YarnParameters = BasicYarnParameters<double>;
 
+// The same parameters in another scalar.
+template <class T, class S>
+BasicYarnParameters<T> in_scalar(const BasicYarnParameters<S>& p) {
+  return {p.fiber_count,
+          p.radius_ratio,
+          static_cast<T>(p.eta),
+          p.sigma_a.template cast<T>(),
+          static_cast<T>(p.beta_r),
+          static_cast<T>(p.beta_tt),
+          static_cast<T>(p.gamma_tt)};
+}
+
 // Fibers on the chord at offset h.
 inline int fibers_on_chord(int fiber_count, double radius_ratio, double h) {
   const double expected = 4 / kPi * fiber_count * radius_ratio * std::sqrt(1 - h * h);
