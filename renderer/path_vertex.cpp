@@ -16,17 +16,16 @@ Matrix3f frame_rows(const Vector3f& x, const Vector3f& y, const Vector3f& z) {
   return rows;
 }
 
-float single(double value) {
-  return static_cast<float>(value);
-}
-
 FiberModel<float> prepare(const FiberParameters& p) {
-  return FiberModel<float>(
-      {single(p.eta), p.sigma_a.cast<float>(), single(p.beta_m), single(p.beta_n), single(p.tilt_rad)});
+  return FiberModel<float>(in_scalar<float>(p));
 }
 
 ThreadModel<float> prepare(const ThreadParameters& p) {
   return ThreadModel<float>(in_scalar<float>(p));
+}
+
+YarnModel<float> prepare(const YarnParameters& p) {
+  return YarnModel<float>(in_scalar<float>(p));
 }
 
 }  // namespace

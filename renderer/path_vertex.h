@@ -9,11 +9,12 @@
 #include "renderer/sampler.h"
 #include "renderer/scattering/fiber.h"
 #include "renderer/scattering/thread.h"
+#include "renderer/scattering/yarn.h"
 
 namespace renderer {
 
 // The scattering models of a scene's curves (scattering_models()), in float and with everything precomputed.
-using CurveModel = std::variant<FiberModel<float>, ThreadModel<float>>;
+using CurveModel = std::variant<FiberModel<float>, ThreadModel<float>, YarnModel<float>>;
 std::vector<CurveModel> prepare_curve_models(const std::vector<ScatteringModel>& scattering);
 std::vector<CurveModel> prepare_curve_models(const std::vector<CurveSet>& curves);
 

@@ -11,13 +11,14 @@
 
 #include "renderer/scattering/fiber.h"
 #include "renderer/scattering/thread.h"
+#include "renderer/scattering/yarn.h"
 #include "renderer/weave/patch.h"
 
 namespace renderer {
 
 // Closed set: how a curve scatters. Every alternative is a plain struct with free evaluate / sample / density
 // functions.
-using ScatteringModel = std::variant<FiberParameters, ThreadParameters>;
+using ScatteringModel = std::variant<FiberParameters, ThreadParameters, YarnParameters>;
 
 // Round uniform cubic B-spline curves that share one scattering model.
 struct CurveSet {

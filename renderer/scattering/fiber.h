@@ -30,6 +30,13 @@ struct BasicFiberParameters {
 };
 using FiberParameters = BasicFiberParameters<double>;
 
+// The same parameters in another scalar.
+template <class T, class S>
+BasicFiberParameters<T> in_scalar(const BasicFiberParameters<S>& p) {
+  return {static_cast<T>(p.eta), p.sigma_a.template cast<T>(), static_cast<T>(p.beta_m), static_cast<T>(p.beta_n),
+          static_cast<T>(p.tilt_rad)};
+}
+
 // A_p of the four lobes (rows R, TT, TRT, remainder) from Fresnel reflectance f and transmittance t along one inner
 // chord.
 template <class S>

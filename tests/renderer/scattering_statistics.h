@@ -1,8 +1,10 @@
-// What judges any curve scattering model: its energy by quadrature and by sampling, chi-square of its sampling
-// against its density.
+// What judges any curve scattering model: its energy by quadrature and by sampling, its sampling against its density,
+// and whether it stays finite where it is hardest.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "renderer/scattering/lobes.h"
@@ -15,17 +17,46 @@ Vec3<double> direction(double theta, double phi);
 Vec3<double> viewing_direction(double theta, double h);
 
 // Integral of f_cos over the sphere, by quadrature: the white furnace.
-double energy(const CurveLobes<double>& lobes, int channel);
+Rgb<double> energy(const CurveLobes<double>& lobes);
 
-// Probability of at least this disagreement between `samples` sampled directions and the density, if they agree.
+// Probability of at least this disagreement between `samples` sampled directions and the density, if they agree. The
+// bins are quantiles of the density, so that narrow lobes are resolved as well as wide ones.
 double sampling_p_value(const CurveLobes<double>& lobes, int samples, std::uint64_t seed);
+
+// The density is one over the Jacobian of the sampling map, lobe by lobe. Azimuth comes from one random number:
+// largest |N dphi/du - 1|. Inclination comes from two: largest difference between the probability of sampling
+// sin theta below a limit, found from the map alone, and the integral of M up to it.
+double azimuth_map_error(const CurveLobes<double>& lobes, int p);
+double inclination_map_error(const CurveLobes<double>& lobes, int p);
 
 struct SampledMean {
   Rgb<double> mean;
   Rgb<double> standard_error;
+  double least_weight, greatest_weight;  // f_cos / pdf, mean over the channels
 };
 
 // Mean of f_cos / pdf over sampled directions: the albedo.
 SampledMean sampled_albedo(const CurveLobes<double>& lobes, int samples, std::uint64_t seed);
+
+// Values, densities and samples of the lobes that `lobes_at(h, wo)` returns, at grazing offsets and inclinations and
+// along the curve.
+template <class S, class Function>
+bool finite_everywhere(const Function& lobes_at) {
+  bool finite = true;
+  for (const double h : {-1.0, 0.0, 1.0}) {
+    for (const double theta : {-kPi / 2, -1.5707, 0.0, 1.57, kPi / 2}) {
+      const Vec3<S> wo = viewing_direction(theta, h).template cast<S>();
+      const CurveLobes<S> lobes = lobes_at(static_cast<S>(h), wo);
+      finite &= std::abs(static_cast<double>(lobes.probability.sum()) - 1) < 1e-5;
+      for (const Vec3<S>& wi : {Vec3<S>(1, 0, 0), Vec3<S>(-1, 0, 0), Vec3<S>(0, 0, 1), Vec3<S>(-wo), wo}) {
+        const ScatteringValue<S> value = lobes.evaluate(wi);
+        finite &= value.f_cos.isFinite().all() && (value.f_cos >= S(0)).all();
+        finite &= std::isfinite(value.pdf) && value.pdf >= S(0);
+      }
+      for (const S u : {S(0), std::nextafter(S(1), S(0))}) finite &= lobes.sample(u, u, u, u).allFinite();
+    }
+  }
+  return finite;
+}
 
 }  // namespace renderer
