@@ -41,7 +41,7 @@ struct EnergyTerm {
   template <class S>
   bool operator()(const S* u, S* residuals) const {
     renderer::BasicThreadParameters<S> p;
-    set_energies(u, p);
+    renderer::set_energies(u + kL0, p);
     p.limit_energy = false;
     const double weight = std::sqrt(2 * kEnergyPenalty / kEnergyAngles);
     for (int i = 0; i < kEnergyAngles; ++i) {

@@ -203,7 +203,7 @@ TEST(CircleGridTest, FindsTheCircleThatALoopOverAllFinds) {
     const double turn = kPi * unit(engine);
     const Eigen::Vector2d direction =
         trial % 100 ? Eigen::Vector2d(std::cos(turn), std::sin(turn)) : Eigen::Vector2d(0, 1);
-    CircleHit expected;
+    CircleHit expected{-1, std::numeric_limits<double>::infinity()};
     bool inside = false;
     for (int i = 0; i < static_cast<int>(centers.size()); ++i) {
       const Eigen::Vector2d to = centers[static_cast<std::size_t>(i)] - origin;
