@@ -54,7 +54,6 @@ TEST_F(FittedThreads, ViewsOfThreeSpoolsAgreeWithinFifteenPercentAndWorseWithAny
 
 TEST_F(FittedThreads, InvertLeavesAThreadFittedViewsAndResidualsThatTheReportShows) {
   const std::string session = path("session");
-  expect_success(run_threadstation({"develop", session, "--quiet"}));
   const std::string copy = path("copy.json");
   const json said = invert(session, {"--paths", "16", "--spp", "2", "--out", copy});
   const station::ThreadFile thread = station::read_thread(said.at("thread").get<std::string>());
