@@ -9,7 +9,7 @@ std::vector<Block> mask_blocks(const cv::Mat1b& mask, int side_px) {
   std::vector<Block> blocks;
   for (int row = 0; row < mask.rows; row += side_px)
     for (int column = 0; column < mask.cols; column += side_px) {
-      Block block{.corner = {column, row}};
+      Block block;
       for (int y = row; y < std::min(row + side_px, mask.rows); ++y)
         for (int x = column; x < std::min(column + side_px, mask.cols); ++x)
           if (mask(y, x)) block.pixels.emplace_back(x, y);

@@ -12,8 +12,7 @@
 namespace inversion {
 
 struct Block {
-  cv::Point corner;                 // of the block's first pixel in the picture
-  std::vector<cv::Point> pixels{};  // the masked ones
+  std::vector<cv::Point> pixels;  // the masked ones
 };
 
 // Square blocks of `side_px` over the mask, row by row; blocks without masked pixels are left out.

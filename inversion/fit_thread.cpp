@@ -15,8 +15,8 @@ using renderer::kThreadParameterCount;
 constexpr double kGamma = 1e-4;          // of eq. 6's trend of lambda_0
 constexpr double kTrendRounding = 1e-3;  // below this the hinge is rounded, so that it has a derivative
 constexpr int kEnergyAngles = 33;        // c = 0, where no view sees how high lambda_2 rises, to c = 1
-constexpr double kEnergyPenalty =
-    30;  // of the mean squared excess: 1 % of it costs as much as a tenth of the data term
+// Of the mean squared excess: 1 % of it costs as much as a tenth of the data term.
+constexpr double kEnergyPenalty = 30;
 constexpr int kMostSteps = 40;
 constexpr const char* kStopped = "the fit was stopped on request; start it again for a thread";
 
@@ -118,27 +118,6 @@ FitRound solve(const ThreadObjective& objective, const std::vector<ParameterGrou
           .converged = summary.termination_type == ceres::CONVERGENCE};
 }
 
-}  // namespace
-
-renderer::ThreadParameters starting_thread() {
-  renderer::ThreadParameters p;
-  p.sigma_a.setConstant(0.3);
-  return p;
-}
-
-std::vector<renderer::ThreadParameters> other_starting_threads() {
-  renderer::ThreadParameters clear = starting_thread(), dark = starting_thread();
-  clear.sigma_a.setConstant(0.1);
-  clear.alpha = {0.4, 0.3, 0.3};
-  clear.beta = {0.9, 0.6, 0.6};
-  dark.sigma_a.setConstant(0.6);
-  dark.alpha = {0.15, 0.3, 0.8};
-  dark.beta = {0.9, 0.6, 0.3};
-  return {clear, dark};
-}
-
-namespace {
-
 // One search from one start, round after round.
 struct Search {
   int start = 0;
@@ -164,7 +143,8 @@ class RoundRunner {
     const auto go_on = [&](const std::string& what, double share) {
       return !options_.progress || options_.progress(name + ", " + what, (done_ + share * paths) / whole_);
     };
-    // The same paths for every start: their losses are compared.
+    // The same seed for every start, whose losses are compared: pixels and random numbers alike, though the paths part
+    // where they are traced with other parameters.
     objective_.trace(parameters_of(search.unknowns), paths, options_.seed + 1000003 * round,
                      [&](int views_done, int total) {
                        if (!go_on("tracing", kTracingShare * views_done / total)) throw std::runtime_error(kStopped);
@@ -187,14 +167,34 @@ class RoundRunner {
 
 }  // namespace
 
+renderer::ThreadParameters starting_thread() {
+  renderer::ThreadParameters p;
+  p.sigma_a.setConstant(0.3);
+  return p;
+}
+
+std::vector<renderer::ThreadParameters> other_starting_threads() {
+  renderer::ThreadParameters clear = starting_thread(), dark = starting_thread();
+  clear.sigma_a.setConstant(0.1);
+  clear.alpha = {0.4, 0.3, 0.3};
+  clear.beta = {0.9, 0.6, 0.6};
+  dark.sigma_a.setConstant(0.6);
+  dark.alpha = {0.15, 0.3, 0.8};
+  dark.beta = {0.9, 0.6, 0.3};
+  return {clear, dark};
+}
+
 ThreadFit fit_thread(const WrappedSpool& spool, const std::vector<View>& views, const FitOptions& options) {
+  const std::vector<int>& paths = options.paths_per_block;
+  if (paths.empty() || *std::min_element(paths.begin(), paths.end()) < 1)
+    throw std::invalid_argument("a fit was asked for without rounds or with a round without light paths");
   ThreadObjective objective(spool, views);
   std::vector<Search> searches{{.start = 0, .unknowns = unknowns_of(options.start)}};
   if (options.held.empty())
     for (const renderer::ThreadParameters& start : options.other_starts)
       searches.push_back({.start = static_cast<int>(searches.size()), .unknowns = unknowns_of(start)});
   RoundRunner runner(objective, options, searches.size());
-  const std::size_t last = options.paths_per_block.size() - 1;
+  const std::size_t last = paths.size() - 1;
   for (Search& search : searches)
     for (std::size_t round = 0; round < last; ++round) runner.run(search, round);
   Search& best = *std::min_element(searches.begin(), searches.end(),

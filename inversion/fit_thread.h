@@ -26,7 +26,7 @@ std::vector<renderer::ThreadParameters> other_starting_threads();
 struct FitOptions {
   renderer::ThreadParameters start = starting_thread();
   std::vector<renderer::ThreadParameters> other_starts = other_starting_threads();  // may be empty
-  // One entry a round. Every start goes through all rounds but the last, which is for the one that has got farthest.
+  // One entry a round, at least one. Every start goes through all rounds but the last, which is for the one that has got farthest.
   std::vector<int> paths_per_block{256, 256, 512, 1024, 2048};
   std::vector<ParameterGroup> held{};  // left at `start`, the only one then
   std::uint64_t seed = 1;
@@ -49,7 +49,8 @@ struct ThreadFit {
   std::size_t blocks = 0;
 };
 
-// Errors: std::runtime_error when the views are unusable (none, no masked pixels, dark lamp) or the fit was stopped.
+// Errors: std::runtime_error when the views are unusable (none, no masked pixels, dark lamp) or the fit was stopped;
+// std::invalid_argument when there is no round or one without paths.
 ThreadFit fit_thread(const WrappedSpool& spool, const std::vector<View>& views, const FitOptions& options);
 
 }  // namespace inversion

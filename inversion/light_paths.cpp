@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "renderer/path_vertex.h"
-#include "renderer/pixel_rays.h"
 #include "renderer/sampler.h"
 #include "renderer/sphere_lights.h"
 
@@ -18,9 +17,6 @@ using Eigen::Vector3f;
 using renderer::CurveLobes;
 using renderer::ThreadModel;
 using Slopes = Eigen::Array<float, renderer::kThreadSlopeLanes, 3>;
-
-constexpr int kFirstRouletteVertex = 4;  // earlier vertices always go on
-constexpr int kMostVertices = 1000;      // a guard; roulette ends paths long before
 
 PathDirection stored(const renderer::LobeAngles<float>& at) {
   return {at.distance2[0], at.cos_cos[0], {at.from_center[0], at.from_center[1], at.from_center[2]}};
@@ -41,14 +37,15 @@ class PathRecorder {
     if (!renderer::advance_to(rays_.bounds(), camera_ray)) return;
     renderer::Ray ray{camera_ray.origin.cast<float>(), camera_ray.direction.cast<float>()};
     float throughput = 1;
-    for (int vertex = 0; vertex < kMostVertices && throughput > 0; ++vertex) {
+    for (int vertex = 0; vertex < renderer::kMostVertices && throughput > 0; ++vertex) {
       const std::optional<renderer::SurfaceHit> hit = rays_.intersect(ray);
       const auto* curve = hit ? std::get_if<renderer::CurvePoint>(&hit->point) : nullptr;
       if (!curve) {
         if (vertex > 0) events.back().inverse_next_pdf = 0;  // nothing there: nothing to shade
         return;
       }
-      ray = record_event(*curve, ray.direction, vertex + 1 >= kFirstRouletteVertex, sampler, throughput, events);
+      ray = record_event(*curve, ray.direction, vertex + 1 >= renderer::kFirstRouletteVertex, sampler, throughput,
+                         events);
     }
   }
 
@@ -78,7 +75,7 @@ class PathRecorder {
     float weight = scattering.pdf > 0 ? scattering.f_cos.maxCoeff() / scattering.pdf : 0.0F;
     event.inverse_next_pdf = scattering.pdf > 0 ? 1 / scattering.pdf : 0.0F;
     if (roulette) {
-      const float survival = std::min(0.97F, throughput * weight);
+      const float survival = std::min(renderer::kMostSurvival, throughput * weight);
       if (sampler.next_1d() < survival) {
         event.inverse_next_pdf /= survival;
         weight /= survival;
@@ -189,7 +186,6 @@ LightPaths trace_light_paths(const renderer::RayScene& rays, const View& view, c
 BlockEstimate shade_block(const LightPaths& paths, std::size_t block, const BlockModel& model, bool with_slopes) {
   const std::uint32_t first = paths.block_paths[block], last = paths.block_paths[block + 1];
   BlockEstimate estimate;
-  Eigen::Array3d squares = Eigen::Array3d::Zero();
   for (std::uint32_t path = first; path < last; ++path) {
     PathSum sum;
     const std::uint32_t begin = path == 0 ? 0 : paths.path_ends[path - 1];
@@ -200,13 +196,11 @@ BlockEstimate shade_block(const LightPaths& paths, std::size_t block, const Bloc
         sum.add_plain(paths.events[e], model);
     }
     estimate.value += sum.value.cast<double>();
-    squares += sum.value.cast<double>().square();
     if (with_slopes) estimate.slopes += sum.slopes.cast<double>();
   }
   const double count = last - first;
   estimate.value /= count;
   estimate.slopes /= count;
-  estimate.variance = (squares / count - estimate.value.square()).max(0.0) / count;
   return estimate;
 }
 

@@ -50,7 +50,6 @@ LightPaths trace_light_paths(const renderer::RayScene& rays, const View& view, c
 // One block's estimate for the given parameters, per unit of intensity (1/mm^2), RGB.
 struct BlockEstimate {
   Eigen::Array3d value = Eigen::Array3d::Zero();
-  Eigen::Array3d variance = Eigen::Array3d::Zero();  // of `value`
   Eigen::Array<double, renderer::kThreadSlopeLanes, 3> slopes =
       Eigen::Array<double, renderer::kThreadSlopeLanes, 3>::Zero();  // d value / d parameter (thread_gradient.h)
 };

@@ -39,11 +39,13 @@ ThreadObjective::ThreadObjective(const WrappedSpool& spool, const std::vector<Vi
     const double diffuser = diffuser_radiance(view.light).mean();
     views_.push_back({.view = &view,
                       .blocks = mask_blocks(view.mask, block_px_),
+                      .references = {},
                       .scale = view.light.intensity.array() / diffuser,
-                      .diffuser = diffuser,
                       .weight = 1.0 / cv::countNonZero(view.mask),
                       .first_block = block_count_});
-    block_count_ += views_.back().blocks.size();
+    ViewBlocks& added = views_.back();
+    for (const Block& block : added.blocks) added.references.push_back(block_mean(block, view.image) / diffuser);
+    block_count_ += added.blocks.size();
   }
 }
 
@@ -62,11 +64,10 @@ void ThreadObjective::residuals(const ThreadUnknowns& unknowns, double* residual
   for (const ViewBlocks& v : views_)
     tbb::parallel_for(std::size_t{0}, v.blocks.size(), [&](std::size_t b) {
       const BlockEstimate estimate = shade_block(v.paths, b, model, jacobian != nullptr);
-      const Eigen::Array3d reference = block_mean(v.blocks[b], v.view->image) / v.diffuser;
       const double weight = std::sqrt(2 * v.weight * static_cast<double>(v.blocks[b].pixels.size()));
       for (int c = 0; c < 3; ++c) {
         const std::size_t row = 3 * (v.first_block + b) + static_cast<std::size_t>(c);
-        residuals[row] = weight * (v.scale[c] * estimate.value[c] - reference[c]);
+        residuals[row] = weight * (v.scale[c] * estimate.value[c] - v.references[b][c]);
         if (!jacobian) continue;
         Eigen::Map<Row>(jacobian + row * renderer::kThreadParameterCount) =
             weight * v.scale[c] * parameter_row(estimate.slopes, c) * by_unknowns;

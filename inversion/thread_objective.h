@@ -31,9 +31,9 @@ class ThreadObjective {
   struct ViewBlocks {
     const View* view;
     std::vector<Block> blocks;
-    Eigen::Array3d scale;  // block estimates times this are radiances over the diffuser's
-    double diffuser;       // mean radiance of the diffuser
-    double weight;         // w_i
+    std::vector<Eigen::Array3d> references;  // means of the photograph's blocks over the diffuser's radiance
+    Eigen::Array3d scale;                    // block estimates times this are radiances over the diffuser's
+    double weight;                           // w_i
     LightPaths paths{};
     std::size_t first_block;
   };

@@ -22,13 +22,11 @@ using Eigen::Array3f;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr int kTile = 16;                // pixels
-constexpr int kFirstRouletteVertex = 4;  // earlier vertices always go on
+constexpr int kTile = 16;  // pixels
 // Shadow rays are traced with a probability in proportion to f_cos below this value, a quarter of what a uniformly
 // scattering white fiber has: most faint lobes of curves are skipped, at 2 % more variance and 15 % less work.
 // Diffuse surfaces are never faint in this sense: a black one would come out grainy.
 constexpr float kFaintScattering = 0.02f;
-constexpr int kMostVertices = 1000;  // a guard; roulette ends paths long before
 
 // Weight of a direction drawn with density `pdf` when `other` could have drawn it too (power heuristic).
 float mis_weight(float pdf, float other) {
@@ -106,7 +104,7 @@ Array3f PathTracer::Impl::radiance(CameraRay camera_ray, Sampler& sampler, int m
     if (!(throughput.maxCoeff() > 0)) break;  // black surfaces
     scattering_pdf = scattering.pdf;
     if (vertices + 1 >= kFirstRouletteVertex) {
-      const float survival = std::min(0.97f, throughput.maxCoeff());
+      const float survival = std::min(kMostSurvival, throughput.maxCoeff());
       if (!(sampler.next_1d() < survival)) break;
       throughput /= survival;
     }

@@ -13,6 +13,11 @@
 
 namespace renderer {
 
+// How paths end by Russian roulette.
+inline constexpr int kFirstRouletteVertex = 4;  // earlier vertices always go on
+inline constexpr float kMostSurvival = 0.97f;   // light that is hardly absorbed comes to an end too
+inline constexpr int kMostVertices = 1000;      // a guard; roulette ends paths long before
+
 // The scattering models of a scene's curves (scattering_models()), in float and with everything precomputed.
 using CurveModel = std::variant<FiberModel<float>, ThreadModel<float>, YarnModel<float>>;
 std::vector<CurveModel> prepare_curve_models(const std::vector<ScatteringModel>& scattering);

@@ -78,9 +78,8 @@ void preview_cloth(const ClothPreviewRequest& request) {
     std::filesystem::path picture = scene;
     picture.replace_extension(".exr");
     render_scene({.scene = scene, .out = picture, .progress = request.progress_style});
-    const cv::Mat3f linear = renderer::read_exr(picture);
-    const double exposure = display_scale(linear, cv::Mat1b(linear.size(), uchar{255}));
-    renderer::write_png(picture.replace_extension(".png"), display(linear, exposure, thread.linear_srgb_from_camera));
+    const cv::Mat3b shown = display(renderer::read_exr(picture), thread.linear_srgb_from_camera);
+    renderer::write_png(picture.replace_extension(".png"), shown);
   }
 }
 

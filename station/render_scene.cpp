@@ -43,9 +43,7 @@ void write_picture(const RenderRequest& request, const SceneFile& scene, const c
                          {"threadstation/seed", std::to_string(request.seed)}});
     return;
   }
-  report.exposure = request.exposure ? *request.exposure
-                    : scene.exposure ? *scene.exposure
-                                     : display_scale(image, cv::Mat1b(image.size(), uchar{255}));
+  report.exposure = request.exposure ? *request.exposure : scene.exposure ? *scene.exposure : display_scale(image);
   renderer::write_png(request.out, display(image, report.exposure, scene.linear_srgb_from_camera));
 }
 

@@ -78,13 +78,15 @@ struct Painter {
     renderer::RenderOptions options;
     options.samples_per_pixel = rig.simulation->target_samples_per_pixel;
     options.seed = rig.simulation->truth.seed + 7919 * ++pictures;
-    cv::Mat3f picture = tracer.render(camera, options);
     const bool threads_lit = state.arrangement.object == rig::BenchObject::holder && state.lamp;
-    if (threads_lit) {  // fibers scatter far more noisily than paper: their pixels get their own number of samples
-      options.only = tracer.curve_coverage(camera, 4);
-      options.samples_per_pixel = rig.simulation->samples_per_pixel;
-      tracer.render(camera, options).copyTo(picture, options.only);
-    }
+    if (!threads_lit) return tracer.render(camera, options);
+    // Fibers scatter far more noisily than paper: their pixels get their own number of samples.
+    const cv::Mat1b threads = tracer.curve_coverage(camera, 4);
+    options.only = ~threads;
+    cv::Mat3f picture = tracer.render(camera, options);
+    options.only = threads;
+    options.samples_per_pixel = rig.simulation->samples_per_pixel;
+    tracer.render(camera, options).copyTo(picture, threads);
     return picture;
   }
 };

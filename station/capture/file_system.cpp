@@ -63,7 +63,7 @@ void FileSystem::rename(const std::filesystem::path& from, const std::filesystem
 }
 
 void FileSystem::sync_folder(const std::filesystem::path& folder) {
-  sync(open(folder, O_RDONLY | O_DIRECTORY));
+  sync(open(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY));
 }
 
 }  // namespace station

@@ -37,7 +37,7 @@ class FileSystem {
   virtual void sync(const OpenFile& file);                                     // returns when they are on the disk
   virtual void rename(const std::filesystem::path& from, const std::filesystem::path& to);
 
-  // Makes the names in a folder durable.
+  // Makes the names in a folder durable; an empty path is the working folder.
   void sync_folder(const std::filesystem::path& folder);
 };
 

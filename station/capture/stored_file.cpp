@@ -22,7 +22,7 @@ fs::path temporary_name(const fs::path& file) {
 
 std::string advice(const std::error_code& code) {
   if (code == std::errc::no_space_on_device || code.value() == EDQUOT) {
-    return "free space on that disk, then resume";
+    return "free space on that disk, then go on";
   }
   if (code == std::errc::read_only_file_system) {
     return "make that disk writable or choose another folder";
@@ -31,9 +31,12 @@ std::string advice(const std::error_code& code) {
     return "give this user the right to write there or choose another folder";
   }
   if (code == std::errc::io_error) {
-    return "the disk or its cable may be failing: check it, then resume";
+    return "the disk or its cable may be failing: check it, then go on";
   }
-  return "check the folder, then resume";
+  if (code == std::errc::no_such_file_or_directory) {
+    return "make its folder or choose another one";
+  }
+  return "check the folder, then go on";
 }
 
 void write_temporary(FileSystem& file_system, const fs::path& temporary, std::span<const std::byte> bytes) {
@@ -59,7 +62,7 @@ std::string store_file(FileSystem& file_system, const fs::path& file, std::span<
     write_temporary(file_system, temporary, bytes);
     if (sha256_of_file(temporary) != hash) {
       throw std::runtime_error("wrote '" + file.string() +
-                               "' and read back other bytes; the disk may be failing: check it, then resume");
+                               "' and read back other bytes; the disk may be failing: check it, then go on");
     }
     file_system.rename(temporary, file);
     renamed = true;
@@ -72,6 +75,23 @@ std::string store_file(FileSystem& file_system, const fs::path& file, std::span<
     throw;
   }
   return hash;
+}
+
+void check_can_store(FileSystem& file_system, const fs::path& file) {
+  if (fs::is_directory(file)) {
+    throw std::runtime_error(write_problem(file, std::make_error_code(std::errc::is_a_directory)));
+  }
+  const fs::path temporary = temporary_name(file);
+  std::error_code problem, ignored;
+  try {
+    write_temporary(file_system, temporary, {});
+  } catch (const std::system_error& error) {
+    problem = error.code();
+  }
+  fs::remove(temporary, ignored);
+  if (problem) {
+    throw std::runtime_error(write_problem(file, problem));
+  }
 }
 
 bool is_left_over(const fs::path& file) {

@@ -19,12 +19,15 @@ namespace station {
 // Returns the SHA-256 of `bytes`. `file` is replaced when it exists.
 std::string store_file(FileSystem& file_system, const std::filesystem::path& file, std::span<const std::byte> bytes);
 
+// Before long work: throws what store_file would if nothing can be written to `file`, and leaves nothing behind.
+void check_can_store(FileSystem& file_system, const std::filesystem::path& file);
+
 // Removes what a killed store_file left in `folder`; returns the names.
 std::vector<std::string> remove_left_overs(const std::filesystem::path& folder);
 
 bool is_left_over(const std::filesystem::path& file);
 
-// "could not write 'raw/x.arw': No space left on device; free space ..., then resume"
+// "could not write 'raw/x.arw': No space left on device; free space ..., then go on"
 std::string write_problem(const std::filesystem::path& file, const std::error_code& code);
 
 }  // namespace station

@@ -1,15 +1,13 @@
 #include "station/documents/reader.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <fstream>
+#include <span>
 #include <sstream>
 #include <stdexcept>
+
+#include "station/capture/stored_file.h"
 
 namespace station {
 namespace {
@@ -26,12 +24,6 @@ std::string joined(std::initializer_list<const char*> words) {
   std::string all;
   for (const char* word : words) all += (all.empty() ? "" : ", ") + std::string("\"") + word + "\"";
   return all;
-}
-
-[[noreturn]] void fail_write(const std::filesystem::path& file, const std::filesystem::path& temporary, int error) {
-  ::unlink(temporary.c_str());
-  throw std::runtime_error("cannot write " + file.string() + ": " + std::strerror(error) +
-                           "; free some space or choose a writable folder");
 }
 
 }  // namespace
@@ -58,24 +50,8 @@ json read_json_file(const std::filesystem::path& file) {
 }
 
 void write_text_file(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path temporary = file.string() + ".part";
-  const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (fd < 0) fail_write(file, temporary, errno);
-  std::size_t written = 0;
-  while (written < text.size()) {
-    const ssize_t n = ::write(fd, text.data() + written, text.size() - written);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) {
-      const int error = n < 0 ? errno : ENOSPC;
-      ::close(fd);
-      fail_write(file, temporary, error);
-    }
-    written += static_cast<std::size_t>(n);
-  }
-  const bool flushed = ::fsync(fd) == 0;
-  const int error = errno;
-  if (::close(fd) != 0 || !flushed) fail_write(file, temporary, error);
-  if (::rename(temporary.c_str(), file.c_str()) != 0) fail_write(file, temporary, errno);
+  FileSystem disk;
+  store_file(disk, file, std::as_bytes(std::span(text)));
 }
 
 void write_json_file(const std::filesystem::path& file, const json& document) {

@@ -17,7 +17,7 @@ namespace station {
 // Reads a file and parses it; says line and column where it is not JSON.
 nlohmann::json read_json_file(const std::filesystem::path& file);
 
-// Writes to a temporary name, flushes and renames; one line on failure.
+// Whole or not at all, by store_file (capture/stored_file.h).
 void write_json_file(const std::filesystem::path& file, const nlohmann::json& document);
 void write_text_file(const std::filesystem::path& file, const std::string& text);
 

@@ -1,12 +1,9 @@
 #include "station/invert/invert_session.h"
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "renderer/image_file.h"
-#include "station/capture/manifest.h"
-#include "station/documents/calibration_file.h"
+#include "station/capture/stored_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
 #include "station/documents/views_file.h"
@@ -68,33 +65,29 @@ FittedView write_fitted_view(const InvertRequest& request, const inversion::Wrap
                                                   [](double) { return !interrupted(); });
   cv::Mat3f residual(fitted.size(), cv::Vec3f(0, 0, 0));
   cv::subtract(fitted, view.image, residual, view.mask);
-  const std::vector<std::pair<std::string, std::string>> header{
-      {"threadstation/view", view.id},
-      {"threadstation/samples_per_pixel", std::to_string(request.samples_per_pixel)}};
-  const auto write = [&](const std::filesystem::path& file, const cv::Mat3f& picture, const std::string& content) {
-    auto attributes = header;
-    attributes.emplace_back("threadstation/content", content);
-    renderer::write_exr(file, picture, {attributes.begin(), attributes.end()});
-  };
-  write(fitted_file_of(request.session, view.id), fitted,
-        "linear camera RGB, radiance unit; rendered with the fitted thread inside the mask");
-  write(request.session / "result" / "residual" / (view.id + ".exr"), residual,
-        "linear camera RGB, radiance unit; fitted minus photographed inside the mask");
-  return {.id = view.id,
-          .transmission = view.transmission,
-          .agreement = inversion::agreement(view, fitted, fit.block_px)};
+  renderer::ImageHeader header{{"threadstation/view", view.id},
+                               {"threadstation/samples_per_pixel", std::to_string(request.samples_per_pixel)}};
+  std::string& content = header["threadstation/content"];
+  content = "linear camera RGB, radiance unit; rendered with the fitted thread inside the mask";
+  renderer::write_exr(fitted_file_of(request.session, view.id), fitted, header);
+  content = "linear camera RGB, radiance unit; fitted minus photographed inside the mask";
+  renderer::write_exr(request.session / "result" / "residual" / (view.id + ".exr"), residual, header);
+  return {.id = view.id, .agreement = inversion::agreement(view, fitted, fit.block_px)};
 }
 
-// Before the work, not after it: a folder that cannot be written is found out now.
-void make_result_folders(const std::filesystem::path& session) {
+// Before the work, not after it: what cannot be written is found out now.
+void prepare_results(const InvertRequest& request) {
+  FileSystem disk;
+  if (request.out) check_can_store(disk, *request.out);
   for (const char* name : {"fitted", "residual"}) {
-    const std::filesystem::path folder = session / "result" / name;
+    const std::filesystem::path folder = request.session / "result" / name;
     std::error_code code;
     std::filesystem::create_directories(folder, code);
     if (code)
       throw std::runtime_error("cannot make " + folder.string() + ": " + code.message() +
                                "; is the session's folder writable?");
   }
+  check_can_store(disk, thread_file_of(request.session));
 }
 
 }  // namespace
@@ -115,7 +108,7 @@ InvertResult invert_session(const InvertRequest& request) {
   std::vector<inversion::View> views;
   for (const DevelopedView& view : developed.views) views.push_back(view.view);
 
-  make_result_folders(request.session);
+  prepare_results(request);
   ProgressDisplay progress("invert", request.progress_style);
   inversion::FitOptions options = request.fit;
   int shown = -1;
@@ -156,15 +149,12 @@ std::string describe(const InvertResult& result) {
     text += view.id + ": relative RMSE " + number_text(100 * view.agreement.relative_rmse(), 1) + " %, bias " +
             number_text(100 * view.agreement.relative_bias, 1) + " %\n";
   const renderer::ThreadParameters& p = result.thread.parameters;
-  const auto three = [](double a, double b, double c) {
-    return number_text(a, 3) + " " + number_text(b, 3) + " " + number_text(c, 3);
-  };
   text += "overall: relative RMSE " + number_text(100 * result.relative_rmse, 1) + " %\n";
-  text += "sigma_a " + three(p.sigma_a[0], p.sigma_a[1], p.sigma_a[2]) + " per thread radius (R G B)\n";
-  text += "alpha   " + three(p.alpha[0], p.alpha[1], p.alpha[2]) + " (R TT TRT)\n";
-  text += "beta    " + three(p.beta[0], p.beta[1], p.beta[2]) + "\n";
-  text += "r0 " + three(p.r0a, p.r0b, p.r0c) + "   r1 " + number_text(p.r1a, 3) + "   r2 " +
-          three(p.r2a, p.r2b, p.r2c) + "\n";
+  text += "sigma_a " + numbers_text({p.sigma_a[0], p.sigma_a[1], p.sigma_a[2]}, 3) + " per thread radius (R G B)\n";
+  text += "alpha   " + numbers_text({p.alpha[0], p.alpha[1], p.alpha[2]}, 3) + " (R TT TRT)\n";
+  text += "beta    " + numbers_text({p.beta[0], p.beta[1], p.beta[2]}, 3) + "\n";
+  text += "r0 " + numbers_text({p.r0a, p.r0b, p.r0c}, 3) + "   r1 " + number_text(p.r1a, 3) + "   r2 " +
+          numbers_text({p.r2a, p.r2b, p.r2c}, 3) + "\n";
   return text + "thread  " + result.thread_file.string() + "\n";
 }
 

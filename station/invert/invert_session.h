@@ -24,7 +24,6 @@ struct InvertRequest {
 
 struct FittedView {
   std::string id;
-  bool transmission = false;
   inversion::ViewAgreement agreement;
 };
 
@@ -37,7 +36,7 @@ struct InvertResult {
 
 // Writes result/thread.json, result/fitted/<view>.exr and result/residual/<view>.exr (fitted minus photographed; both
 // linear camera RGB, radiance unit, zero outside the mask). Ctrl-C stops it; thread.json is written last, so that it
-// always belongs to whole pictures. Errors: those of read_views and fit_thread.
+// always belongs to whole pictures. Errors: those of read_views and fit_thread, and of what cannot be written.
 InvertResult invert_session(const InvertRequest& request);
 
 std::string describe(const InvertResult& result);

@@ -6,14 +6,17 @@
 
 namespace station {
 
-// The scale that brings the 99th percentile of the masked pixels' brightest channel to `white`.
-double display_scale(const cv::Mat3f& linear, const cv::Mat1b& mask, double white = 0.85);
+// The scale that brings the 99th percentile of the masked pixels' brightest channel to just below white; of all pixels
+// without a mask.
+double display_scale(const cv::Mat3f& linear, const cv::Mat1b& mask = {});
 
 // The mask's bounding box, grown by `margin_px` and then to the picture's own aspect ratio, inside the picture; the whole
 // picture when the mask is empty.
 cv::Rect threads_box(const cv::Mat1b& mask, int margin_px);
 
 cv::Mat3b display(const cv::Mat3f& linear, double scale, const std::array<double, 9>& linear_srgb_from_camera);
+// At the display_scale of all pixels.
+cv::Mat3b display(const cv::Mat3f& linear, const std::array<double, 9>& linear_srgb_from_camera);
 
 // The mask's outline, drawn one pixel wide.
 void draw_outline(cv::Mat3b& picture, const cv::Mat1b& mask);

@@ -80,4 +80,10 @@ std::string number_text(double value, int decimals) {
   return text;
 }
 
+std::string numbers_text(std::initializer_list<double> values, int decimals) {
+  std::string text;
+  for (double value : values) text += (text.empty() ? "" : ", ") + number_text(value, decimals);
+  return text;
+}
+
 }  // namespace station

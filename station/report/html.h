@@ -1,6 +1,7 @@
 // Pieces of a self-contained HTML page: escaped text, embedded pictures, tables. Opens offline, runs no script.
 #pragma once
 
+#include <initializer_list>
 #include <opencv2/core.hpp>
 #include <string>
 #include <utility>
@@ -16,5 +17,7 @@ std::string fact_table(const std::vector<std::pair<std::string, std::string>>& f
 // The whole page with the house style.
 std::string html_page(const std::string& title, const std::string& body);
 std::string number_text(double value, int decimals);
+// "0.1, 0.2, 0.3"
+std::string numbers_text(std::initializer_list<double> values, int decimals);
 
 }  // namespace station

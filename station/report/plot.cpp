@@ -1,12 +1,17 @@
 #include "station/report/plot.h"
 
 #include <array>
+#include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <memory>
+#include <span>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
+
+#include "station/capture/stored_file.h"
 
 namespace station {
 namespace {
@@ -16,12 +21,16 @@ class Script {
  public:
   explicit Script(const std::string& text) {
     std::string name = (std::filesystem::temp_directory_path() / "threadstation-plot-XXXXXX").string();
-    const int descriptor = mkstemp(name.data());
-    if (descriptor < 0) throw std::runtime_error("cannot write a plot to " + name + "; is there space?");
+    const OpenFile out(mkstemp(name.data()));
+    if (out.descriptor() < 0)
+      throw std::runtime_error(write_problem(name, std::error_code(errno, std::generic_category())));
     file_ = name;
-    std::FILE* stream = fdopen(descriptor, "w");
-    std::fputs(text.c_str(), stream);
-    std::fclose(stream);
+    try {
+      FileSystem().write(out, std::as_bytes(std::span(text)));
+    } catch (const std::system_error& error) {
+      std::filesystem::remove(file_, ignored_);
+      throw std::runtime_error(write_problem(file_, error.code()));
+    }
   }
   ~Script() { std::filesystem::remove(file_, ignored_); }
   Script(const Script&) = delete;

@@ -69,15 +69,14 @@ std::string calibration_table(const RigCalibration& calibration) {
        {"lens", "f " + number_text(lens.fx_px, 1) + " / " + number_text(lens.fy_px, 1) + " px, rms " +
                     number_text(calibration.lens.rms_px, 3) + " px over " +
                     std::to_string(calibration.lens.corners_used) + " corners"},
-       {"camera in the world",
-        number_text(camera.x(), 1) + ", " + number_text(camera.y(), 1) + ", " + number_text(camera.z(), 1) + " mm"},
+       {"camera in the world", numbers_text({camera.x(), camera.y(), camera.z()}, 1) + " mm"},
        {"platform", "angles " + number_text(platform.angle_rms_rad * kDegPerRad, 4) + "° rms about " +
                         number_text(platform.scale, 5) + " × the reading; rms " + number_text(platform.rms_px, 3) +
                         " px"},
        {"lamp in front", position_text(light.positions[0], light.position_covariances[0])},
        {"lamp behind", position_text(light.positions[1], light.position_covariances[1])},
-       {"lamp intensity (R, G, B)", number_text(light.intensity[0], 0) + ", " + number_text(light.intensity[1], 0) +
-                                        ", " + number_text(light.intensity[2], 0) + " (radiance unit × mm²)"},
+       {"lamp intensity (R, G, B)",
+        numbers_text({light.intensity[0], light.intensity[1], light.intensity[2]}, 0) + " (radiance unit × mm²)"},
        {"Spectralon residual", number_text(100 * light.relative_rms, 2) + " % rms"}});
 }
 

@@ -19,22 +19,19 @@ namespace {
 constexpr int kMargin_px = 24;
 constexpr double kGrey = 0.5;  // where the residual is zero
 
-std::string three(double a, double b, double c) {
-  return number_text(a, 3) + ", " + number_text(b, 3) + ", " + number_text(c, 3);
-}
-
 std::string parameter_table(const ThreadFile& thread) {
   const renderer::ThreadParameters& p = thread.parameters;
   return fact_table(
       {{"agreement with the photographs",
         number_text(100 * thread.fit.at("relative_rmse").get<double>(), 1) + " % relative RMSE over blocks of " +
             std::to_string(thread.fit.at("block_px").get<int>()) + " px, all views alike"},
-       {"absorption sigma_a (R, G, B)", three(p.sigma_a[0], p.sigma_a[1], p.sigma_a[2]) + " per thread radius"},
-       {"longitudinal roughness alpha (R, TT, TRT)", three(p.alpha[0], p.alpha[1], p.alpha[2])},
-       {"azimuthal roughness beta (R, TT, TRT)", three(p.beta[0], p.beta[1], p.beta[2])},
-       {"r0", three(p.r0a, p.r0b, p.r0c)},
+       {"absorption sigma_a (R, G, B)",
+        numbers_text({p.sigma_a[0], p.sigma_a[1], p.sigma_a[2]}, 3) + " per thread radius"},
+       {"longitudinal roughness alpha (R, TT, TRT)", numbers_text({p.alpha[0], p.alpha[1], p.alpha[2]}, 3)},
+       {"azimuthal roughness beta (R, TT, TRT)", numbers_text({p.beta[0], p.beta[1], p.beta[2]}, 3)},
+       {"r0", numbers_text({p.r0a, p.r0b, p.r0c}, 3)},
        {"r1", number_text(p.r1a, 3)},
-       {"r2", three(p.r2a, p.r2b, p.r2c)},
+       {"r2", numbers_text({p.r2a, p.r2b, p.r2c}, 3)},
        {"thread diameter", number_text(thread.diameter_mm, 3) + " mm"}});
 }
 
@@ -70,14 +67,26 @@ std::string figures_of(const nlohmann::json& fit, const std::string& id) {
   return "not fitted";
 }
 
+// A view as photographed and as fitted, both inside the mask and to be displayed alike.
+struct Twins {
+  cv::Mat3f photographed, fitted;
+  double scale;
+  cv::Rect box;
+};
+
+Twins read_twins(const std::filesystem::path& session, const inversion::View& view) {
+  Twins twins{.photographed = cv::Mat3f(view.image.size(), cv::Vec3f(0, 0, 0)),
+              .fitted = renderer::read_exr(fitted_file_of(session, view.id)),
+              .scale = display_scale(view.image, view.mask),
+              .box = threads_box(view.mask, kMargin_px)};
+  view.image.copyTo(twins.photographed, view.mask);
+  return twins;
+}
+
 std::string fitted_tile(const std::filesystem::path& session, const DevelopedView& developed,
                         const ThreadFile& thread, const std::array<double, 9>& colour) {
   const inversion::View& view = developed.view;
-  const cv::Mat3f fitted = renderer::read_exr(fitted_file_of(session, view.id));
-  cv::Mat3f photographed(view.image.size(), cv::Vec3f(0, 0, 0));
-  view.image.copyTo(photographed, view.mask);
-  const double scale = display_scale(view.image, view.mask);
-  const cv::Rect box = threads_box(view.mask, kMargin_px);
+  const auto [photographed, fitted, scale, box] = read_twins(session, view);
   const auto shown = [&](const cv::Mat3f& picture, const std::string& what) {
     return embedded_image(display(picture, scale, colour)(box).clone(), view.id + " " + what);
   };
@@ -85,11 +94,6 @@ std::string fitted_tile(const std::filesystem::path& session, const DevelopedVie
          shown(residual_picture(view, fitted, thread.fit.at("block_px").get<int>(), scale), "residual") +
          "<figcaption>" + escaped(view.id) + ": photographed, fitted, fitted minus photographed (grey is none)<br>" +
          figures_of(thread.fit, view.id) + "</figcaption></figure>\n";
-}
-
-cv::Mat3b cloth_display(const std::filesystem::path& file, const std::array<double, 9>& colour) {
-  const cv::Mat3f picture = renderer::read_exr(file);
-  return display(picture, display_scale(picture, cv::Mat1b(picture.size(), uchar{255})), colour);
 }
 
 cv::Mat3b fitted_into(const cv::Mat3b& picture, cv::Size size) {
@@ -117,9 +121,10 @@ std::string thread_section(const std::filesystem::path& session, const Developed
 std::string cloth_section(const std::filesystem::path& session, const DevelopedViews& developed) {
   std::string html;
   for (const std::filesystem::path& file : cloth_pictures(session))
-    html += "<figure>" +
-            embedded_image(cloth_display(file, developed.linear_srgb_from_camera), file.stem().string()) +
-            "<figcaption>" + escaped(file.stem().string()) + "</figcaption></figure>\n";
+    html +=
+        "<figure>" +
+        embedded_image(display(renderer::read_exr(file), developed.linear_srgb_from_camera), file.stem().string()) +
+        "<figcaption>" + escaped(file.stem().string()) + "</figcaption></figure>\n";
   return html.empty() ? html : "<h2>Predicted cloth</h2>\n<div class=\"sheet\">\n" + html + "</div>\n";
 }
 
@@ -130,16 +135,13 @@ cv::Mat3b overview_picture(const std::filesystem::path& session, const Developed
   cv::Mat3b left;
   for (std::size_t i = 0; i < developed.views.size();
        i += std::max<std::size_t>(1, developed.views.size() / kShown)) {
-    const inversion::View& view = developed.views[i].view;
-    const cv::Rect box = threads_box(view.mask, kMargin_px);
-    const double scale = display_scale(view.image, view.mask);
-    cv::Mat3f fitted = renderer::read_exr(fitted_file_of(session, view.id)),
-              photograph(view.image.size(), cv::Vec3f(0, 0, 0));
-    view.image.copyTo(photograph, view.mask);
+    const Twins twins = read_twins(session, developed.views[i].view);
+    const auto tile = [&](const cv::Mat3f& picture) {
+      return fitted_into(display(picture, twins.scale, developed.linear_srgb_from_camera)(twins.box),
+                         {kTile_px, kTileHeight_px});
+    };
     cv::Mat3b row;
-    cv::hconcat(
-        fitted_into(display(photograph, scale, developed.linear_srgb_from_camera)(box), {kTile_px, kTileHeight_px}),
-        fitted_into(display(fitted, scale, developed.linear_srgb_from_camera)(box), {kTile_px, kTileHeight_px}), row);
+    cv::hconcat(tile(twins.photographed), tile(twins.fitted), row);
     if (left.empty())
       left = row;
     else
@@ -147,7 +149,7 @@ cv::Mat3b overview_picture(const std::filesystem::path& session, const Developed
   }
   cv::Mat3b sheet = left;
   for (const std::filesystem::path& file : cloths) {
-    const cv::Mat3b cloth = cloth_display(file, developed.linear_srgb_from_camera);
+    const cv::Mat3b cloth = display(renderer::read_exr(file), developed.linear_srgb_from_camera);
     cv::hconcat(sheet, fitted_into(cloth, {left.rows * cloth.cols / cloth.rows, left.rows}), sheet);
   }
   return sheet;

@@ -120,6 +120,14 @@ TEST_F(FitThreadTest, AFitIsStoppedOnRequestWhileTracingAndBetweenSteps) {
   }
 }
 
+TEST_F(FitThreadTest, NoRoundsAndARoundWithoutPathsAreRefused) {
+  for (const std::vector<int>& paths : {std::vector<int>{}, {32, 0}}) {
+    FitOptions options;
+    options.paths_per_block = paths;
+    EXPECT_THROW(fit_thread(kSpool, *views_, options), std::invalid_argument);
+  }
+}
+
 TEST_F(FitThreadTest, NoViewsAreRefused) {
   EXPECT_THAT([&] { quick_fit({}); }, refuses_with("there is no view to fit a thread to"));
 }

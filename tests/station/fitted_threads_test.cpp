@@ -54,7 +54,6 @@ TEST_F(FittedThreads, ViewsOfThreeSpoolsAgreeWithinFifteenPercentAndWorseWithAny
 
 TEST_F(FittedThreads, InvertLeavesAThreadFittedViewsAndResidualsThatTheReportShows) {
   const std::string session = path("session");
-  expect_success(run_threadstation({"develop", session, "--quiet"}));
   const std::string copy = path("copy.json");
   const json said = invert(session, {"--paths", "16", "--spp", "2", "--out", copy});
   const station::ThreadFile thread = station::read_thread(said.at("thread").get<std::string>());
@@ -72,8 +71,12 @@ TEST_F(FittedThreads, InvertLeavesAThreadFittedViewsAndResidualsThatTheReportSho
 }
 
 TEST_F(FittedThreads, WrongInputsOfTheFitGetOneLine) {
-  const std::string session = path("undeveloped");
+  const std::string session = path("copied");
   fs::copy(path("session"), session, fs::copy_options::recursive);
+  fs::remove_all(session + "/result");
+  for (const std::string out : {path("nowhere/thread.json"), path("session")})
+    expect_one_line(run_threadstation({"invert", session, "--quiet", "--out", out}), out);
+  EXPECT_FALSE(fs::exists(session + "/result")) << "the fit begins only when its thread can be written";
   fs::remove_all(session + "/linear");
   expect_one_line(run_threadstation({"invert", session, "--quiet"}), "views.json");
   expect_one_line(run_threadstation({"invert", path("nowhere"), "--quiet"}), "nowhere");

@@ -1,5 +1,6 @@
 #include "tests/station/workflow.h"
 
+#include <filesystem>
 #include <memory>
 
 #include "station/documents/reader.h"
@@ -7,7 +8,17 @@
 namespace station_test {
 namespace {
 
+using nlohmann::json;
+
 std::unique_ptr<TemporaryFolder> folder;
+
+// The same lens before a sensor of fewer, larger pixels.
+void coarsen(json& sensor, json& lens) {
+  constexpr int kHastySide_px = 4;
+  for (const char* key : {"width_px", "height_px"}) sensor[key] = sensor[key].get<int>() / kHastySide_px;
+  for (const char* key : {"focal_length_px", "principal_point_px"})
+    for (json& value : lens[key]) value = value.get<double>() / kHastySide_px;
+}
 
 }  // namespace
 
@@ -23,15 +34,22 @@ void expect_one_line(const ProgramResult& result, const std::string& must_name) 
 
 void Workflow::SetUpTestSuite() {
   folder = std::make_unique<TemporaryFolder>();
-  nlohmann::json rig = station::read_json_file(std::string(FIXTURES_DIR) + "/rigs/simulated.json");
+  json rig = station::read_json_file(std::string(FIXTURES_DIR) + "/rigs/simulated.json");
   rig["simulation"]["samples_per_pixel"] = 1;
   rig["simulation"]["target_samples_per_pixel"] = 4;
   station::write_json_file(path("rig.json"), rig);
-  rig["simulation"]["target_samples_per_pixel"] = 1;
-  station::write_json_file(path("hasty_rig.json"), rig);
   expect_success(
       run_threadstation({"calibrate", "--rig", path("rig.json"), "--out", path("calibration"), "--quiet"}));
   expect_success(capture(path("session")));
+  expect_success(run_threadstation({"develop", path("session"), "--quiet"}));
+
+  rig["simulation"]["target_samples_per_pixel"] = 1;
+  coarsen(rig["simulation"]["sensor"], rig["simulation"]["lens"]);
+  station::write_json_file(path("hasty_rig.json"), rig);
+  json calibration = station::read_json_file(path("calibration/calibration.json"));
+  coarsen(calibration["lens"], calibration["lens"]);
+  std::filesystem::create_directory(path("hasty_calibration"));
+  station::write_json_file(path("hasty_calibration/calibration.json"), calibration);
 }
 
 void Workflow::TearDownTestSuite() {
@@ -43,18 +61,22 @@ std::string Workflow::path(const std::string& name) {
 }
 
 std::vector<std::string> Workflow::capture_arguments(const std::string& session, const std::string& rig,
-                                                     const std::string& spool) {
+                                                     const std::string& spool, const std::string& calibration) {
   return {"capture",
           "--rig",
           path(rig),
           "--calibration",
-          path("calibration"),
+          path(calibration),
           "--spool",
           std::string(FIXTURES_DIR) + "/spools/" + spool + ".json",
           "--out",
           session,
           "--unattended",
           "--quiet"};
+}
+
+std::vector<std::string> Workflow::hasty_capture_arguments(const std::string& session) {
+  return capture_arguments(session, "hasty_rig.json", "silk_red", "hasty_calibration");
 }
 
 ProgramResult Workflow::capture(const std::string& session) {

@@ -1,5 +1,5 @@
-// One calibrated simulated rig and one captured session, for all tests that run the program's commands one after the
-// other; few samples a pixel, so that drawing takes little time.
+// One calibrated simulated rig and one captured and developed session, for all tests that run the program's commands one
+// after the other; few samples a pixel, so that drawing takes little time.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,9 +22,12 @@ class Workflow : public ::testing::Test {
   static void TearDownTestSuite();
 
   static std::string path(const std::string& name);
-  // Rig files in path(): rig.json, and hasty_rig.json with still fewer samples.
+  // `rig` and `calibration` in path().
   static std::vector<std::string> capture_arguments(const std::string& session, const std::string& rig = "rig.json",
-                                                    const std::string& spool = "silk_red");
+                                                    const std::string& spool = "silk_red",
+                                                    const std::string& calibration = "calibration");
+  // On the same bench with a sensor so coarse that drawing hardly counts: for tests of the capture itself.
+  static std::vector<std::string> hasty_capture_arguments(const std::string& session);
   static ProgramResult capture(const std::string& session);
 };
 

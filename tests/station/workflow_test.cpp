@@ -75,7 +75,6 @@ TEST_F(Workflow, CalibrationIsSolvedAgainFromItsPicturesAlone) {
 
 TEST_F(Workflow, SessionHasEveryFileUpToMasksAndEachStageRunsAgainAlone) {
   const fs::path session = path("session");
-  expect_success(run_threadstation({"develop", session, "--quiet"}));
   const station::DevelopedViews developed = station::read_views(session);
   ASSERT_EQ(developed.views.size(), 17U);
   for (const char* file : {"session.json", "journal.jsonl", "calibration/calibration.json", "linear/views.json"})
@@ -94,7 +93,6 @@ TEST_F(Workflow, SessionHasEveryFileUpToMasksAndEachStageRunsAgainAlone) {
 
 TEST_F(Workflow, MasksLieOnTheThreads) {
   const fs::path session = path("session");
-  expect_success(run_threadstation({"develop", session, "--quiet"}));
   station::DevelopedViews developed = station::read_views(session);
   station::read_view_pictures(session, developed);
   for (const station::DevelopedView& view : developed.views) {
@@ -117,7 +115,6 @@ TEST_F(Workflow, MasksLieOnTheThreads) {
 
 TEST_F(Workflow, ReportOpensInABrowserWithoutAConsoleError) {
   const fs::path session = path("session");
-  expect_success(run_threadstation({"develop", session, "--quiet"}));
   expect_success(run_threadstation({"report", session}));
   const std::string profile = path("browser");
   const ProgramResult browser = run_shell(
@@ -137,7 +134,7 @@ TEST_F(Workflow, APulledPlugAtTwentyRandomMomentsLosesAndDoublesNothing) {
   using Seconds = std::chrono::duration<double>;
   const std::string timed = path("timed");
   const auto start = std::chrono::steady_clock::now();
-  const std::vector<std::string> hasty = capture_arguments(timed, "hasty_rig.json");
+  const std::vector<std::string> hasty = hasty_capture_arguments(timed);
   expect_success(run_threadstation(hasty));
   const double whole_s = Seconds(std::chrono::steady_clock::now() - start).count();
   std::mt19937 random(20260);
@@ -145,13 +142,13 @@ TEST_F(Workflow, APulledPlugAtTwentyRandomMomentsLosesAndDoublesNothing) {
   int killed = 0;
   for (int run = 0; run < 20; ++run) {
     const std::string session = path("killed-" + std::to_string(run));
-    const pid_t process = start_threadstation(capture_arguments(session, "hasty_rig.json"));
+    const pid_t process = start_threadstation(hasty_capture_arguments(session));
     std::this_thread::sleep_for(Seconds(moment_s(random)));  // the moment of the kill is what is tested
     ::kill(process, SIGKILL);
     killed += wait_for(process) == 128 + SIGKILL;
     const bool begun = fs::exists(session + "/session.json");
     expect_success(begun ? run_threadstation({"capture", "--resume", "--out", session, "--quiet"})
-                         : run_threadstation(capture_arguments(session, "hasty_rig.json")));
+                         : run_threadstation(hasty_capture_arguments(session)));
     const ProgramResult verified = run_threadstation({"verify", session, "--json"});
     expect_success(verified);
     EXPECT_TRUE(json::parse(verified.out)["complete"]) << verified.out;
@@ -171,7 +168,7 @@ TEST_F(Workflow, APulledPlugAtTwentyRandomMomentsLosesAndDoublesNothing) {
 
 TEST_F(Workflow, CtrlCStopsThePlatformAndLeavesASessionThatResumes) {
   const std::string session = path("interrupted");
-  const pid_t process = start_threadstation(capture_arguments(session, "hasty_rig.json"));
+  const pid_t process = start_threadstation(hasty_capture_arguments(session));
   while (!fs::exists(session + "/raw/reflection-horizontal-1.arw"))
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   ::kill(process, SIGINT);
