@@ -75,4 +75,21 @@ AzimuthalProfile logistic_profile(double center, double scale, int bins) {
   return {sum.density, sum.by_scale, ArrayXd::Zero(bins)};
 }
 
+ArrayXd smooth_fiber_lobe(int p, double theta_rad, double eta, double sigma_a, int bins) {
+  constexpr int kOffsets = 400000;  // many per bin: caustics gather them, other bins must not be starved
+  const double sin_theta = std::sin(theta_rad), cos_theta = std::cos(theta_rad);
+  ArrayXd density = ArrayXd::Zero(bins);
+  for (int i = 0; i < kOffsets; ++i) {
+    const double h = 2 * (i + 0.5) / kOffsets - 1;
+    const InnerChord<double> chord(h, sin_theta, cos_theta, eta);
+    const double f = fresnel_dielectric(cos_theta * std::sqrt(1 - h * h), eta);
+    const double t = std::exp(-sigma_a * chord.length);
+    const double energy = p == 0 ? f : (1 - f) * (1 - f) * t * std::pow(f * t, p - 1);
+    const double phi = lobe_center<double>(p, std::asin(h), chord.gamma_t);
+    const auto bin = static_cast<Eigen::Index>((phi + kPi) / (2 * kPi) * bins);
+    density[std::min<Eigen::Index>(bin, bins - 1)] += energy;
+  }
+  return density * (bins / (2 * kPi * kOffsets));
+}
+
 }  // namespace renderer

@@ -19,4 +19,8 @@ AzimuthalProfile azimuthal_profile(int p, double theta_rad, double eta, double s
 // The same logistic around one azimuth: no offsets, no absorption.
 AzimuthalProfile logistic_profile(double center, double scale, int bins);
 
+// Lobe p = 0, 1, 2, ... of one smooth fiber: where Fresnel and Snell send the light of its whole width, with what is left
+// of it; the mean over each bin. `sigma_a` per fiber radius.
+Eigen::ArrayXd smooth_fiber_lobe(int p, double theta_rad, double eta, double sigma_a, int bins);
+
 }  // namespace renderer

@@ -1,5 +1,6 @@
 #include "station/report/plot.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -42,37 +43,84 @@ class Script {
   std::error_code ignored_;
 };
 
-std::string script_text(const std::string& x_label, const std::string& y_label, const std::vector<PlotLine>& lines) {
-  std::ostringstream script;
-  script << "set terminal svg size 680,340 font 'sans-serif,13' background '#ffffff'\n"
-         << "set xlabel '" << x_label << "'\nset yrange [0:*]\nset ylabel '" << y_label
-         << "'\nset grid lc rgb '#dddddd'\nset key outside right\n";
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    script << "$line" << i << " << EOD\n";
-    for (const auto& [x, y] : lines[i].points) script << x << ' ' << y << '\n';
+// In single quotes nothing but the quote itself is special to gnuplot.
+std::string quoted(const std::string& text) {
+  std::string all = "'";
+  for (char c : text) all += c == '\'' ? std::string("''") : std::string(1, c);
+  return all + "'";
+}
+
+void set_range(std::ostream& script, char axis, const std::optional<std::pair<double, double>>& range,
+               const char* otherwise) {
+  script << "set " << axis << "range ";
+  if (range)
+    script << '[' << range->first << ':' << range->second << "]\n";
+  else
+    script << otherwise << '\n';
+}
+
+// Data blocks are named by panel and line.
+void add_panel(std::ostream& script, const PlotPanel& panel, std::size_t number) {
+  const bool drawing = !panel.circles.empty();
+  script << "set title " << quoted(panel.title) << "\nset xlabel " << quoted(panel.x_label) << "\nset ylabel "
+         << quoted(panel.y_label) << '\n'
+         << (drawing ? "unset border\nunset tics\nunset grid\nset size ratio -1\n"
+                     : "set border\nset tics\nset grid lc rgb '#dddddd'\nset size noratio\n");
+  set_range(script, 'x', panel.x_range, "[*:*]");
+  set_range(script, 'y', panel.y_range, drawing ? "[*:*]" : "[0:*]");
+  for (std::size_t i = 0; i < panel.lines.size(); ++i) {
+    script << "$line" << number << '_' << i << " << EOD\n";
+    for (const auto& [x, y] : panel.lines[i].points) script << x << ' ' << y << '\n';
     script << "EOD\n";
   }
-  script << "plot ";
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    script << (i ? ", " : "") << "$line" << i << " with lines lw 2 title '" << lines[i].title << "'";
+  script << "$circles" << number << " << EOD\n";
+  for (const PlotCircle& c : panel.circles) script << c.x << ' ' << c.y << ' ' << c.radius << ' ' << c.filled << '\n';
+  script << "EOD\nplot ";
+  if (drawing)
+    script << "$circles" << number << " using 1:2:($4 ? $3 : 1/0) with circles fs solid 0.3 lc 1 notitle, $circles"
+           << number << " using 1:2:($4 ? 1/0 : $3) with circles fs empty lc rgb 'black' notitle";
+  for (std::size_t i = 0; i < panel.lines.size(); ++i) {
+    const PlotLine& line = panel.lines[i];
+    script << (i || drawing ? ", " : "") << "$line" << number << '_' << i << " with ";
+    script << (line.style == PlotStyle::points ? "points pt 7 ps 0.5" : "lines lw 2");
+    if (line.style == PlotStyle::dashed) script << " dt 2";
+    if (line.color > 0) script << " lc " << line.color;
+    script << " title " << quoted(line.title);
+  }
   script << '\n';
+}
+
+std::string script_text(const PlotSheet& sheet, PlotFormat format) {
+  const int columns = std::max(1, sheet.columns);
+  const int rows = (static_cast<int>(sheet.panels.size()) + columns - 1) / columns;
+  std::ostringstream script;
+  script << "set terminal " << (format == PlotFormat::svg ? "svg" : "pngcairo") << " size "
+         << columns * sheet.panel_width_px << ',' << rows * sheet.panel_height_px << " noenhanced font 'sans-serif,"
+         << (format == PlotFormat::svg ? 13 : 10) << "' background '#ffffff'\n"
+         << "set key noenhanced " << (sheet.key_outside ? "outside right" : "top right") << '\n';
+  if (sheet.panels.size() > 1) script << "set multiplot layout " << rows << ',' << columns << '\n';
+  for (std::size_t i = 0; i < sheet.panels.size(); ++i) add_panel(script, sheet.panels[i], i);
   return script.str();
 }
 
 }  // namespace
 
-std::string line_plot(const std::string& x_label, const std::string& y_label, const std::vector<PlotLine>& lines) {
-  const Script script(script_text(x_label, y_label, lines));
+std::string draw(const PlotSheet& sheet, PlotFormat format) {
+  const Script script(script_text(sheet, format));
   const std::string command = "gnuplot '" + script.file().string() + "' 2>/dev/null";
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> answer(popen(command.c_str(), "r"), pclose);
-  std::string svg;
+  std::string picture;
   std::array<char, 4096> part;
   for (std::size_t got = 1; answer && (got = std::fread(part.data(), 1, part.size(), answer.get())) > 0;)
-    svg.append(part.data(), got);
-  const std::size_t start = svg.find("<svg");
+    picture.append(part.data(), got);
+  const std::size_t start = picture.find(format == PlotFormat::svg ? "<svg" : "\x89PNG");
   if (start == std::string::npos)
     throw std::runtime_error("gnuplot drew no plot; install gnuplot-nox (station/install_packages does)");
-  return svg.substr(start);
+  return picture.substr(start);
+}
+
+std::string line_plot(const std::string& x_label, const std::string& y_label, const std::vector<PlotLine>& lines) {
+  return draw({.panels = {{.x_label = x_label, .y_label = y_label, .lines = lines}}}, PlotFormat::svg);
 }
 
 }  // namespace station

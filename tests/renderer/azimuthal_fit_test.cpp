@@ -130,7 +130,9 @@ TEST(AzimuthalFitTest, PredictedDeviationsCoverTheErrorsOfNoise) {
       EXPECT_NEAR(value.value, truth.beta[1], 5 * value.deviation);
       EXPECT_LT(value.deviation, 0.02);
     }
-    if (value.name == "r1a") EXPECT_NEAR(value.value, truth.r1a, 5 * value.deviation);
+    if (value.name == "r1a") {
+      EXPECT_NEAR(value.value, truth.r1a, 5 * value.deviation);
+    }
   }
 }
 

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <random>
 
+#include "renderer/scattering/azimuthal_profile.h"
 #include "renderer/scattering/circle_grid.h"
 #include "renderer/scattering/lobes.h"
 #include "tests/renderer/plain_circle_tracer.h"
@@ -35,39 +36,21 @@ TEST(MultiFiberTest, FractionsByFibersPassedSumToTheAlbedo) {
   EXPECT_GT(s.by_fibers_passed[0], 0.02) << "some light is only reflected";
 }
 
-// Chiang et al.'s attenuations and Marschner's deflections over the width of one smooth fiber.
-std::vector<double> single_circle_density(double theta, double eta, double sigma, int bins) {
-  constexpr int kOffsets = 2000000, kLobes = 40;
-  std::vector<double> density(static_cast<std::size_t>(bins));
-  for (int i = 0; i < kOffsets; ++i) {
-    const double h = 2 * (i + 0.5) / kOffsets - 1;
-    const InnerChord<double> chord(h, std::sin(theta), std::cos(theta), eta);
-    const double f = fresnel_dielectric(std::cos(theta) * std::sqrt(1 - h * h), eta);
-    const double t = std::exp(-sigma * chord.length);
-    double energy = f;
-    for (int p = 0; p < kLobes && energy > 1e-12; ++p) {
-      const double phi = lobe_center<double>(p, std::asin(h), chord.gamma_t);
-      const auto bin = static_cast<std::size_t>((phi + kPi) / (2 * kPi) * bins) % density.size();
-      density[bin] += energy / kOffsets * bins / (2 * kPi);
-      energy = p == 0 ? (1 - f) * (1 - f) * t : energy * f * t;
-    }
-  }
-  return density;
-}
-
 TEST(MultiFiberTest, OneFiberAsThickAsTheThreadIsTheAnalyticSingleCircle) {
   for (double theta : {0.0, 50 * kDegree, 80 * kDegree})
     for (double sigma : {0.0, 0.3}) {
       const MultiFiberOptions options{
           .thread_radius = 1, .sigma_a = sigma, .theta_rad = theta, .rays = 2000000, .configurations = 1, .bins = 60};
       const MultiFiberScattering found = simulate_multi_fiber(options);
-      const std::vector<double> expected = single_circle_density(theta, options.eta, sigma, options.bins);
+      Eigen::ArrayXd expected = Eigen::ArrayXd::Zero(options.bins);
+      for (int p = 0; p < 30; ++p) expected += smooth_fiber_lobe(p, theta, options.eta, sigma, options.bins);
       EXPECT_EQ(found.miss, 0);
-      for (std::size_t i = 0; i < expected.size(); ++i) {
+      for (Eigen::Index i = 0; i < expected.size(); ++i) {
         // Five standard errors of counting; a bin holds fraction = density * width of all rays.
         const double width = 2 * kPi / options.bins;
         const double error = std::sqrt(expected[i] / width / options.rays);
-        EXPECT_NEAR(found.density[i], expected[i], 5 * error + 1e-4) << "bin " << i << " theta " << theta;
+        EXPECT_NEAR(found.density[static_cast<std::size_t>(i)], expected[i], 5 * error + 1e-4)
+            << "bin " << i << " theta " << theta;
       }
     }
 }
