@@ -1,0 +1,13 @@
+#include "station/commands/scatter_command.h"
+
+#include "station/commands/commands.h"
+
+namespace station {
+
+void add_scatter_command(CLI::App& app) {
+  CLI::App* scatter = app.add_subcommand("scatter", "scattering models of fibers, threads and yarns");
+  scatter->require_subcommand(1);
+  add_scatter_eval_command(*scatter);
+}
+
+}  // namespace station

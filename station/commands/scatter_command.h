@@ -1,0 +1,10 @@
+// One function per sub-command of `threadstation scatter` (commands.h says how commands are written).
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace station {
+
+void add_scatter_eval_command(CLI::App& scatter);
+
+}  // namespace station
