@@ -11,11 +11,16 @@
 //   beta       | 0.02 .. 1         | 3     | yes   azimuthal roughness of each lobe (perceptual, mapped as fibers')
 //   r          | -                 | 7     | yes   energies of the lobes, all colours alike; each lambda must stay >= 0
 //
+// Two options that fits leave alone, equal to the printed model by default:
+//
+//   lambda0_rgb          | 0 .. 1 | 1 1 1 | dual numbers only   tint of A_R: highlights of metallic threads have a colour
+//   transmittance_powers | >= 0   | 1 1   | no                  A_TT = lambda_1 T^first, A_TRT = lambda_2 T^second
+//
 // f_cos includes the cosine (lobes.h). theta_o, h and the attenuations belong to the known direction o, as for
-// fibers. Lobe centres Phi_p are a fiber's, with the refractive index fixed at kThreadEta. The transmittance T enters
-// TRT to the first power, as printed. Nothing in the paper bounds lambda_0 + lambda_1 + lambda_2, the albedo without
-// absorption, and fits exceed 1 near grazing angles; `limit_energy` scales the three down to kMostEnergy where their
-// sum exceeds it. Fits of parameters leave it off and penalise the excess instead.
+// fibers. Lobe centres Phi_p are a fiber's, with the refractive index fixed at kThreadEta. Nothing in the paper bounds
+// lambda_0 + lambda_1 + lambda_2, the albedo without absorption, and fits exceed 1 near grazing angles; `limit_energy`
+// scales the three down to kMostEnergy where their sum exceeds it. Fits of parameters leave it off and penalise the
+// excess instead.
 #pragma once
 
 #include <Eigen/Core>
@@ -41,6 +46,8 @@ struct BasicThreadParameters {
   S r1a = S(0.6);                                          // lambda_1
   S r2a = S(10.0), r2b = S(2.5), r2c = S(0.0);             // lambda_2
   bool limit_energy = true;
+  Eigen::Matrix<S, 3, 1> lambda0_rgb{S(1.0), S(1.0), S(1.0)};  // tint of R, at most 1
+  std::array<double, 2> transmittance_powers{1, 1};            // of TT and TRT
 };
 using ThreadParameters = BasicThreadParameters<double>;
 
@@ -58,9 +65,19 @@ BasicThreadParameters<T> in_scalar(const BasicThreadParameters<S>& p) {
   const auto three = [](const std::array<S, 3>& v) {
     return std::array<T, 3>{static_cast<T>(v[0]), static_cast<T>(v[1]), static_cast<T>(v[2])};
   };
-  return {p.sigma_a.template cast<T>(), three(p.alpha),        three(p.beta),         static_cast<T>(p.r0a),
-          static_cast<T>(p.r0b),        static_cast<T>(p.r0c), static_cast<T>(p.r1a), static_cast<T>(p.r2a),
-          static_cast<T>(p.r2b),        static_cast<T>(p.r2c), p.limit_energy};
+  return {p.sigma_a.template cast<T>(), three(p.alpha),        three(p.beta),
+          static_cast<T>(p.r0a),        static_cast<T>(p.r0b), static_cast<T>(p.r0c),
+          static_cast<T>(p.r1a),        static_cast<T>(p.r2a), static_cast<T>(p.r2b),
+          static_cast<T>(p.r2c),        p.limit_energy,        p.lambda0_rgb.template cast<T>(),
+          p.transmittance_powers};
+}
+
+// T^first and T^second of TT and TRT along a chord, RGB; one exponential where the powers are equal.
+template <class S>
+std::array<Rgb<S>, 2> thread_transmittances(const BasicThreadParameters<S>& p, const S& chord_length) {
+  const auto along = [&](double power) { return Rgb<S>((p.sigma_a.array() * (S(-power) * chord_length)).exp()); };
+  const Rgb<S> first = along(p.transmittance_powers[0]);
+  return {first, p.transmittance_powers[1] == p.transmittance_powers[0] ? first : along(p.transmittance_powers[1])};
 }
 
 // lambda_0, lambda_1, lambda_2 at c = |cos theta_o|, limited when the parameters say so.
@@ -103,10 +120,10 @@ class ThreadModel {
     lobes.center[3] = S(0.0);
 
     const std::array<S, 3> lambda = thread_lobe_energies<S>(parameters_, cos_o);
-    const Rgb<S> transmittance = (parameters_.sigma_a.array() * -chord.length).exp();
-    lobes.attenuation.row(0).setConstant(lambda[0]);
-    lobes.attenuation.row(1) = (transmittance * lambda[1]).transpose();
-    lobes.attenuation.row(2) = (transmittance * lambda[2]).transpose();
+    const std::array<Rgb<S>, 2> transmittance = thread_transmittances(parameters_, chord.length);
+    lobes.attenuation.row(0) = (parameters_.lambda0_rgb.array() * lambda[0]).transpose();
+    lobes.attenuation.row(1) = (transmittance[0] * lambda[1]).transpose();
+    lobes.attenuation.row(2) = (transmittance[1] * lambda[2]).transpose();
     lobes.attenuation.row(3).setConstant(S(0.0));
     set_probabilities(lobes);
     return lobes;

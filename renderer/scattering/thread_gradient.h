@@ -7,7 +7,7 @@
 //   dlogN/ds = (x/s^2) tanh(x/2s) - 1/s + (pi/s^2) / sinh(pi/s)
 //
 // with D the squared distance across the cone and x the distance from the lobe's centre. The energy limit of thread.h
-// is left off: fits penalise the excess instead (thread.h).
+// is left off: fits penalise the excess instead (thread.h). The options of thread.h are constants here.
 #pragma once
 
 #include "renderer/scattering/thread.h"
@@ -42,7 +42,10 @@ struct ThreadPoint {
 template <class S>
 class ThreadGradientModel {
  public:
-  explicit ThreadGradientModel(const BasicThreadParameters<S>& parameters) : parameters_(parameters) {
+  explicit ThreadGradientModel(const BasicThreadParameters<S>& parameters)
+      : parameters_(parameters),
+        power_tt_(S(parameters.transmittance_powers[0])),
+        power_trt_(S(parameters.transmittance_powers[1])) {
     using std::exp, std::sinh, std::sqrt;
     parameters_.limit_energy = false;
     for (int p = 0; p < 3; ++p) {
@@ -65,30 +68,30 @@ class ThreadGradientModel {
     const Lanes<S> dalpha = density * dlog_m(at) * dv_dalpha_, dbeta = density * dlog_n(at) * ds_dbeta_;
     const S c = point.cosine;
     const std::array<S, 3> lambda = thread_lobe_energies<S>(parameters_, c);
-    const Rgb<S> transmittance = (parameters_.sigma_a.array() * -point.chord_length).exp();
+    const std::array<Rgb<S>, 2> transmittance = thread_transmittances(parameters_, point.chord_length);
     const S inverse = S(1.0) / (parameters_.r2a * c + parameters_.r2b), inverse2 = inverse * inverse;
 
     ThreadGradient<S> g;
     for (int channel = 0; channel < 3; ++channel) {
-      const S t = transmittance[channel];
-      const S a0 = lambda[0], a1 = lambda[1] * t, a2 = lambda[2] * t;
-      const S inside = density[1] * a1 + density[2] * a2;
-      g.f_cos[channel] = density[0] * a0 + inside;
+      const S tint = parameters_.lambda0_rgb[channel], t1 = transmittance[0][channel], t2 = transmittance[1][channel];
+      const S a0 = lambda[0] * tint, a1 = lambda[1] * t1, a2 = lambda[2] * t2;
+      const S through = density[1] * a1, inside = density[2] * a2, reflected = density[0] * tint;
+      g.f_cos[channel] = density[0] * a0 + through + inside;
       auto slope = g.slopes.col(channel);
-      slope[kSlopeSigma] = -point.chord_length * inside;
+      slope[kSlopeSigma] = -point.chord_length * (power_tt_ * through + power_trt_ * inside);
       slope[kSlopeAlpha] = dalpha[0] * a0;
       slope[kSlopeAlpha + 1] = dalpha[1] * a1;
       slope[kSlopeAlpha + 2] = dalpha[2] * a2;
       slope[kSlopeBeta] = dbeta[0] * a0;
       slope[kSlopeBeta + 1] = dbeta[1] * a1;
       slope[kSlopeBeta + 2] = dbeta[2] * a2;
-      slope[kSlopeR0] = density[0] * c * c;
-      slope[kSlopeR0 + 1] = density[0] * c;
-      slope[kSlopeR0 + 2] = density[0];
-      slope[kSlopeR1] = density[1] * t * c;
-      slope[kSlopeR2] = -density[2] * t * c * inverse2;
-      slope[kSlopeR2 + 1] = -density[2] * t * inverse2;
-      slope[kSlopeR2 + 2] = density[2] * t;
+      slope[kSlopeR0] = reflected * c * c;
+      slope[kSlopeR0 + 1] = reflected * c;
+      slope[kSlopeR0 + 2] = reflected;
+      slope[kSlopeR1] = density[1] * t1 * c;
+      slope[kSlopeR2] = -density[2] * t2 * c * inverse2;
+      slope[kSlopeR2 + 1] = -density[2] * t2 * inverse2;
+      slope[kSlopeR2 + 2] = density[2] * t2;
       slope[14] = slope[15] = S(0.0);
     }
     return g;
@@ -98,8 +101,9 @@ class ThreadGradientModel {
   Rgb<S> f_cos(const ThreadPoint<S>& point, const LobeAngles<S>& at) const {
     const Lanes<S> density = longitudinal_density(widths_, at) * azimuthal_density(widths_, at);
     const std::array<S, 3> lambda = thread_lobe_energies<S>(parameters_, point.cosine);
-    const Rgb<S> transmittance = (parameters_.sigma_a.array() * -point.chord_length).exp();
-    return density[0] * lambda[0] + (density[1] * lambda[1] + density[2] * lambda[2]) * transmittance;
+    const std::array<Rgb<S>, 2> transmittance = thread_transmittances(parameters_, point.chord_length);
+    return parameters_.lambda0_rgb.array() * (density[0] * lambda[0]) + transmittance[0] * (density[1] * lambda[1]) +
+           transmittance[1] * (density[2] * lambda[2]);
   }
 
  private:
@@ -114,6 +118,7 @@ class ThreadGradientModel {
   }
 
   BasicThreadParameters<S> parameters_;
+  S power_tt_, power_trt_;
   LobeWidths<S> widths_;
   Lanes<S> dv_dalpha_, ds_dbeta_, m_constant_, n_constant_;
 };

@@ -26,6 +26,10 @@ std::string joined(std::initializer_list<const char*> words) {
   return all;
 }
 
+std::string text_of(Range range) {
+  return "from " + json(range.low).dump() + " to " + json(range.high).dump();
+}
+
 }  // namespace
 
 json read_json_file(const std::filesystem::path& file) {
@@ -143,7 +147,7 @@ int ObjectReader::integer(const std::string& key, int low, int high) {
 
 double ObjectReader::number(const std::string& key, double low, double high) {
   const json& found = value(key);
-  const std::string range = "expected a number from " + json(low).dump() + " to " + json(high).dump();
+  const std::string range = "expected a number " + text_of({low, high});
   if (!found.is_number()) refuse(key, "found " + shown(found) + ", " + range);
   const double number = found.get<double>();
   if (!(number >= low && number <= high)) refuse(key, "found " + shown(found) + ", " + range);
@@ -165,8 +169,21 @@ std::vector<double> ObjectReader::numbers(const std::string& key, std::size_t co
   return list;
 }
 
+std::vector<double> ObjectReader::numbers(const std::string& key, std::size_t count, Range range) {
+  std::vector<double> list = numbers(key, count);
+  for (double number : list)
+    if (!(number >= range.low && number <= range.high))
+      refuse(key, "found " + json(number).dump() + ", expected numbers " + text_of(range));
+  return list;
+}
+
 Eigen::Vector3d ObjectReader::vector3(const std::string& key) {
   const std::vector<double> v = numbers(key, 3);
+  return {v[0], v[1], v[2]};
+}
+
+Eigen::Vector3d ObjectReader::vector3(const std::string& key, Range range) {
+  const std::vector<double> v = numbers(key, 3, range);
   return {v[0], v[1], v[2]};
 }
 

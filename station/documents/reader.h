@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "station/documents/range.h"
+
 namespace station {
 
 // Reads a file and parses it; says line and column where it is not JSON.
@@ -36,9 +38,12 @@ class ObjectReader {
   bool flag(const std::string& key);
   int integer(const std::string& key, int low, int high);
   double number(const std::string& key, double low, double high);
+  double number(const std::string& key, Range range) { return number(key, range.low, range.high); }
   std::vector<double> numbers(const std::string& key);  // any length, finite
   std::vector<double> numbers(const std::string& key, std::size_t count);
+  std::vector<double> numbers(const std::string& key, std::size_t count, Range range);  // each of them
   Eigen::Vector3d vector3(const std::string& key);
+  Eigen::Vector3d vector3(const std::string& key, Range range);
   Eigen::Isometry3d transform(const std::string& key);  // 4 x 4 row-major, rotation checked
   const nlohmann::json& raw(const std::string& key);
 

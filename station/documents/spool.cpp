@@ -1,5 +1,6 @@
 #include "station/documents/spool.h"
 
+#include "station/documents/parameter_ranges.h"
 #include "station/documents/reader.h"
 
 namespace station {
@@ -28,11 +29,10 @@ SimulatedFibers parse_fibers(ObjectReader fibers) {
   result.fibers_per_thread = fibers.integer("fibers_per_thread", 1, 2000);
   result.fiber_radius_mm = fibers.number("fiber_radius_mm", 0.0005, 10);
   result.min_gap_mm = fibers.number("min_gap_mm", 0, 10);
-  result.scattering.eta = fibers.number("eta", 1.01, 3);
-  result.scattering.sigma_a = fibers.vector3("sigma_a");
-  if (result.scattering.sigma_a.minCoeff() < 0) fibers.refuse("sigma_a", "absorption cannot be negative");
-  result.scattering.beta_m = fibers.number("beta_m", 0.02, 1);
-  result.scattering.beta_n = fibers.number("beta_n", 0.02, 1);
+  result.scattering.eta = fibers.number("eta", kRefractiveIndex);
+  result.scattering.sigma_a = fibers.vector3("sigma_a", kAbsorption);
+  result.scattering.beta_m = fibers.number("beta_m", kRoughness);
+  result.scattering.beta_n = fibers.number("beta_n", kRoughness);
   result.seed = static_cast<std::uint64_t>(fibers.integer("seed", 0, 1 << 30));
   fibers.finish();
   return result;

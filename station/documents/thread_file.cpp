@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "station/documents/parameter_ranges.h"
 #include "station/documents/reader.h"
 
 namespace station {
@@ -10,24 +11,21 @@ namespace {
 using nlohmann::json;
 using renderer::ThreadParameters;
 
-constexpr double kLeastRoughness = 0.02, kMostR = 1e6, kMostAbsorption = 1e4;
+constexpr Range kR{-1e6, 1e6}, kTint{0, 1}, kPower{0, 10};
 constexpr double kRounding = 1e-9;
 
 std::array<double, 3> roughness(ObjectReader& reader, const std::string& key) {
-  std::array<double, 3> lobes{};
-  const std::vector<double> found = reader.numbers(key, 3);
-  std::copy(found.begin(), found.end(), lobes.begin());
-  for (double value : lobes)
-    if (!(value >= kLeastRoughness && value <= 1))
-      reader.refuse(key, "found " + json(value).dump() + ", expected roughnesses between 0.02 and 1");
-  return lobes;
+  const std::vector<double> lobes = reader.numbers(key, 3, kRoughness);
+  return {lobes[0], lobes[1], lobes[2]};
 }
 
-std::vector<double> coefficients(ObjectReader& reader, const std::string& key, std::size_t count) {
-  const std::vector<double> found = reader.numbers(key, count);
-  for (double value : found)
-    if (!(std::abs(value) <= kMostR)) reader.refuse(key, "found " + json(value).dump() + ", expected at most 1e6");
-  return found;
+// Keys that may be left out, as most threads do.
+void parse_options(ObjectReader& reader, ThreadParameters& p) {
+  if (reader.has("lambda0_rgb")) p.lambda0_rgb = reader.vector3("lambda0_rgb", kTint);
+  if (reader.has("transmittance_powers")) {
+    const std::vector<double> powers = reader.numbers("transmittance_powers", 2, kPower);
+    p.transmittance_powers = {powers[0], powers[1]};
+  }
 }
 
 // lambda_p >= 0 for every c in [0, 1].
@@ -47,24 +45,28 @@ void check_lobe_energies(const ObjectReader& reader, ThreadParameters parameters
 
 ThreadParameters parse_parameters(ObjectReader reader) {
   ThreadParameters p;
-  p.sigma_a = reader.vector3("sigma_a");
-  if (!(p.sigma_a.minCoeff() >= 0 && p.sigma_a.maxCoeff() <= kMostAbsorption))
-    reader.refuse("sigma_a", "found " + to_json(p.sigma_a).dump() + ", expected absorptions between 0 and 10000");
+  p.sigma_a = reader.vector3("sigma_a", kAbsorption);
   p.alpha = roughness(reader, "alpha");
   p.beta = roughness(reader, "beta");
-  const std::vector<double> r0 = coefficients(reader, "r0", 3), r1 = coefficients(reader, "r1", 1),
-                            r2 = coefficients(reader, "r2", 3);
+  const std::vector<double> r0 = reader.numbers("r0", 3, kR), r1 = reader.numbers("r1", 1, kR),
+                            r2 = reader.numbers("r2", 3, kR);
   p.r0a = r0[0], p.r0b = r0[1], p.r0c = r0[2];
   p.r1a = r1[0];
   p.r2a = r2[0], p.r2b = r2[1], p.r2c = r2[2];
   check_lobe_energies(reader, p);
+  parse_options(reader, p);
   reader.finish();
   return p;
 }
 
 json parameters_json(const ThreadParameters& p) {
-  return {{"sigma_a", to_json(p.sigma_a)}, {"alpha", p.alpha}, {"beta", p.beta},
-          {"r0", {p.r0a, p.r0b, p.r0c}},   {"r1", {p.r1a}},    {"r2", {p.r2a, p.r2b, p.r2c}}};
+  const ThreadParameters plain;
+  json parameters{{"sigma_a", to_json(p.sigma_a)}, {"alpha", p.alpha}, {"beta", p.beta},
+                  {"r0", {p.r0a, p.r0b, p.r0c}},   {"r1", {p.r1a}},    {"r2", {p.r2a, p.r2b, p.r2c}}};
+  if (p.lambda0_rgb != plain.lambda0_rgb) parameters["lambda0_rgb"] = to_json(p.lambda0_rgb);
+  if (p.transmittance_powers != plain.transmittance_powers)
+    parameters["transmittance_powers"] = p.transmittance_powers;
+  return parameters;
 }
 
 json units() {

@@ -38,30 +38,32 @@ struct Fibers {
   static Values values(double along, double across) { return {1.55, 0.1, 0.3, 0.8, along, across, 0.02}; }
 };
 
-struct UnlimitedThreads {
+template <bool limited, bool with_options>
+struct Threads {
   static constexpr std::size_t kCount = kThreadParameterCount;
   using Values = std::array<double, kCount>;
   template <class S>
-  static ThreadModel<S> model(const std::array<S, kCount>& p) {
-    return ThreadModel<S>(thread_parameters(p, false));
+  static BasicThreadParameters<S> parameters(const std::array<S, kCount>& p) {
+    BasicThreadParameters<S> parameters = thread_parameters(p, limited);
+    if (with_options) {
+      parameters.lambda0_rgb = {S(1.0), S(0.7), S(0.2)};
+      parameters.transmittance_powers = {1.5, 2};
+    }
+    return parameters;
   }
-  static Values values(double along, double across) {
-    return {0.1,  0.3,  0.8, along, along / 2 + 0.01, along, across, across, across / 2 + 0.01, -0.44, 0.16, 0.58,
-            0.66, 15.6, 2.0, -0.03};
-  }
-};
-
-struct LimitedThreads : UnlimitedThreads {
   template <class S>
   static ThreadModel<S> model(const std::array<S, kCount>& p) {
-    return ThreadModel<S>(thread_parameters(p, true));
+    return ThreadModel<S>(parameters(p));
   }
   static Values values(double along, double across) {
-    Values values = UnlimitedThreads::values(along, across);
-    values[11] = 0.9, values[12] = 0.9;  // the limit is active everywhere
-    return values;
+    const double r0c = limited ? 0.9 : 0.58, r1a = limited ? 0.9 : 0.66;  // the limit is active everywhere
+    return {0.1, 0.3,  0.8, along, along / 2 + 0.01, along, across, across, across / 2 + 0.01, -0.44, 0.16, r0c,
+            r1a, 15.6, 2.0, -0.03};
   }
 };
+using UnlimitedThreads = Threads<false, false>;
+using LimitedThreads = Threads<true, false>;
+using MetallicThreads = Threads<false, true>;
 
 struct Yarns {
   static constexpr std::size_t kCount = 7;
@@ -110,7 +112,7 @@ void everywhere(const Judge& judge) {
 
 template <class Family>
 class ScatteringDerivativesTest : public testing::Test {};
-using Families = testing::Types<Fibers, UnlimitedThreads, LimitedThreads, Yarns>;
+using Families = testing::Types<Fibers, UnlimitedThreads, LimitedThreads, MetallicThreads, Yarns>;
 TYPED_TEST_SUITE(ScatteringDerivativesTest, Families);
 
 TYPED_TEST(ScatteringDerivativesTest, DualNumbersAgreeWithFiniteDifferences) {
@@ -173,14 +175,23 @@ LobeAngles<double> angles_at(const Values& values, const Place& at) {
   return UnlimitedThreads::model(values).lobes_at(at.h, at.wo).angles(at.wi);
 }
 
-TEST(ThreadGradientTest, ClosedFormDerivativesAreThoseOfDualNumbers) {
-  everywhere<UnlimitedThreads>([](const Values& values, const Place& at) {
-    const auto expected = outcome<UnlimitedThreads>(jets(values), at);
-    const ThreadGradientModel<double> model(thread_parameters(values, false));
-    const auto found = model.evaluate(point_of<double>(at), angles_at(values, at));
+template <class Family>
+class ThreadGradientTest : public testing::Test {};
+using GradientFamilies = testing::Types<UnlimitedThreads, MetallicThreads>;
+TYPED_TEST_SUITE(ThreadGradientTest, GradientFamilies);
+
+TYPED_TEST(ThreadGradientTest, ClosedFormDerivativesAreThoseOfDualNumbers) {
+  everywhere<TypeParam>([](const Values& values, const Place& at) {
+    const auto expected = outcome<TypeParam>(jets(values), at);
+    const ThreadGradientModel<double> model(TypeParam::parameters(values));
+    const auto point = point_of<double>(at);
+    const auto angles = angles_at(values, at);
+    const auto found = model.evaluate(point, angles);
+    const auto value_alone = model.f_cos(point, angles);
     for (int c = 0; c < 3; ++c) {
       const auto& jet = expected[c];
       EXPECT_NEAR(found.f_cos[c], jet.a, 1e-12 * jet.a + 1e-300);
+      EXPECT_NEAR(value_alone[c], jet.a, 1e-12 * jet.a + 1e-300);
       const Values slopes = slopes_of(found, c);
       for (std::size_t k = 0; k < slopes.size(); ++k) {
         const double slope = jet.v[static_cast<int>(k)];
@@ -190,9 +201,9 @@ TEST(ThreadGradientTest, ClosedFormDerivativesAreThoseOfDualNumbers) {
   });
 }
 
-TEST(ThreadGradientTest, ClosedFormDerivativesInFloatLoseNoMoreThanFloats) {
-  everywhere<UnlimitedThreads>([](const Values& values, const Place& at) {
-    const ThreadParameters parameters = thread_parameters(values, false);
+TYPED_TEST(ThreadGradientTest, ClosedFormDerivativesInFloatLoseNoMoreThanFloats) {
+  everywhere<TypeParam>([](const Values& values, const Place& at) {
+    const ThreadParameters parameters = TypeParam::parameters(values);
     const LobeAngles<double> angles = angles_at(values, at);
     const LobeAngles<float> angles_in_float{angles.distance2.cast<float>(), angles.cos_cos.cast<float>(),
                                             angles.from_center.cast<float>()};

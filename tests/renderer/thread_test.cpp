@@ -58,6 +58,35 @@ TEST(ThreadTest, AbsorptionActsOnTransmittedLobesOnceAndOnReflectionNot) {
   }
 }
 
+TEST(ThreadTest, TheTintColoursTheReflectionAlone) {
+  ThreadParameters tinted = thread_parameters(kValues, true);
+  tinted.lambda0_rgb = {1, 0.7, 0.2};
+  const ThreadModel<double> white(thread_parameters(kValues, true)), gold(tinted);
+  const auto a = white.lobes_at(0.3, viewing_direction(0.4, 0.3)),
+             b = gold.lobes_at(0.3, viewing_direction(0.4, 0.3));
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_DOUBLE_EQ(b.attenuation(0, c), a.attenuation(0, c) * tinted.lambda0_rgb[c]);
+    for (int p : {1, 2}) EXPECT_EQ(b.attenuation(p, c), a.attenuation(p, c));
+  }
+}
+
+TEST(ThreadTest, TransmittancePowersLengthenTheWayOfEachInnerLobe) {
+  ThreadParameters longer = thread_parameters(kValues, false);
+  longer.transmittance_powers = {1.5, 2};
+  Values clear = kValues;
+  clear[0] = clear[1] = clear[2] = 0;
+  const auto at = [](const ThreadModel<double>& model) { return model.lobes_at(0.3, viewing_direction(0.4, 0.3)); };
+  const ThreadModel<double> white_model(thread_parameters(clear, false)),
+      dyed_model(thread_parameters(kValues, false)), longer_model(longer);
+  const auto white = at(white_model), dyed = at(dyed_model), found = at(longer_model);
+  for (int c = 0; c < 3; ++c) {
+    const double t = dyed.attenuation(1, c) / white.attenuation(1, c);
+    EXPECT_EQ(found.attenuation(0, c), dyed.attenuation(0, c));
+    EXPECT_NEAR(found.attenuation(1, c), white.attenuation(1, c) * std::pow(t, 1.5), 1e-14);
+    EXPECT_NEAR(found.attenuation(2, c), white.attenuation(2, c) * t * t, 1e-14);
+  }
+}
+
 TEST(ThreadTest, EveryLobeIsSampledEvenWithoutEnergy) {
   Values values = kValues;
   values[9] = values[10] = values[11] = 0;

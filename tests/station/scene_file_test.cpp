@@ -47,7 +47,25 @@ TEST(SceneFile, ReadyThreadsAreReadAndWrittenAgainAsTheyAre) {
     EXPECT_EQ(to_json(parse_thread(to_json(thread), "again")), to_json(thread));
     ++read;
   }
-  EXPECT_EQ(read, 4);
+  EXPECT_EQ(read, 5);
+}
+
+TEST(SceneFile, OptionsOfAThreadAreReadAndWrittenOnlyWhereTheyDiffer) {
+  const ThreadFile metal = read_thread(kThreads / "metal_gold.json");
+  EXPECT_EQ(metal.parameters.lambda0_rgb, Eigen::Vector3d(1, 0.76, 0.34));
+  EXPECT_EQ(metal.parameters.transmittance_powers, (std::array<double, 2>{1, 2}));
+  EXPECT_EQ(parse_thread(to_json(metal), "again").parameters.lambda0_rgb, metal.parameters.lambda0_rgb);
+  EXPECT_EQ(parse_thread(to_json(metal), "again").parameters.transmittance_powers,
+            metal.parameters.transmittance_powers);
+  const json silk = to_json(read_thread(kThreads / "silk_gold.json")).at("parameters");
+  EXPECT_FALSE(silk.contains("lambda0_rgb") || silk.contains("transmittance_powers"));
+
+  json document = to_json(metal);
+  document["parameters"]["lambda0_rgb"] = {1.2, 1, 1};
+  EXPECT_NE(refusal([&] { parse_thread(document, "t"); }).find("parameters.lambda0_rgb"), std::string::npos);
+  document = to_json(metal);
+  document["parameters"]["transmittance_powers"] = {1, -1};
+  EXPECT_NE(refusal([&] { parse_thread(document, "t"); }).find("parameters.transmittance_powers"), std::string::npos);
 }
 
 TEST(SceneFile, WhatItSaysIsWhereItBelongs) {

@@ -1,0 +1,17 @@
+// Fiber files (kind "fiber"): the scattering parameters of a single fiber; keys in fixtures/fibers/README.md.
+//
+// Errors: those of reader.h.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "renderer/scattering/fiber.h"
+
+namespace station {
+
+renderer::FiberParameters parse_fiber(const nlohmann::json& document, const std::string& source);
+renderer::FiberParameters read_fiber(const std::filesystem::path& file);
+
+}  // namespace station

@@ -1,0 +1,18 @@
+// Yarn files (kind "yarn"): the parameters of the yarn baseline (renderer/scattering/yarn.h); keys in
+// fixtures/yarns/README.md.
+//
+// Errors: those of reader.h; fibers that fill more than the yarn.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "renderer/scattering/yarn.h"
+
+namespace station {
+
+renderer::YarnParameters parse_yarn(const nlohmann::json& document, const std::string& source);
+renderer::YarnParameters read_yarn(const std::filesystem::path& file);
+
+}  // namespace station
