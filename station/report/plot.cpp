@@ -77,8 +77,8 @@ void add_panel(std::ostream& script, const PlotPanel& panel, std::size_t number)
   for (const PlotCircle& c : panel.circles) script << c.x << ' ' << c.y << ' ' << c.radius << ' ' << c.filled << '\n';
   script << "EOD\nplot ";
   if (drawing)
-    script << "$circles" << number << " using 1:2:($4 ? $3 : 1/0) with circles fs solid 0.3 lc 1 notitle, $circles"
-           << number << " using 1:2:($4 ? 1/0 : $3) with circles fs empty lc rgb 'black' notitle";
+    script << "$circles" << number << " using 1:2:($4 > 0 ? $3 : NaN) with circles fs solid 0.3 lc 1 notitle, $circles"
+           << number << " using 1:2:($4 > 0 ? NaN : $3) with circles fs empty lc rgb 'black' notitle";
   for (std::size_t i = 0; i < panel.lines.size(); ++i) {
     const PlotLine& line = panel.lines[i];
     script << (i || drawing ? ", " : "") << "$line" << number << '_' << i << " with ";

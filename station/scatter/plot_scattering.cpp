@@ -70,7 +70,6 @@ PlotSheet figure_3(const ScatterPlotRequest& request) {
         title,
         simulate_with_progress(with_ratio(request.options, ratio), "simulate " + title, request.progress).density));
   }
-  panel.y_range = std::pair{0.0, 1.2};  // the single circle's caustics go beyond
   return {
       .panels = {section, panel}, .columns = 2, .panel_width_px = 560, .panel_height_px = 480, .key_outside = false};
 }
@@ -80,7 +79,6 @@ PlotSheet figure_4(const ScatterPlotRequest& request, const DistributionFits& fi
   for (int p = 0; p < 3; ++p)
     lobes.lines.push_back(
         azimuth_line(kLobeNames[p], renderer::smooth_fiber_lobe(p, 0, request.options.eta, 0, request.options.bins)));
-  lobes.y_range = std::pair{0.0, 1.2};
   PlotPanel scales{.title = "scale factors: points each angle, lines eq. 5 jointly",
                    .x_label = "cos theta",
                    .y_label = "lambda",
@@ -93,9 +91,11 @@ PlotSheet figure_4(const ScatterPlotRequest& request, const DistributionFits& fi
     PlotLine points{.style = PlotStyle::points, .color = color}, curve{.title = name, .color = color};
     for (std::size_t i = 0; i < fits.separate.size(); ++i)
       points.points.emplace_back(std::cos(fits.distributions[i].data.theta_rad), fits.separate[i].thread.lambda[p]);
+    renderer::ThreadParameters joint = fits.by_absorption.front().thread.parameters;
+    joint.limit_energy = false;
     for (int k = 0; k <= kSteps; ++k) {
       const double c = static_cast<double>(k) / kSteps;
-      const auto lambda = renderer::thread_lobe_energies<double>(fits.by_absorption.front().thread.parameters, c);
+      const auto lambda = renderer::thread_lobe_energies<double>(joint, c);
       curve.points.emplace_back(c, lambda[p]);
     }
     scales.lines.push_back(points);
