@@ -28,7 +28,7 @@ struct MultiFiberOptions {
   double sigma_a = 0;    // per fiber radius
   double theta_rad = 0;  // inclination, |theta| < pi/2
   int rays = 4000;       // per configuration, spread evenly over the thread's width with a jitter each
-  int configurations = 250;
+  int configurations = 1000;
   int bins = 180;
   std::uint64_t seed = 1;
   int threads = 0;  // 0 = all cores; the result does not depend on it

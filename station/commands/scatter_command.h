@@ -8,6 +8,7 @@ namespace station {
 void add_scatter_eval_command(CLI::App& scatter);
 void add_scatter_fit_command(CLI::App& scatter);
 void add_scatter_plot_command(CLI::App& scatter);
+void add_scatter_prior_command(CLI::App& scatter);
 void add_scatter_simulate_command(CLI::App& scatter);
 
 }  // namespace station

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -66,19 +67,28 @@ void add_panel(std::ostream& script, const PlotPanel& panel, std::size_t number)
          << quoted(panel.y_label) << '\n'
          << (drawing ? "unset border\nunset tics\nunset grid\nset size ratio -1\n"
                      : "set border\nset tics\nset grid lc rgb '#dddddd'\nset size noratio\n");
-  set_range(script, 'x', panel.x_range, "[*:*]");
-  set_range(script, 'y', panel.y_range, drawing ? "[*:*]" : "[0:*]");
+  double reach = 0;  // of the circles
+  for (const PlotCircle& c : panel.circles)
+    reach = std::max(reach, c.radius + std::max(std::abs(c.x), std::abs(c.y)));
+  const std::optional all_circles = std::pair{-1.02 * reach, 1.02 * reach};
+  set_range(script, 'x', drawing ? all_circles : panel.x_range, "[*:*]");
+  set_range(script, 'y', drawing ? all_circles : panel.y_range, "[0:*]");
   for (std::size_t i = 0; i < panel.lines.size(); ++i) {
     script << "$line" << number << '_' << i << " << EOD\n";
     for (const auto& [x, y] : panel.lines[i].points) script << x << ' ' << y << '\n';
     script << "EOD\n";
   }
-  script << "$circles" << number << " << EOD\n";
-  for (const PlotCircle& c : panel.circles) script << c.x << ' ' << c.y << ' ' << c.radius << ' ' << c.filled << '\n';
-  script << "EOD\nplot ";
+  const char* kinds[] = {"discs", "rings"};
+  for (const char* kind : kinds) {
+    script << '$' << kind << number << " << EOD\n";
+    for (const PlotCircle& c : panel.circles)
+      if (c.filled == (kind == kinds[0])) script << c.x << ' ' << c.y << ' ' << c.radius << '\n';
+    script << "EOD\n";
+  }
+  script << "plot ";
   if (drawing)
-    script << "$circles" << number << " using 1:2:($4 > 0 ? $3 : NaN) with circles fs solid 0.3 lc 1 notitle, $circles"
-           << number << " using 1:2:($4 > 0 ? NaN : $3) with circles fs empty lc rgb 'black' notitle";
+    script << "$discs" << number << " with circles fs solid 0.3 lc 1 notitle, $rings" << number
+           << " with circles fs empty lc rgb 'black' notitle";
   for (std::size_t i = 0; i < panel.lines.size(); ++i) {
     const PlotLine& line = panel.lines[i];
     script << (i || drawing ? ", " : "") << "$line" << number << '_' << i << " with ";
