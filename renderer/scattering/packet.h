@@ -161,6 +161,15 @@ class Packet {
   Floats v_;
 };
 
+// What the processors that the build is for calculate in one instruction.
+#if defined(__AVX512F__)
+inline constexpr int kPacketWidth = 16;
+#elif defined(__AVX2__)
+inline constexpr int kPacketWidth = 8;
+#else
+inline constexpr int kPacketWidth = 4;
+#endif
+
 }  // namespace renderer
 
 template <int n>
