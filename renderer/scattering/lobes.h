@@ -15,6 +15,7 @@
 #include <cmath>
 
 #include "renderer/scattering/bessel.h"
+#include "renderer/scattering/select.h"
 
 namespace renderer {
 
@@ -144,8 +145,8 @@ struct LobeAngles {
 // squared distance of the two directions across the specular cone, which stays exact in float for small v.
 template <class S>
 Lanes<S> longitudinal_density(const LobeWidths<S>& widths, const LobeAngles<S>& at) {
-  const Lanes<S> a = at.cos_cos * widths.inv_v;
-  return widths.m_norm * (at.distance2 * widths.inv_v * S(-0.5)).exp() * bessel_i0e(a);
+  const auto bessel = bessel_i0e(Lanes<S>(at.cos_cos * widths.inv_v));
+  return widths.m_norm * bessel.factor * (at.distance2 * widths.inv_v * S(-0.5) - bessel.exponent).exp();
 }
 
 // Logistic trimmed to [-pi, pi] around each centre.
@@ -177,11 +178,8 @@ struct CurveLobes {
   void set_azimuth(const Vec3<G>& wo) {
     using std::sqrt;
     const G radial = sqrt(wo.y() * wo.y() + wo.z() * wo.z());
-    if (radial > 0) {
-      azimuth_o = {wo.y() / radial, wo.z() / radial};
-    } else {
-      azimuth_o = {G(0), G(1)};
-    }
+    const auto across = radial > G(0);  // else along the curve, where every azimuth is right
+    azimuth_o = {select(across, G(wo.y() / radial), G(0)), select(across, G(wo.z() / radial), G(1))};
   }
 
   ScatteringValue<S> evaluate(const Vec3<G>& wi) const {

@@ -72,13 +72,20 @@ BasicThreadParameters<T> in_scalar(const BasicThreadParameters<S>& p) {
           p.transmittance_powers};
 }
 
-// T^first and T^second of TT and TRT along a chord, RGB; one exponential where the powers are equal.
+// T^first and T^second, what is left of TT and TRT after a chord, RGB.
 template <class S>
-std::array<Rgb<S>, 2> thread_transmittances(const BasicThreadParameters<S>& p, const S& chord_length) {
-  const auto along = [&](double power) { return Rgb<S>((p.sigma_a.array() * (S(-power) * chord_length)).exp()); };
-  const Rgb<S> first = along(p.transmittance_powers[0]);
-  return {first, p.transmittance_powers[1] == p.transmittance_powers[0] ? first : along(p.transmittance_powers[1])};
-}
+struct ThreadTransmittance {
+  Rgb<S> tt, trt;
+
+  ThreadTransmittance(const BasicThreadParameters<S>& p, const S& chord_length) {
+    const auto [first, second] = p.transmittance_powers;
+    tt = (p.sigma_a.array() * (-chord_length * S(first))).exp();
+    if (first == second)
+      trt = tt;
+    else
+      trt = (p.sigma_a.array() * (-chord_length * S(second))).exp();
+  }
+};
 
 // lambda_0, lambda_1, lambda_2 at c = |cos theta_o|, limited when the parameters say so.
 template <class S>
@@ -86,9 +93,9 @@ std::array<S, 3> thread_lobe_energies(const BasicThreadParameters<S>& p, const G
   const S cosine(c);
   std::array<S, 3> lambda{(p.r0a * cosine + p.r0b) * cosine + p.r0c, p.r1a * cosine,
                           S(1.0) / (p.r2a * cosine + p.r2b) + p.r2c};
-  const S sum = lambda[0] + lambda[1] + lambda[2];
-  if (p.limit_energy && sum > S(kMostEnergy)) {
-    const S scale = S(kMostEnergy) / sum;
+  if (p.limit_energy) {
+    const S sum = lambda[0] + lambda[1] + lambda[2];
+    const S scale = select(sum > S(kMostEnergy), S(S(kMostEnergy) / sum), S(1.0));
     for (S& energy : lambda) energy *= scale;
   }
   return lambda;
@@ -105,6 +112,10 @@ class ThreadModel {
     }
     widths_.set(3, S(1.0), S(1.0));  // has no energy and is never sampled
   }
+  // The same model in another scalar.
+  template <class T>
+  explicit ThreadModel(const ThreadModel<T>& other)
+      : parameters_(in_scalar<S>(other.parameters_)), widths_(other.widths_.template cast<S>()) {}
 
   // The lobes seen from unit direction wo (local frame) at offset h = sin(gamma_o) in [-1, 1].
   CurveLobes<S> lobes_at(const Geometry<S>& h, const Vec3<Geometry<S>>& wo) const {
@@ -120,23 +131,27 @@ class ThreadModel {
     lobes.center[3] = S(0.0);
 
     const std::array<S, 3> lambda = thread_lobe_energies<S>(parameters_, cos_o);
-    const std::array<Rgb<S>, 2> transmittance = thread_transmittances(parameters_, chord.length);
+    const ThreadTransmittance<S> transmittance(parameters_, chord.length);
     lobes.attenuation.row(0) = (parameters_.lambda0_rgb.array() * lambda[0]).transpose();
-    lobes.attenuation.row(1) = (transmittance[0] * lambda[1]).transpose();
-    lobes.attenuation.row(2) = (transmittance[1] * lambda[2]).transpose();
+    lobes.attenuation.row(1) = (transmittance.tt * lambda[1]).transpose();
+    lobes.attenuation.row(2) = (transmittance.trt * lambda[2]).transpose();
     lobes.attenuation.row(3).setConstant(S(0.0));
     set_probabilities(lobes);
     return lobes;
   }
 
  private:
+  template <class>
+  friend class ThreadModel;
+
   // In proportion to the lobes' mean energies, mixed with the floor.
   static void set_probabilities(CurveLobes<S>& lobes) {
     const Lanes<S> energy = lobes.attenuation.rowwise().sum().max(S(0.0));
     const S total = energy.sum();
     const S share = S(1.0 - 3 * kLobeFloor);
+    const auto bright = total > S(0.0);
     for (int p = 0; p < 3; ++p) {
-      lobes.probability[p] = S(kLobeFloor) + share * (total > S(0.0) ? S(energy[p] / total) : S(1.0 / 3));
+      lobes.probability[p] = S(kLobeFloor) + share * select(bright, S(energy[p] / total), S(1.0 / 3));
     }
     lobes.probability[3] = S(0.0);
   }

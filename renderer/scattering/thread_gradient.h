@@ -68,12 +68,13 @@ class ThreadGradientModel {
     const Lanes<S> dalpha = density * dlog_m(at) * dv_dalpha_, dbeta = density * dlog_n(at) * ds_dbeta_;
     const S c = point.cosine;
     const std::array<S, 3> lambda = thread_lobe_energies<S>(parameters_, c);
-    const std::array<Rgb<S>, 2> transmittance = thread_transmittances(parameters_, point.chord_length);
+    const ThreadTransmittance<S> transmittance(parameters_, point.chord_length);
     const S inverse = S(1.0) / (parameters_.r2a * c + parameters_.r2b), inverse2 = inverse * inverse;
 
     ThreadGradient<S> g;
     for (int channel = 0; channel < 3; ++channel) {
-      const S tint = parameters_.lambda0_rgb[channel], t1 = transmittance[0][channel], t2 = transmittance[1][channel];
+      const S tint = parameters_.lambda0_rgb[channel], t1 = transmittance.tt[channel],
+              t2 = transmittance.trt[channel];
       const S a0 = lambda[0] * tint, a1 = lambda[1] * t1, a2 = lambda[2] * t2;
       const S through = density[1] * a1, inside = density[2] * a2, reflected = density[0] * tint;
       g.f_cos[channel] = density[0] * a0 + through + inside;
@@ -101,15 +102,15 @@ class ThreadGradientModel {
   Rgb<S> f_cos(const ThreadPoint<S>& point, const LobeAngles<S>& at) const {
     const Lanes<S> density = longitudinal_density(widths_, at) * azimuthal_density(widths_, at);
     const std::array<S, 3> lambda = thread_lobe_energies<S>(parameters_, point.cosine);
-    const std::array<Rgb<S>, 2> transmittance = thread_transmittances(parameters_, point.chord_length);
-    return parameters_.lambda0_rgb.array() * (density[0] * lambda[0]) + transmittance[0] * (density[1] * lambda[1]) +
-           transmittance[1] * (density[2] * lambda[2]);
+    const ThreadTransmittance<S> transmittance(parameters_, point.chord_length);
+    return parameters_.lambda0_rgb.array() * (density[0] * lambda[0]) + transmittance.tt * (density[1] * lambda[1]) +
+           transmittance.trt * (density[2] * lambda[2]);
   }
 
  private:
   Lanes<S> dlog_m(const LobeAngles<S>& at) const {
     const Lanes<S> a = at.cos_cos * widths_.inv_v;
-    return widths_.inv_v * (S(0.5) * at.distance2 * widths_.inv_v - a * log_bessel_i0e_slope(a)) + m_constant_;
+    return widths_.inv_v * (S(0.5) * at.distance2 * widths_.inv_v - bessel_i0e_log_slope(a)) + m_constant_;
   }
   Lanes<S> dlog_n(const LobeAngles<S>& at) const {
     const Lanes<S> x = at.from_center * widths_.inv_s;

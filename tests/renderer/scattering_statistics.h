@@ -45,7 +45,8 @@ bool finite_everywhere(const Function& lobes_at) {
   bool finite = true;
   for (const double h : {-1.0, 0.0, 1.0}) {
     for (const double theta : {-kPi / 2, -1.5707, 0.0, 1.57, kPi / 2}) {
-      const Vec3<S> wo = viewing_direction(theta, h).template cast<S>();
+      Vec3<S> wo = viewing_direction(theta, h).template cast<S>();
+      if (theta == kPi / 2) wo = Vec3<S>::UnitX();  // without the rounding of the cosine
       const CurveLobes<S> lobes = lobes_at(static_cast<S>(h), wo);
       finite &= std::abs(static_cast<double>(lobes.probability.sum()) - 1) < 1e-5;
       for (const Vec3<S>& wi : {Vec3<S>(1, 0, 0), Vec3<S>(-1, 0, 0), Vec3<S>(0, 0, 1), Vec3<S>(-wo), wo}) {
