@@ -74,7 +74,7 @@ TEST_F(FittedThreads, WrongInputsOfTheFitGetOneLine) {
   const std::string session = path("copied");
   fs::copy(path("session"), session, fs::copy_options::recursive);
   fs::remove_all(session + "/result");
-  for (const std::string out : {path("nowhere/thread.json"), path("session")})
+  for (const std::string& out : {path("nowhere/thread.json"), path("session")})
     expect_one_line(run_threadstation({"invert", session, "--quiet", "--out", out}), out);
   EXPECT_FALSE(fs::exists(session + "/result")) << "the fit begins only when its thread can be written";
   fs::remove_all(session + "/linear");
