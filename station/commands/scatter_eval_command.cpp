@@ -1,7 +1,7 @@
 #include <iostream>
 
 #include "station/commands/scatter_command.h"
-#include "station/scattering_queries.h"
+#include "station/scatter/queries.h"
 
 namespace station {
 

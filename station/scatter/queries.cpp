@@ -1,4 +1,4 @@
-#include "station/scattering_queries.h"
+#include "station/scatter/queries.h"
 
 #include <algorithm>
 #include <cmath>
