@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "inversion/block_estimate.h"
 #include "renderer/path_tracer.h"
 #include "synthetic_spool.h"
 
@@ -37,16 +39,16 @@ ThreadParameters glowing_thread() {
   return p;
 }
 
-struct BlockReference {
+struct BlockMean {
   Array3d mean = Array3d::Zero(), variance = Array3d::Zero();  // of the mean; per unit of intensity
 };
 
 // Block means by the path tracer, and their variance by independent renderings.
-std::vector<BlockReference> path_traced(const WrappedSpool& spool, const View& view, const std::vector<Block>& blocks,
-                                        const ThreadParameters& thread) {
+std::vector<BlockMean> path_traced(const WrappedSpool& spool, const View& view, const std::vector<Block>& blocks,
+                                   const ThreadParameters& thread) {
   constexpr int kRenderings = 8, kSamples = 64;
   const renderer::PathTracer tracer(view_scene(spool, thread, view.light));
-  std::vector<BlockReference> found(blocks.size());
+  std::vector<BlockMean> found(blocks.size());
   std::vector<Array3d> squares(blocks.size(), Array3d::Zero());
   for (int i = 0; i < kRenderings; ++i) {
     renderer::RenderOptions options{.samples_per_pixel = kSamples, .seed = 100 + static_cast<std::uint64_t>(i)};
@@ -63,14 +65,30 @@ std::vector<BlockReference> path_traced(const WrappedSpool& spool, const View& v
   return found;
 }
 
+// Block estimates, and their variance by what each path gives alone.
+std::vector<BlockMean> shaded(const LightPaths& paths, const ThreadParameters& thread) {
+  const BlockModel model = block_model(thread);
+  LightPaths alone = paths;  // every path a block of its own
+  alone.block_paths.resize(paths.path_ends.size() + 1);
+  std::iota(alone.block_paths.begin(), alone.block_paths.end(), 0U);
+  std::vector<BlockMean> found(paths.block_paths.size() - 1);
+  for (std::size_t b = 0; b < found.size(); ++b) {
+    found[b].mean = shade_block(paths, b, model, false).value;
+    const double count = paths.block_paths[b + 1] - paths.block_paths[b];
+    for (std::size_t path = paths.block_paths[b]; path < paths.block_paths[b + 1]; ++path)
+      found[b].variance +=
+          (shade_block(alone, path, model, false).value - found[b].mean).square() / (count * (count - 1));
+  }
+  return found;
+}
+
 // Differences between the estimates and the path tracer's, in standard errors: each block's and all blocks'.
 void expect_agreement(const LightPaths& paths, const ThreadParameters& shaded_with,
-                      const std::vector<BlockReference>& expected) {
-  const BlockModel model = block_model(shaded_with);
+                      const std::vector<BlockMean>& expected) {
+  const std::vector<BlockMean> found = shaded(paths, shaded_with);
   Array3d difference = Array3d::Zero(), variance = Array3d::Zero(), whole = Array3d::Zero();
   for (std::size_t b = 0; b < expected.size(); ++b) {
-    const BlockEstimate found = shade_block(paths, b, model, false);
-    const Array3d error = found.value - expected[b].mean, noise = found.variance + expected[b].variance;
+    const Array3d error = found[b].mean - expected[b].mean, noise = found[b].variance + expected[b].variance;
     EXPECT_LT((error / noise.sqrt()).abs().maxCoeff(), 5) << "block " << b;  // one false alarm in ten thousand
     difference += error;
     variance += noise;
@@ -95,13 +113,13 @@ class LightPathsTest : public testing::TestWithParam<Standpoint> {
 };
 
 TEST_P(LightPathsTest, ShadedWithAnyParametersTheyGiveThePathTracersPicture) {
-  const std::vector<BlockReference> expected = path_traced(spool_, view_, blocks_, known_thread());
+  const std::vector<BlockMean> expected = path_traced(spool_, view_, blocks_, known_thread());
   for (const ThreadParameters& traced : {known_thread(), other_thread(), glowing_thread()})
     expect_agreement(traced_with(traced), known_thread(), expected);
 }
 
 TEST_P(LightPathsTest, LightThatScattersManyTimesIsNotLostWherePathsEndByChance) {
-  const std::vector<BlockReference> expected = path_traced(spool_, view_, blocks_, white_thread());
+  const std::vector<BlockMean> expected = path_traced(spool_, view_, blocks_, white_thread());
   // Traced with a darker thread, paths end early and the few that go on count for many.
   for (const ThreadParameters& traced : {white_thread(), known_thread()})
     expect_agreement(traced_with(traced, 2 * kPaths), white_thread(), expected);
@@ -116,14 +134,13 @@ TEST_P(LightPathsTest, ABlockMeansAllItsPixels) {
 }
 
 TEST_P(LightPathsTest, TheVarianceIsThatOfIndependentPaths) {
-  const BlockModel model = block_model(known_thread());
   constexpr int kRepeats = 64;
   const std::size_t block = blocks_.size() / 2;
   Array3d sum = Array3d::Zero(), squares = Array3d::Zero(), predicted = Array3d::Zero();
   for (std::uint64_t seed = 0; seed < kRepeats; ++seed) {
     const LightPaths paths = trace_light_paths(rays_, view_, {blocks_[block]}, known_thread(), 256, seed);
-    const BlockEstimate found = shade_block(paths, 0, model, false);
-    sum += found.value, squares += found.value.square(), predicted += found.variance / kRepeats;
+    const BlockMean found = shaded(paths, known_thread()).front();
+    sum += found.mean, squares += found.mean.square(), predicted += found.variance / kRepeats;
   }
   const Array3d observed = (squares - sum.square() / kRepeats) / (kRepeats - 1);
   // 64 repeats know a variance to 18 %; stratified samples at the first vertices make it smaller than predicted
