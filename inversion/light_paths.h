@@ -1,4 +1,5 @@
-// Light paths through one view of the wrapped spool, traced once and then shaded with any thread parameters.
+// Light paths through one view of the wrapped spool, traced once and then shaded with any thread parameters
+// (block_estimate.h).
 //
 // Everything in a view but the thread's parameters is fixed: cameras, light, threads. So is what a path meets. A path
 // traced with some parameters (which decide how directions were drawn) therefore estimates the picture for all others

@@ -8,7 +8,8 @@
 // sum_p A_p over the sphere of directions i. Multiply radiance by f_cos / pdf, with no further cosine.
 //
 // Sources: d'Eon et al. 2011 (M_p), Chiang et al. 2015 (N_p, roughness maps). Everything is templated on the scalar
-// S: float for rendering, double, or dual numbers for derivatives with respect to parameters.
+// S: float for rendering, packets of floats for many places at once (packet.h), double, or dual numbers for derivatives
+// with respect to parameters.
 #pragma once
 
 #include <Eigen/Core>
