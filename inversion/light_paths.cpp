@@ -11,20 +11,13 @@
 namespace inversion {
 namespace {
 
-using Eigen::Array3f;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 using renderer::CurveLobes;
 using renderer::ThreadModel;
-using Slopes = Eigen::Array<float, renderer::kThreadSlopeLanes, 3>;
 
 PathDirection stored(const renderer::LobeAngles<float>& at) {
   return {at.distance2[0], at.cos_cos[0], {at.from_center[0], at.from_center[1], at.from_center[2]}};
-}
-
-renderer::LobeAngles<float> loaded(const PathDirection& direction) {
-  return {Eigen::Array4f::Constant(direction.distance2), Eigen::Array4f::Constant(direction.cos_cos),
-          Eigen::Array4f(direction.from_center[0], direction.from_center[1], direction.from_center[2], 0.0F)};
 }
 
 // Traces the paths of one view; the lamp has unit intensity.
@@ -125,44 +118,10 @@ BlockPaths trace_block(const PathRecorder& recorder, const View& view, const Blo
   return traced;
 }
 
-struct PathSum {
-  Array3f throughput = Array3f::Ones(), value = Array3f::Zero();
-  Slopes throughput_slopes = Slopes::Zero(), slopes = Slopes::Zero();
-
-  void add_plain(const PathEvent& event, const BlockModel& model) {
-    if (event.light_weight > 0)
-      value += throughput * model.f_cos(event.point, loaded(event.light)) * event.light_weight;
-    if (event.inverse_next_pdf > 0)
-      throughput *= model.f_cos(event.point, loaded(event.next)) * event.inverse_next_pdf;
-  }
-  void add_with_slopes(const PathEvent& event, const BlockModel& model) {
-    if (event.light_weight > 0) {
-      const auto f = model.evaluate(event.point, loaded(event.light));
-      for (int c = 0; c < 3; ++c) {
-        value[c] += throughput[c] * f.f_cos[c] * event.light_weight;
-        slopes.col(c) += throughput_slopes.col(c) * (f.f_cos[c] * event.light_weight) +
-                         f.slopes.col(c) * (throughput[c] * event.light_weight);
-      }
-    }
-    if (event.inverse_next_pdf > 0) {
-      const auto f = model.evaluate(event.point, loaded(event.next));
-      for (int c = 0; c < 3; ++c) {
-        throughput_slopes.col(c) = throughput_slopes.col(c) * (f.f_cos[c] * event.inverse_next_pdf) +
-                                   f.slopes.col(c) * (throughput[c] * event.inverse_next_pdf);
-        throughput[c] *= f.f_cos[c] * event.inverse_next_pdf;
-      }
-    }
-  }
-};
-
 }  // namespace
 
 renderer::RayScene spool_rays(const WrappedSpool& spool) {
   return renderer::RayScene(view_scene(spool, renderer::ThreadParameters{}, NearLight{}));
-}
-
-BlockModel block_model(const renderer::ThreadParameters& parameters) {
-  return BlockModel(renderer::in_scalar<float>(parameters));
 }
 
 LightPaths trace_light_paths(const renderer::RayScene& rays, const View& view, const std::vector<Block>& blocks,
@@ -181,27 +140,6 @@ LightPaths trace_light_paths(const renderer::RayScene& rays, const View& view, c
   }
   paths.block_paths.push_back(static_cast<std::uint32_t>(paths.path_ends.size()));
   return paths;
-}
-
-BlockEstimate shade_block(const LightPaths& paths, std::size_t block, const BlockModel& model, bool with_slopes) {
-  const std::uint32_t first = paths.block_paths[block], last = paths.block_paths[block + 1];
-  BlockEstimate estimate;
-  for (std::uint32_t path = first; path < last; ++path) {
-    PathSum sum;
-    const std::uint32_t begin = path == 0 ? 0 : paths.path_ends[path - 1];
-    for (std::uint32_t e = begin; e < paths.path_ends[path]; ++e) {
-      if (with_slopes)
-        sum.add_with_slopes(paths.events[e], model);
-      else
-        sum.add_plain(paths.events[e], model);
-    }
-    estimate.value += sum.value.cast<double>();
-    if (with_slopes) estimate.slopes += sum.slopes.cast<double>();
-  }
-  const double count = last - first;
-  estimate.value /= count;
-  estimate.slopes /= count;
-  return estimate;
 }
 
 }  // namespace inversion

@@ -1,4 +1,5 @@
-// Light paths through one view of the wrapped spool, traced once and then shaded with any thread parameters.
+// Light paths through one view of the wrapped spool, traced once and then shaded with any thread parameters
+// (block_estimate.h).
 //
 // Everything in a view but the thread's parameters is fixed: cameras, light, threads. So is what a path meets. A path
 // traced with some parameters (which decide how directions were drawn) therefore estimates the picture for all others
@@ -46,15 +47,5 @@ renderer::RayScene spool_rays(const WrappedSpool& spool);
 // `paths_per_block` paths from random positions in each block's pixels.
 LightPaths trace_light_paths(const renderer::RayScene& rays, const View& view, const std::vector<Block>& blocks,
                              const renderer::ThreadParameters& traced_with, int paths_per_block, std::uint64_t seed);
-
-// One block's estimate for the given parameters, per unit of intensity (1/mm^2), RGB.
-struct BlockEstimate {
-  Eigen::Array3d value = Eigen::Array3d::Zero();
-  Eigen::Array<double, renderer::kThreadSlopeLanes, 3> slopes =
-      Eigen::Array<double, renderer::kThreadSlopeLanes, 3>::Zero();  // d value / d parameter (thread_gradient.h)
-};
-using BlockModel = renderer::ThreadGradientModel<float>;
-BlockEstimate shade_block(const LightPaths& paths, std::size_t block, const BlockModel& model, bool with_slopes);
-BlockModel block_model(const renderer::ThreadParameters& parameters);
 
 }  // namespace inversion

@@ -6,6 +6,8 @@
 #include <functional>
 #include <stdexcept>
 
+#include "inversion/block_estimate.h"
+
 namespace inversion {
 namespace {
 
@@ -22,7 +24,7 @@ void check(const View& view) {
 }
 
 // Slopes of one channel (thread_gradient.h) in the order of the parameters.
-Row parameter_row(const Eigen::Array<double, renderer::kThreadSlopeLanes, 3>& slopes, int channel) {
+Row parameter_row(const renderer::ThreadSlopes<double>& slopes, int channel) {
   Row row = Row::Zero();
   row[channel] = slopes(renderer::kSlopeSigma, channel);
   for (int k = 1; k < renderer::kThreadSlopeCount; ++k) row[k + 2] = slopes(k, channel);

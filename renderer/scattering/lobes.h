@@ -8,21 +8,33 @@
 // sum_p A_p over the sphere of directions i. Multiply radiance by f_cos / pdf, with no further cosine.
 //
 // Sources: d'Eon et al. 2011 (M_p), Chiang et al. 2015 (N_p, roughness maps). Everything is templated on the scalar
-// S: float for rendering, double, or dual numbers for derivatives with respect to parameters.
+// S: float for rendering, packets of floats for many places at once (packet.h), double, or dual numbers for derivatives
+// with respect to parameters.
 #pragma once
 
 #include <Eigen/Core>
 #include <cmath>
 
 #include "renderer/scattering/bessel.h"
+#include "renderer/scattering/packet.h"
 #include "renderer/scattering/select.h"
 
 namespace renderer {
 
 inline constexpr double kPi = 3.14159265358979323846;
 
+// One value per lobe; models with fewer lobes leave the last ones at zero. Packets (packet.h) calculate every lane in
+// full and serve threads only, which have three lobes.
 template <class S>
-using Lanes = Eigen::Array<S, 4, 1>;  // one value per lobe; models with fewer lobes leave the last ones at zero
+inline constexpr int kLanes = 4;
+template <int n>
+inline constexpr int kLanes<Packet<n>> = 3;
+template <class S>
+using Lanes = Eigen::Array<S, kLanes<S>, 1>;
+template <class T, class S>
+Lanes<T> lanes_in(const Lanes<S>& lanes) {
+  return lanes.template head<kLanes<T>>().template cast<T>();
+}
 template <class S>
 using Rgb = Eigen::Array<S, 3, 1>;
 template <class S>
@@ -127,9 +139,8 @@ struct LobeWidths {
   }
   template <class T>
   LobeWidths<T> cast() const {
-    return {v.template cast<T>(),      s.template cast<T>(),      inv_v.template cast<T>(),
-            inv_s.template cast<T>(),  m_span.template cast<T>(), m_norm.template cast<T>(),
-            n_norm.template cast<T>(), n_span.template cast<T>()};
+    return {lanes_in<T, S>(v),      lanes_in<T, S>(s),      lanes_in<T, S>(inv_v),  lanes_in<T, S>(inv_s),
+            lanes_in<T, S>(m_span), lanes_in<T, S>(m_norm), lanes_in<T, S>(n_norm), lanes_in<T, S>(n_span)};
   }
 };
 
@@ -169,17 +180,24 @@ struct CurveLobes {
   using G = Geometry<S>;
 
   const LobeWidths<S>* widths = nullptr;
-  Eigen::Matrix<G, 2, 1> azimuth_o;   // unit (y, z) of direction o
-  Lanes<S> sin_theta_o, cos_theta_o;  // after the cuticle tilt
-  Lanes<S> center;                    // Phi_p, within [-pi, pi]
-  Eigen::Array<S, 4, 3> attenuation;  // A_p, RGB
-  Lanes<S> probability;               // of choosing lobe p when sampling; sums to 1
+  Eigen::Matrix<G, 2, 1> azimuth_o;           // unit (y, z) of direction o
+  Lanes<S> sin_theta_o, cos_theta_o;          // after the cuticle tilt
+  Lanes<S> center;                            // Phi_p, within [-pi, pi]
+  Eigen::Array<S, kLanes<S>, 3> attenuation;  // A_p, RGB
+  Lanes<S> probability;                       // of choosing lobe p when sampling; sums to 1
 
   void set_azimuth(const Vec3<G>& wo) {
     using std::sqrt;
     const G radial = sqrt(wo.y() * wo.y() + wo.z() * wo.z());
     const auto across = radial > G(0);  // else along the curve, where every azimuth is right
     azimuth_o = {select(across, G(wo.y() / radial), G(0)), select(across, G(wo.z() / radial), G(1))};
+  }
+
+  void empty_lanes_from(int first) {
+    for (int p = first; p < kLanes<S>; ++p) {
+      center[p] = probability[p] = S(0.0);
+      attenuation.row(p).setConstant(S(0.0));
+    }
   }
 
   ScatteringValue<S> evaluate(const Vec3<G>& wi) const {

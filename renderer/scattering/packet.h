@@ -11,8 +11,11 @@
 //
 // Sources: the polynomials are those of Cephes (Moshier), expf, asinf and atanf.
 //
-// Packets are copied by constructors of their own, so that they are always passed in memory: functions compiled for
-// different processors agree on how.
+// Packets have copy constructors of their own, so that they are passed in memory whatever registers the processor has.
+//
+// Wider packets than the build's processors have are slower than narrow ones; choosing the width at run time was tried
+// and given up: GCC 12 does not carry target attributes (target_clones, flatten) through the templates, and sources
+// compiled for newer processors leave their instantiations of shared templates to the whole program.
 #pragma once
 
 #include <Eigen/Core>

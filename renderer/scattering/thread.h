@@ -76,16 +76,14 @@ BasicThreadParameters<T> in_scalar(const BasicThreadParameters<S>& p) {
 template <class S>
 struct ThreadTransmittance {
   Rgb<S> tt, trt;
-
-  ThreadTransmittance(const BasicThreadParameters<S>& p, const S& chord_length) {
-    const auto [first, second] = p.transmittance_powers;
-    tt = (p.sigma_a.array() * (-chord_length * S(first))).exp();
-    if (first == second)
-      trt = tt;
-    else
-      trt = (p.sigma_a.array() * (-chord_length * S(second))).exp();
-  }
 };
+template <class S>
+ThreadTransmittance<S> thread_transmittance(const BasicThreadParameters<S>& p, const S& chord_length) {
+  const auto [first, second] = p.transmittance_powers;
+  const Rgb<S> tt = (p.sigma_a.array() * (-chord_length * S(first))).exp();
+  if (first == second) return {tt, tt};
+  return {tt, (p.sigma_a.array() * (-chord_length * S(second))).exp()};
+}
 
 // lambda_0, lambda_1, lambda_2 at c = |cos theta_o|, limited when the parameters say so.
 template <class S>
@@ -128,14 +126,13 @@ class ThreadModel {
     lobes.cos_theta_o = Lanes<S>::Constant(S(cos_o));
     const InnerChord<S> chord(h, sin_o, cos_o, S(kThreadEta));
     for (int p = 0; p < 3; ++p) lobes.center[p] = lobe_center<S>(p, S(asin(h)), chord.gamma_t);
-    lobes.center[3] = S(0.0);
 
     const std::array<S, 3> lambda = thread_lobe_energies<S>(parameters_, cos_o);
-    const ThreadTransmittance<S> transmittance(parameters_, chord.length);
+    const ThreadTransmittance<S> transmittance = thread_transmittance(parameters_, chord.length);
     lobes.attenuation.row(0) = (parameters_.lambda0_rgb.array() * lambda[0]).transpose();
     lobes.attenuation.row(1) = (transmittance.tt * lambda[1]).transpose();
     lobes.attenuation.row(2) = (transmittance.trt * lambda[2]).transpose();
-    lobes.attenuation.row(3).setConstant(S(0.0));
+    lobes.empty_lanes_from(3);
     set_probabilities(lobes);
     return lobes;
   }
@@ -153,7 +150,6 @@ class ThreadModel {
     for (int p = 0; p < 3; ++p) {
       lobes.probability[p] = S(kLobeFloor) + share * select(bright, S(energy[p] / total), S(1.0 / 3));
     }
-    lobes.probability[3] = S(0.0);
   }
 
   BasicThreadParameters<S> parameters_;

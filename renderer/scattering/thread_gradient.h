@@ -27,9 +27,12 @@ enum ThreadSlope {
 };
 
 template <class S>
+using ThreadSlopes = Eigen::Array<S, kThreadSlopeLanes, 3>;  // d f_cos[channel] / d parameter
+
+template <class S>
 struct ThreadGradient {
   Rgb<S> f_cos;
-  Eigen::Array<S, kThreadSlopeLanes, 3> slopes;  // d f_cos[channel] / d parameter
+  ThreadSlopes<S> slopes;
 };
 
 // What does not change from direction to direction at one point: c = |cos theta_o| and the way through the thread in
@@ -39,13 +42,20 @@ struct ThreadPoint {
   S cosine = S(0), chord_length = S(0);
 };
 
+// What value and slopes at one direction are made of.
+template <class S>
+struct ThreadFactors {
+  ThreadPoint<S> point;
+  std::array<S, 3> lambda;
+  ThreadTransmittance<S> transmittance;
+  Lanes<S> density;            // M N of each lobe
+  Lanes<S> by_alpha, by_beta;  // and its derivatives
+};
+
 template <class S>
 class ThreadGradientModel {
  public:
-  explicit ThreadGradientModel(const BasicThreadParameters<S>& parameters)
-      : parameters_(parameters),
-        power_tt_(S(parameters.transmittance_powers[0])),
-        power_trt_(S(parameters.transmittance_powers[1])) {
+  explicit ThreadGradientModel(const BasicThreadParameters<S>& parameters) : parameters_(parameters) {
     using std::exp, std::sinh, std::sqrt;
     parameters_.limit_energy = false;
     for (int p = 0; p < 3; ++p) {
@@ -62,64 +72,87 @@ class ThreadGradientModel {
     widths_.set(3, S(1.0), S(1.0));
     dv_dalpha_[3] = ds_dbeta_[3] = m_constant_[3] = n_constant_[3] = S(0.0);
   }
+  // The same model in another scalar.
+  template <class T>
+  explicit ThreadGradientModel(const ThreadGradientModel<T>& other)
+      : parameters_(in_scalar<S>(other.parameters_)),
+        widths_(other.widths_.template cast<S>()),
+        dv_dalpha_(lanes_in<S, T>(other.dv_dalpha_)),
+        ds_dbeta_(lanes_in<S, T>(other.ds_dbeta_)),
+        m_constant_(lanes_in<S, T>(other.m_constant_)),
+        n_constant_(lanes_in<S, T>(other.n_constant_)) {}
 
   ThreadGradient<S> evaluate(const ThreadPoint<S>& point, const LobeAngles<S>& at) const {
-    const Lanes<S> density = longitudinal_density(widths_, at) * azimuthal_density(widths_, at);
-    const Lanes<S> dalpha = density * dlog_m(at) * dv_dalpha_, dbeta = density * dlog_n(at) * ds_dbeta_;
-    const S c = point.cosine;
-    const std::array<S, 3> lambda = thread_lobe_energies<S>(parameters_, c);
-    const ThreadTransmittance<S> transmittance(parameters_, point.chord_length);
-    const S inverse = S(1.0) / (parameters_.r2a * c + parameters_.r2b), inverse2 = inverse * inverse;
-
-    ThreadGradient<S> g;
-    for (int channel = 0; channel < 3; ++channel) {
-      const S tint = parameters_.lambda0_rgb[channel], t1 = transmittance.tt[channel],
-              t2 = transmittance.trt[channel];
-      const S a0 = lambda[0] * tint, a1 = lambda[1] * t1, a2 = lambda[2] * t2;
-      const S through = density[1] * a1, inside = density[2] * a2, reflected = density[0] * tint;
-      g.f_cos[channel] = density[0] * a0 + through + inside;
-      auto slope = g.slopes.col(channel);
-      slope[kSlopeSigma] = -point.chord_length * (power_tt_ * through + power_trt_ * inside);
-      slope[kSlopeAlpha] = dalpha[0] * a0;
-      slope[kSlopeAlpha + 1] = dalpha[1] * a1;
-      slope[kSlopeAlpha + 2] = dalpha[2] * a2;
-      slope[kSlopeBeta] = dbeta[0] * a0;
-      slope[kSlopeBeta + 1] = dbeta[1] * a1;
-      slope[kSlopeBeta + 2] = dbeta[2] * a2;
-      slope[kSlopeR0] = reflected * c * c;
-      slope[kSlopeR0 + 1] = reflected * c;
-      slope[kSlopeR0 + 2] = reflected;
-      slope[kSlopeR1] = density[1] * t1 * c;
-      slope[kSlopeR2] = -density[2] * t2 * c * inverse2;
-      slope[kSlopeR2 + 1] = -density[2] * t2 * inverse2;
-      slope[kSlopeR2 + 2] = density[2] * t2;
-      slope[14] = slope[15] = S(0.0);
-    }
-    return g;
+    const ThreadFactors<S> factors = slope_factors(point, at);
+    ThreadGradient<S> gradient{value(factors), ThreadSlopes<S>::Zero()};
+    add_slopes(factors, Rgb<S>::Ones(), gradient.slopes);
+    return gradient;
   }
 
   // The value alone.
-  Rgb<S> f_cos(const ThreadPoint<S>& point, const LobeAngles<S>& at) const {
-    const Lanes<S> density = longitudinal_density(widths_, at) * azimuthal_density(widths_, at);
-    const std::array<S, 3> lambda = thread_lobe_energies<S>(parameters_, point.cosine);
-    const ThreadTransmittance<S> transmittance(parameters_, point.chord_length);
-    return parameters_.lambda0_rgb.array() * (density[0] * lambda[0]) + transmittance.tt * (density[1] * lambda[1]) +
-           transmittance.trt * (density[2] * lambda[2]);
+  Rgb<S> f_cos(const ThreadPoint<S>& point, const LobeAngles<S>& at) const { return value(factors(point, at)); }
+
+  // In two steps, for those who learn how much a direction counts only after its value: factors of the value alone or
+  // of the slopes too, then `slopes` += weight d f_cos.
+  ThreadFactors<S> factors(const ThreadPoint<S>& point, const LobeAngles<S>& at) const {
+    return {.point = point,
+            .lambda = thread_lobe_energies<S>(parameters_, point.cosine),
+            .transmittance = thread_transmittance(parameters_, point.chord_length),
+            .density = longitudinal_density(widths_, at) * azimuthal_density(widths_, at)};
+  }
+  ThreadFactors<S> slope_factors(const ThreadPoint<S>& point, const LobeAngles<S>& at) const {
+    ThreadFactors<S> f = factors(point, at);
+    f.by_alpha = f.density * dlog_m(at) * dv_dalpha_;
+    f.by_beta = f.density * dlog_n(at) * ds_dbeta_;
+    return f;
+  }
+
+  Rgb<S> value(const ThreadFactors<S>& f) const {
+    return parameters_.lambda0_rgb.array() * (f.density[0] * f.lambda[0]) +
+           f.transmittance.tt * (f.density[1] * f.lambda[1]) + f.transmittance.trt * (f.density[2] * f.lambda[2]);
+  }
+
+  void add_slopes(const ThreadFactors<S>& f, const Rgb<S>& weight, ThreadSlopes<S>& slopes) const {
+    const S c = f.point.cosine, inverse = S(1.0) / (parameters_.r2a * c + parameters_.r2b);
+    const auto power_tt = S(parameters_.transmittance_powers[0]), power_trt = S(parameters_.transmittance_powers[1]);
+    for (int channel = 0; channel < 3; ++channel) {
+      const S w0 = weight[channel] * parameters_.lambda0_rgb[channel],
+              w1 = weight[channel] * f.transmittance.tt[channel], w2 = weight[channel] * f.transmittance.trt[channel];
+      const S a0 = w0 * f.lambda[0], a1 = w1 * f.lambda[1], a2 = w2 * f.lambda[2];
+      const S by_r0c = w0 * f.density[0], by_r2c = w2 * f.density[2], by_r2b = -by_r2c * inverse * inverse;
+      auto slope = slopes.col(channel);
+      slope[kSlopeSigma] -= f.point.chord_length * (power_tt * f.density[1] * a1 + power_trt * f.density[2] * a2);
+      slope[kSlopeAlpha] += f.by_alpha[0] * a0;
+      slope[kSlopeAlpha + 1] += f.by_alpha[1] * a1;
+      slope[kSlopeAlpha + 2] += f.by_alpha[2] * a2;
+      slope[kSlopeBeta] += f.by_beta[0] * a0;
+      slope[kSlopeBeta + 1] += f.by_beta[1] * a1;
+      slope[kSlopeBeta + 2] += f.by_beta[2] * a2;
+      slope[kSlopeR0] += by_r0c * c * c;
+      slope[kSlopeR0 + 1] += by_r0c * c;
+      slope[kSlopeR0 + 2] += by_r0c;
+      slope[kSlopeR1] += w1 * f.density[1] * c;
+      slope[kSlopeR2] += by_r2b * c;
+      slope[kSlopeR2 + 1] += by_r2b;
+      slope[kSlopeR2 + 2] += by_r2c;
+    }
   }
 
  private:
+  template <class>
+  friend class ThreadGradientModel;
+
   Lanes<S> dlog_m(const LobeAngles<S>& at) const {
     const Lanes<S> a = at.cos_cos * widths_.inv_v;
     return widths_.inv_v * (S(0.5) * at.distance2 * widths_.inv_v - bessel_i0e_log_slope(a)) + m_constant_;
   }
   Lanes<S> dlog_n(const LobeAngles<S>& at) const {
     const Lanes<S> x = at.from_center * widths_.inv_s;
-    const Lanes<S> e = (-x).exp();  // tanh(x / 2) = (1 - e) / (1 + e)
+    const Lanes<S> e = (-at.from_center * widths_.inv_s).exp();  // as in N; tanh(x / 2) = (1 - e) / (1 + e)
     return x * widths_.inv_s * (S(1.0) - e) / (S(1.0) + e) + n_constant_;
   }
 
   BasicThreadParameters<S> parameters_;
-  S power_tt_, power_trt_;
   LobeWidths<S> widths_;
   Lanes<S> dv_dalpha_, ds_dbeta_, m_constant_, n_constant_;
 };

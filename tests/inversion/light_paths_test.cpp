@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "inversion/block_estimate.h"
 #include "renderer/path_tracer.h"
 #include "synthetic_spool.h"
 

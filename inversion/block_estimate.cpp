@@ -1,0 +1,168 @@
+#include "inversion/block_estimate.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace inversion {
+namespace {
+
+using Eigen::Array3f;
+using Path = std::span<const PathEvent>;
+using P = renderer::Packet<renderer::kPacketWidth>;
+constexpr std::size_t kWidth = renderer::kPacketWidth;
+
+// Whole paths are shaded together until they have so many events: what is kept of them stays in the second cache.
+constexpr std::size_t kEventsTogether = 512;
+
+bool has_light(const PathEvent& event) {
+  return event.light_weight > 0;
+}
+
+bool goes_on(Path path, std::size_t event) {
+  return event + 1 < path.size() && path[event].inverse_next_pdf > 0;
+}
+
+// The directions of some paths that count for something, number after number: the light's of each event, then the next
+// event's.
+class Directions {
+ public:
+  // Forgets all; makes room for `most`.
+  void restart(std::size_t most) {
+    size_ = 0;
+    const std::size_t room = most + kWidth;
+    if (inputs_.front().size() >= room) return;
+    for (auto& numbers : inputs_) numbers.resize(room);
+    for (auto& numbers : values_) numbers.resize(room);
+    for (auto& numbers : weights_) numbers.resize(room);
+    factors_.resize(room / kWidth + 1);
+  }
+
+  void add_all_of(Path path) {
+    for (std::size_t e = 0; e < path.size(); ++e) {
+      if (has_light(path[e])) add(path[e].point, path[e].light);
+      if (goes_on(path, e)) add(path[e].point, path[e].next);
+    }
+  }
+
+  void shade(const BlockModel& model, bool with_slopes) {
+    const std::size_t last = size_;
+    while (size_ % kWidth != 0) {  // fills the last packet with what counts for nothing
+      set_weight(size_, Array3f::Zero());
+      add({.cosine = 1, .chord_length = 0}, {});
+    }
+    for (std::size_t i = 0; i < size_; i += kWidth) {
+      renderer::LobeAngles<P> angles;
+      angles.distance2.setConstant(input(2, i));
+      angles.cos_cos.setConstant(input(3, i));
+      for (std::size_t p = 0; p < 3; ++p) angles.from_center[static_cast<int>(p)] = input(4 + p, i);
+      const renderer::ThreadPoint<P> point{input(0, i), input(1, i)};
+      auto& factors = factors_[i / kWidth];
+      factors = with_slopes ? model.slope_factors(point, angles) : model.factors(point, angles);
+      const renderer::Rgb<P> value = model.value(factors);
+      for (std::size_t c = 0; c < 3; ++c) value[static_cast<int>(c)].store(&values_[c][i]);
+    }
+    padded_ = size_;
+    size_ = last;
+  }
+
+  Array3f value(std::size_t i) const { return {values_[0][i], values_[1][i], values_[2][i]}; }
+  Array3f weight(std::size_t i) const { return {weights_[0][i], weights_[1][i], weights_[2][i]}; }
+  void set_weight(std::size_t i, const Array3f& weight) {
+    for (std::size_t c = 0; c < 3; ++c) weights_[c][i] = weight[static_cast<int>(c)];
+  }
+
+  // slopes += sum of weight d f_cos.
+  void add_slopes(const BlockModel& model, renderer::ThreadSlopes<double>& slopes) const {
+    renderer::ThreadSlopes<P> sum = renderer::ThreadSlopes<P>::Constant(P(0.0F));
+    for (std::size_t i = 0; i < padded_; i += kWidth)
+      model.add_slopes(factors_[i / kWidth],
+                       {P::load(&weights_[0][i]), P::load(&weights_[1][i]), P::load(&weights_[2][i])}, sum);
+    for (int k = 0; k < renderer::kThreadSlopeCount; ++k)
+      for (int c = 0; c < 3; ++c)
+        for (int lane = 0; lane < renderer::kPacketWidth; ++lane)
+          slopes(k, c) += static_cast<double>(sum(k, c)[lane]);
+  }
+
+ private:
+  void add(const renderer::ThreadPoint<float>& point, const PathDirection& at) {
+    const std::array<float, 7> numbers{point.cosine,      point.chord_length, at.distance2,     at.cos_cos,
+                                       at.from_center[0], at.from_center[1],  at.from_center[2]};
+    for (std::size_t k = 0; k < numbers.size(); ++k) inputs_[k][size_] = numbers[k];
+    ++size_;
+  }
+  P input(std::size_t number, std::size_t i) const { return P::load(&inputs_[number][i]); }
+
+  std::array<std::vector<float>, 7> inputs_;
+  std::array<std::vector<float>, 3> values_, weights_;
+  std::vector<renderer::ThreadFactors<P>> factors_;  // by packet
+  std::size_t size_ = 0, padded_ = 0;
+};
+
+// A_1 of a path whose directions start at `first`, which is moved behind them; leaves their weights without T_v.
+Array3f radiance(Path path, Directions& directions, std::size_t& first) {
+  std::size_t i = first;
+  for (std::size_t e = 0; e < path.size(); ++e) i += std::size_t{has_light(path[e])} + std::size_t{goes_on(path, e)};
+  first = i;
+  Array3f arriving = Array3f::Zero();
+  for (std::size_t e = path.size(); e-- > 0;) {
+    if (goes_on(path, e)) {
+      const Array3f weight = arriving * path[e].inverse_next_pdf;
+      directions.set_weight(--i, weight);
+      arriving = directions.value(i) * weight;
+    }
+    if (has_light(path[e])) {
+      directions.set_weight(--i, Array3f::Constant(path[e].light_weight));
+      arriving += directions.value(i) * path[e].light_weight;
+    }
+  }
+  return arriving;
+}
+
+// Multiplies the weights of a path's directions from `first` on by T_v.
+void weigh(Path path, Directions& directions, std::size_t first) {
+  Array3f throughput = Array3f::Ones();
+  for (std::size_t e = 0, i = first; e < path.size(); ++e) {
+    if (has_light(path[e])) directions.set_weight(i, directions.weight(i) * throughput), ++i;
+    if (!goes_on(path, e)) continue;
+    directions.set_weight(i, directions.weight(i) * throughput);
+    throughput *= directions.value(i) * path[e].inverse_next_pdf;
+    ++i;
+  }
+}
+
+}  // namespace
+
+BlockModel block_model(const renderer::ThreadParameters& parameters) {
+  return BlockModel(renderer::ThreadGradientModel<float>(renderer::in_scalar<float>(parameters)));
+}
+
+BlockEstimate shade_block(const LightPaths& paths, std::size_t block, const BlockModel& model, bool with_slopes) {
+  const std::uint32_t begin = paths.block_paths[block], end = paths.block_paths[block + 1];
+  const auto first_event = [&](std::uint32_t path) { return path == 0 ? 0 : paths.path_ends[path - 1]; };
+  const auto events = [&](std::uint32_t path) {
+    return Path(paths.events).subspan(first_event(path), paths.path_ends[path] - first_event(path));
+  };
+  BlockEstimate estimate;
+  Directions directions;
+  for (std::uint32_t first = begin, last = begin; first < end; first = last) {
+    while (last < end && (last == first || paths.path_ends[last] - first_event(first) <= kEventsTogether)) ++last;
+    directions.restart(2 * (paths.path_ends[last - 1] - first_event(first)));
+    for (std::uint32_t path = first; path < last; ++path) directions.add_all_of(events(path));
+    directions.shade(model, with_slopes);
+    std::size_t direction = 0;
+    for (std::uint32_t path = first; path < last; ++path) {
+      const std::size_t own = direction;
+      estimate.value += radiance(events(path), directions, direction).cast<double>();
+      if (with_slopes) weigh(events(path), directions, own);
+    }
+    if (with_slopes) directions.add_slopes(model, estimate.slopes);
+  }
+  const double count = end - begin;
+  estimate.value /= count;
+  estimate.slopes /= count;
+  return estimate;
+}
+
+}  // namespace inversion
