@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "calibration/lens.h"
@@ -12,33 +13,51 @@
 
 namespace calibration {
 
+struct PlatformTargets {
+  TagLayout ring;                // turns with the platform; +z up
+  TagLayout table;               // lies on the table beside the platform; +z up
+  double table_height_mm = 0.0;  // of its printed face above the table: the sheet's thickness
+};
+
 struct PlatformView {
   double reading_rad = 0.0;  // turntable's own reading
-  TagObservation seen;       // board standing on the platform, turning with it
+  TagObservation seen;       // of the whole picture
 };
 
 struct PlatformFit {
   Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d world_from_board = Eigen::Isometry3d::Identity();  // of the turning board at angle 0
+  Eigen::Isometry3d world_from_ring = Eigen::Isometry3d::Identity();  // at angle 0
+  Eigen::Isometry3d world_from_table = Eigen::Isometry3d::Identity();
   std::vector<double>
       angles_rad;  // measured, one per view, counter-clockwise from above, 0 at reading 0 (by the fitted line)
+  std::vector<double> readings_rad;  // as given, one per view
   // Measured angle counted from the first view = scale * reading + offset, least squares; the offset is already taken
   // out of angles_rad. A turntable that counts clockwise has a scale near -1.
   double scale = 1.0, offset_rad = 0.0;
   double angle_rms_rad = 0.0;             // about that line
   double rms_px = 0.0;                    // per axis
+  std::vector<double> view_rms_px;        // per axis, one per view
   double axis_to_table_normal_rad = 0.0;  // the axis against the table's normal
   // Tilts of the axis about the world's x and y (rad), then where it meets the table along x and y (mm), relative to
-  // the camera, for the corner noise that the residuals show.
+  // the camera, for the corner noise that the residuals show and an exact lens.
   Eigen::Matrix<double, 4, 4> axis_covariance = Eigen::Matrix<double, 4, 4>::Zero();
   bool converged = false;
 };
 
-// `table_views`: the same board lying flat on the table (its plane is the table's, `board_thickness_mm` above it),
-// facing up. Each angle is a free unknown: nothing is believed of the turntable. Throws std::runtime_error when fewer
-// than three turning views or no table view were given, a view does not show the board, or the views do not turn by
-// 20 degrees.
-PlatformFit fit_platform(const Lens& lens, const TagLayout& board, const std::vector<PlatformView>& turning,
-                         const std::vector<TagObservation>& table_views, double board_thickness_mm);
+// Each angle is a free unknown: nothing is believed of the turntable. Throws std::runtime_error when fewer than three
+// views were given, the ring is missing in one, no view shows two of the table's tags, the views do not turn by 20
+// degrees, or a tag contradicts the others (it names the tag).
+PlatformFit fit_platform(const Lens& lens, const PlatformTargets& targets, const std::vector<PlatformView>& views);
+
+struct AngleFit {
+  double angle_rad = 0.0;  // of the platform, within +-pi
+  double sigma_rad = 0.0;  // for the corner noise that the residuals show
+  double rms_px = 0.0;     // per axis
+  int tags_used = 0;
+};
+
+// Where the platform stands in a picture, from the ring's tags alone. std::nullopt when no tag of the ring was seen.
+std::optional<AngleFit> measure_angle(const Lens& lens, const PlatformFit& platform, const TagLayout& ring,
+                                      const TagObservation& seen);
 
 }  // namespace calibration

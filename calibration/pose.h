@@ -1,8 +1,9 @@
-// Pose of a tagged object in front of a calibrated camera.
+// Pose of a tagged object: in front of a calibrated camera, or on the platform from several of its angles.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <optional>
+#include <vector>
 
 #include "calibration/lens.h"
 #include "calibration/tags.h"
@@ -11,17 +12,40 @@ namespace calibration {
 
 struct PoseFit {
   Eigen::Isometry3d camera_from_object = Eigen::Isometry3d::Identity();
-  double rms_px = 0.0;  // per axis
+  double rms_px = 0.0;  // per axis, over the tags used
   int tags_used = 0;
+  std::vector<int> odd_tags;  // left out: more than 2 px (and 6 sigma) from where the other tags want them
   // Of a small rotation (rad) about the camera's axes through the object's origin, then of that origin's position
   // (mm, camera frame), for the corner noise that the residuals show (degrees of freedom taken out).
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   bool converged = false;
 };
 
-// All tags of the layout that were seen, in one least squares fit with a Huber loss at 1 px; of the two poses that a
-// flat object allows, the one that fits better. std::nullopt when no tag of the layout was seen. Throws
+// All tags of the layout that were seen and agree, in one least squares fit with a Huber loss at 1 px; of the two
+// poses that a flat object allows, the one that fits better. A tag that was moved, or printed with another's id, is
+// found by consensus, as long as three or more tags agree. std::nullopt when no tag of the layout was seen. Throws
 // std::runtime_error on corners that are not finite numbers.
 std::optional<PoseFit> fit_pose(const Lens& lens, const TagLayout& layout, const TagObservation& seen);
+
+// One picture of an object that keeps its place on something that moves in a known way (the platform).
+struct Sighting {
+  Eigen::Isometry3d camera_from_platform = Eigen::Isometry3d::Identity();
+  TagObservation seen;
+};
+
+struct MountedFit {
+  Eigen::Isometry3d platform_from_object = Eigen::Isometry3d::Identity();
+  double rms_px = 0.0;
+  int tags_used = 0;  // sum over the sightings
+  std::vector<int> odd_tags;
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  // as PoseFit's, platform's axes
+  bool converged = false;
+};
+
+// The pose that explains all sightings at once. Along the line of sight one sighting measures by the size of the tags
+// alone; two that are 70 degrees apart measure it across the picture, some ten times better, and turns twice as well. std::nullopt when no
+// sighting shows a tag of the layout.
+std::optional<MountedFit> fit_mounted_pose(const Lens& lens, const TagLayout& layout,
+                                           const std::vector<Sighting>& sightings);
 
 }  // namespace calibration
