@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "calibration/targets.h"
 #include "station/documents/reader.h"
 
 namespace station {
@@ -31,23 +32,43 @@ calibration::TagLayout parse_board(ObjectReader board, double& thickness_mm) {
   return calibration::make_tag_board("board", rows, columns, tag_mm, pitch_mm, first_id);
 }
 
-// Four tags at the corners (+-offset, +-offset) of the plane spanned by `right` and `up`, normal right x up.
 calibration::TagLayout corner_tags(ObjectReader tags, const std::string& name, const Eigen::Vector3d& right,
                                    const Eigen::Vector3d& up) {
   const double size_mm = tags.number("tag_mm", 0.5, 500), offset_mm = tags.number("offset_mm", 0.5, 1000);
   const int first_id = tags.integer("first_id", 0, 583);
   tags.finish();
-  calibration::TagLayout layout{.name = name, .tags = {}};
-  for (int i = 0; i < 4; ++i) {
-    calibration::Tag tag{.id = first_id + i, .size_mm = size_mm};
-    tag.object_from_tag.linear().col(0) = right;
-    tag.object_from_tag.linear().col(1) = up;
-    tag.object_from_tag.linear().col(2) = right.cross(up);
-    tag.object_from_tag.translation() =
-        (i % 2 ? offset_mm : -offset_mm) * right + (i < 2 ? offset_mm : -offset_mm) * up;
-    layout.tags.push_back(tag);
-  }
-  return layout;
+  return calibration::make_corner_tags(name, size_mm, offset_mm, first_id, right, up);
+}
+
+calibration::TagLayout parse_ring(ObjectReader ring) {
+  const int count = ring.integer("count", 3, 100);
+  const double radius_mm = ring.number("radius_mm", 1, 2000), tag_mm = ring.number("tag_mm", 0.5, 500);
+  const int first_id = ring.integer("first_id", 0, 587 - count);
+  ring.finish();
+  return calibration::make_platform_ring(count, radius_mm, tag_mm, first_id);
+}
+
+calibration::TagLayout parse_table_tags(ObjectReader table) {
+  const double tag_mm = table.number("tag_mm", 0.5, 500);
+  std::vector<Eigen::Vector2d> centres;
+  const std::vector<double> numbers = table.numbers("centres_mm");  // x y x y ...
+  if (numbers.size() < 8 || numbers.size() % 2 != 0)
+    table.refuse("centres_mm", "has " + std::to_string(numbers.size()) +
+                                   " numbers; expected x, y of each tag, at least four tags (eight numbers)");
+  for (std::size_t i = 0; i < numbers.size(); i += 2) centres.emplace_back(numbers[i], numbers[i + 1]);
+  const int first_id = table.integer("first_id", 0, 587 - static_cast<int>(centres.size()));
+  table.finish();
+  return calibration::make_table_sheet(centres, tag_mm, first_id);
+}
+
+// Every printed layout as it came out of the printer.
+void scale_prints(RigFile& rig, const ObjectReader& reader) {
+  for (calibration::TagLayout* layout :
+       {&rig.board, &rig.platform_ring, &rig.table_tags, &rig.lamp_tags, &rig.holder_tags, &rig.spectralon.tags})
+    *layout = calibration::scaled(std::move(*layout), rig.control_bar_mm);
+  const std::string shared = calibration::shared_ids(
+      {rig.board, rig.platform_ring, rig.table_tags, rig.lamp_tags, rig.holder_tags, rig.spectralon.tags});
+  if (!shared.empty()) reader.refuse("first_id", shared + "; give each printed target ids of its own");
 }
 
 rig::TrueSensor parse_sensor(ObjectReader sensor, rig::TrueLens& lens) {
@@ -132,7 +153,10 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
   ObjectReader platform = reader.object("platform");
   rig.platform_height_mm = platform.number("height_mm", 0, 1000);
   rig.platform_radius_mm = platform.number("radius_mm", 1, 2000);
+  rig.platform_ring = parse_ring(platform.object("ring"));
   platform.finish();
+  rig.table_tags = parse_table_tags(reader.object("table_tags"));
+  rig.lamp_tags = corner_tags(reader.object("lamp_tags"), "lamp", Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
   rig.holder_tags =
       corner_tags(reader.object("holder_tags"), "holder", Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
   ObjectReader panel = reader.object("spectralon");
@@ -142,6 +166,8 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
   rig.spectralon.tags =
       corner_tags(panel.object("tags"), "spectralon", Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
   panel.finish();
+  if (reader.has("control_bar_mm")) rig.control_bar_mm = reader.number("control_bar_mm", 80, 125);
+  scale_prints(rig, reader);
   ObjectReader lamps = reader.object("lamp_by_tape");
   rig.front_lamp_mm = lamps.vector3("front_position_mm");
   rig.back_lamp_mm = lamps.vector3("back_position_mm");

@@ -35,6 +35,10 @@ struct RigFile {
   calibration::TagLayout board;
   double board_thickness_mm = 0;
   double platform_height_mm = 0, platform_radius_mm = 0;
+  double control_bar_mm = 100;           // measured on the prints; the layouts here are already scaled by it
+  calibration::TagLayout platform_ring;  // platform frame: origin where the axis meets the platform's top
+  calibration::TagLayout table_tags;     // world frame, roughly; relative positions as printed
+  calibration::TagLayout lamp_tags;      // lamp frame: origin at the bright face, +z along the beam
   calibration::TagLayout holder_tags;
   SpectralonPanel spectralon;
   Eigen::Vector3d front_lamp_mm, back_lamp_mm;  // by tape, world frame
