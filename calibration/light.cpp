@@ -48,7 +48,8 @@ struct PatchResidual {
   bool operator()(const T* position, const T* factor, const T* vignetting, T* residual) const {
     const T irradiance = falloff(position, patch.point, patch.normal);
     const T scale = gain_at(r2, vignetting[0], vignetting[1]) * (albedo / M_PI) * irradiance;
-    for (int c = 0; c < 3; ++c) residual[c] = (scale * (factor[c] * seed_intensity[c]) - patch.radiance[c]) / patch.sigma[c];
+    for (int c = 0; c < 3; ++c)
+      residual[c] = (scale * (factor[c] * seed_intensity[c]) - patch.radiance[c]) / patch.sigma[c];
     return true;
   }
 };
@@ -194,8 +195,8 @@ LightFit fit_light(const std::vector<LightPatch>& patches, const std::vector<Eig
         new PatchResidual{patch, albedo, radius_squared(patch.pixel.x(), patch.pixel.y(), image_size), seed});
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PatchResidual, 3, 3, 3, 2>(residuals.back()),
                              new ceres::HuberLoss(4.0),
-                             unknowns.positions[static_cast<std::size_t>(patch.light)].data(),
-                             unknowns.factor.data(), unknowns.vignetting.data());
+                             unknowns.positions[static_cast<std::size_t>(patch.light)].data(), unknowns.factor.data(),
+                             unknowns.vignetting.data());
   }
   problem.AddResidualBlock(new ceres::AutoDiffCostFunction<VignettingPrior, 2, 2>(new VignettingPrior), nullptr,
                            unknowns.vignetting.data());

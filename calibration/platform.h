@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "calibration/gate.h"
 #include "calibration/lens.h"
 #include "calibration/tags.h"
 
@@ -41,6 +42,7 @@ struct PlatformFit {
   // Tilts of the axis about the world's x and y (rad), then where it meets the table along x and y (mm), relative to
   // the camera, for the corner noise that the residuals show and an exact lens.
   Eigen::Matrix<double, 4, 4> axis_covariance = Eigen::Matrix<double, 4, 4>::Zero();
+  std::vector<Gate> gates;
   bool converged = false;
 };
 

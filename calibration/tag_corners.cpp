@@ -79,7 +79,7 @@ std::optional<Line> edge(const cv::Mat1f& grey, const Eigen::Vector2d& from, con
 
 std::array<Eigen::Vector2d, 4> refined_corners(const cv::Mat1f& grey,
                                                const std::array<Eigen::Vector2d, 4>& corners_px) {
-  constexpr double kLargestMove_px = 1.5;
+  constexpr double kLargestMove_px = 1.5, kSmallestCell_px = 3.0;
   std::array<Eigen::Vector2d, 4> corners = corners_px;
   const Eigen::Vector2d inside = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
   for (int pass = 0; pass < 2; ++pass) {  // the second pass is centred on the edge
@@ -89,8 +89,10 @@ std::array<Eigen::Vector2d, 4> refined_corners(const cv::Mat1f& grey,
       const Eigen::Vector2d &from = corners[e], &to = corners[(e + 1) % 4];
       const double across = std::min((corners[(e + 3) % 4] - from).norm(), (corners[(e + 2) % 4] - to).norm());
       const double cell_px = across / 8.0;
-      // In cells below 4 px the blur of the code's own cells reaches the edge: measured 0.05-0.13 px outwards.
-      const auto line = cell_px < 4.0 ? std::nullopt : edge(grey, from, to, inside, std::min(0.7 * cell_px, 3.5));
+      // Pixel and interpolation blur by 1.5 px to either side: the reach must hold an edge's own blur and keep out that
+      // of the code's cells (with 0.7 of a cell of 3 px corners came out 0.05-0.13 px too far outwards).
+      const double reach_px = std::min({0.7 * cell_px, cell_px - 1.6, 3.5});
+      const auto line = cell_px < kSmallestCell_px ? std::nullopt : edge(grey, from, to, inside, reach_px);
       if (!line) return corners_px;
       edges[e] = *line;
     }

@@ -83,6 +83,15 @@ cv::Mat1b encode(const cv::Mat1f& grey) {
   return encoded;
 }
 
+// The detector draws edges on where the picture ends: such corners are a pixel or two off.
+bool inside(const TagDetection& tag, const cv::Size& size) {
+  constexpr double kMargin_px = 3.0;
+  return std::all_of(tag.corners_px.begin(), tag.corners_px.end(), [&](const Eigen::Vector2d& corner) {
+    return corner.minCoeff() >= kMargin_px && corner.x() <= size.width - 1 - kMargin_px &&
+           corner.y() <= size.height - 1 - kMargin_px;
+  });
+}
+
 }  // namespace
 
 TagLayout make_tag_board(const std::string& name, int rows, int columns, double tag_mm, double pitch_mm,
@@ -117,7 +126,7 @@ TagObservation detect_tags(const cv::Mat1f& grey) {
   for (const TagDetection& tag : found) ++times_seen[tag.id];
   TagObservation unique;
   for (const TagDetection& tag : found) {
-    if (times_seen[tag.id] == 1)
+    if (times_seen[tag.id] == 1 && inside(tag, grey.size()))
       unique.push_back({.id = tag.id, .corners_px = refined_corners(grey, tag.corners_px)});
   }
   std::sort(unique.begin(), unique.end(), [](const auto& a, const auto& b) { return a.id < b.id; });

@@ -39,7 +39,8 @@ struct TagDetection {
 
 using TagObservation = std::vector<TagDetection>;  // one picture's tags
 
-// `grey`: any linear scale, non-negative. Sorted by id; an id that is seen twice is ambiguous and dropped. No tag, or
+// `grey`: any linear scale, non-negative. Sorted by id; an id that is seen twice is ambiguous and dropped, and so is a tag that the
+// picture's edge cuts. No tag, or
 // an empty picture: an empty list. Corners of tags of 35-110 px are good to about 0.05 px per axis. Source:
 // AprilTag 3.3, then calibration/tag_corners.h.
 TagObservation detect_tags(const cv::Mat1f& grey);

@@ -54,6 +54,9 @@ struct BenchTruth {
   TrueSensor sensor{};
   TrueTurntable turntable{};
   TrueLamp front{}, back{};
+  // Where the printed tags truly are: the ring glued on the platform, the sheet lying on the table.
+  Eigen::Isometry3d platform_from_ring = Eigen::Isometry3d::Identity();  // platform frame at angle 0 = world
+  Eigen::Isometry3d world_from_table_sheet = Eigen::Isometry3d::Identity();
   Eigen::Vector3d room_radiance =
       Eigen::Vector3d::Constant(0.3);  // of a white diffuser under the room light, roughly
   double placement_mm = 1.0;           // a hand places an object this well (standard deviation per axis)

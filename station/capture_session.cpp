@@ -3,6 +3,8 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "station/bench_reading.h"
+#include "station/calibration_validity.h"
 #include "station/documents/calibration_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
@@ -48,10 +50,15 @@ ChooseExposure exposure_chooser(const RigFile& rig, const Spool& spool, const Ri
   return [rig, spool, calibration](const PlanStep& step, const rig::Picture& test) -> ExposureChoice {
     const calibration::SensorPicture picture =
         calibration::read_sensor_bytes(test.bytes, "test picture of " + step.id);
+    require_same_camera(calibration, picture, "test picture of " + step.id);
     const cv::Mat1b region = step.kind == StepKind::view ? window_region(rig, spool, calibration, step) : cv::Mat1b();
     const auto next = next_exposure_s(picture, region, {.level = rig.target_level});
-    return next ? ExposureChoice{.exposure_s = *next}
-                : ExposureChoice{.exposure_s = picture.exposure_s, .done = true};
+    if (next) return {.exposure_s = *next};
+    // While the holder can still be put right; the reading was checked by the runner.
+    if (step.kind == StepKind::pose)
+      require_calibrated_bench(calibration, read_bench(calibration, rig, tags_in(picture)), step.platform_angle_rad,
+                               "step " + step.id);
+    return {.exposure_s = picture.exposure_s, .done = true};
   };
 }
 
@@ -99,15 +106,13 @@ RunOutcome capture_session(const CaptureRequest& request) {
   const RigFile rig = parse_rig(rig_document, request.rig.string());
   const Spool spool = parse_spool(spool_document, request.spool.string());
   const RigCalibration calibration = read_calibration(request.calibration);
-  if (calibration.rig_name != rig.name)
-    throw std::runtime_error("the calibration was made on rig \"" + calibration.rig_name + "\", this is \"" +
-                             rig.name + "\"; calibrate this rig");
   if (is_session(request.out))
     throw std::runtime_error(request.out.string() +
                              " is a session already; choose another folder, or go on with capture --resume");
   const Plan plan = make_capture_plan(
       {.reflection_angles_deg = rig.reflection_angles_deg, .transmission_angles_deg = rig.transmission_angles_deg});
   RigDevices devices = open_rig(rig, spool, request.unattended);
+  require_valid(calibration, rig, devices.clock->utc(), request.accept_calibration);
   require_same_sensor(*devices.camera, calibration.lens.lens);
   FileSystem disk;
   const std::filesystem::path calibration_folder =

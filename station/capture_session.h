@@ -12,6 +12,7 @@ struct CaptureRequest {
   std::filesystem::path rig, calibration, spool;  // calibration: the folder that calibrate made
   std::filesystem::path out;                      // session folder
   bool unattended = false;
+  bool accept_calibration = false;  // although gates of it failed
   ProgressStyle progress_style = ProgressStyle::automatic;
 };
 

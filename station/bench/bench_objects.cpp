@@ -5,7 +5,8 @@
 namespace station {
 namespace {
 
-constexpr float kPaperAlbedo = 0.85F, kInkAlbedo = 0.04F, kBlackPaintAlbedo = 0.03F, kTableAlbedo = 0.03F;
+constexpr float kPaperAlbedo = 0.85F, kGreyPaperAlbedo = 0.12F, kInkAlbedo = 0.04F, kBlackPaintAlbedo = 0.03F,
+                kTableAlbedo = 0.03F;
 constexpr double kPaperLift_mm = 0.02;  // a printed tag lies this far above what carries it
 
 // A flat rectangle centred at the frame's origin, in its xy plane, +y up; texture upright seen from +z.
@@ -27,12 +28,12 @@ cv::Mat3f plain(float albedo) {
 }
 
 // The tag as printed on paper: 10 x 10 cells, the black square being 8 cells wide.
-renderer::TriangleMesh printed_tag(const calibration::Tag& tag) {
+renderer::TriangleMesh printed_tag(const calibration::Tag& tag, float paper_albedo) {
   const cv::Mat1b bitmap = calibration::tag_bitmap(tag.id);
   cv::Mat3f albedo(bitmap.size());
   for (int row = 0; row < bitmap.rows; ++row)
     for (int column = 0; column < bitmap.cols; ++column) {
-      const float value = bitmap(row, column) ? kPaperAlbedo : kInkAlbedo;
+      const float value = bitmap(row, column) ? paper_albedo : kInkAlbedo;
       albedo(row, column) = cv::Vec3f(value, value, value);
     }
   const Eigen::Isometry3d lifted = tag.object_from_tag * Eigen::Translation3d(0, 0, kPaperLift_mm);
@@ -40,8 +41,9 @@ renderer::TriangleMesh printed_tag(const calibration::Tag& tag) {
   return rectangle(lifted, edge, edge, albedo);
 }
 
-void add_tags(std::vector<renderer::TriangleMesh>& meshes, const calibration::TagLayout& layout) {
-  for (const calibration::Tag& tag : layout.tags) meshes.push_back(printed_tag(tag));
+void add_tags(std::vector<renderer::TriangleMesh>& meshes, const calibration::TagLayout& layout,
+              float paper_albedo = kPaperAlbedo) {
+  for (const calibration::Tag& tag : layout.tags) meshes.push_back(printed_tag(tag, paper_albedo));
 }
 
 renderer::TriangleMesh disc(double radius, double height) {
@@ -63,6 +65,12 @@ renderer::TriangleMesh disc(double radius, double height) {
 std::vector<renderer::TriangleMesh> table_and_platform(double platform_height_mm, double platform_radius_mm) {
   return {rectangle(Eigen::Isometry3d::Identity(), 2400, 2400, plain(kTableAlbedo)),
           disc(platform_radius_mm, platform_height_mm)};
+}
+
+std::vector<renderer::TriangleMesh> lying_tag_meshes(const calibration::TagLayout& tags) {
+  std::vector<renderer::TriangleMesh> meshes;
+  add_tags(meshes, tags, kGreyPaperAlbedo);
+  return meshes;
 }
 
 std::vector<renderer::TriangleMesh> board_meshes(const calibration::TagLayout& board) {

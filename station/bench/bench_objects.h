@@ -13,6 +13,10 @@ namespace station {
 // World frame: a dark table at z = 0 and the platform's disc standing on it.
 std::vector<renderer::TriangleMesh> table_and_platform(double platform_height_mm, double platform_radius_mm);
 
+// The tags lying on the platform and on the table, in the frame of their layout. Printed on grey paper: white paper
+// beside the threads would light them by some per cent.
+std::vector<renderer::TriangleMesh> lying_tag_meshes(const calibration::TagLayout& tags);
+
 std::vector<renderer::TriangleMesh> board_meshes(const calibration::TagLayout& board);
 std::vector<renderer::TriangleMesh> spectralon_meshes(const SpectralonPanel& panel);
 std::vector<renderer::TriangleMesh> holder_meshes(const inversion::WrappedSpool& spool,

@@ -33,6 +33,14 @@ renderer::SphereLight room_lamp(const Eigen::Vector3d& diffuser_radiance,
           .radiance = diffuser_radiance * ratio * ratio};
 }
 
+void add(renderer::Scene& scene, std::vector<renderer::TriangleMesh> meshes,
+         const Eigen::Isometry3d& scene_from_mesh) {
+  for (renderer::TriangleMesh& mesh : meshes) {
+    transform(mesh, scene_from_mesh);
+    scene.meshes.push_back(std::move(mesh));
+  }
+}
+
 struct Painter {
   RigFile rig;
   std::optional<Spool> spool;
@@ -59,10 +67,12 @@ struct Painter {
         scene.meshes = holder_meshes(spool->wrapping, rig.holder_tags);
         break;
     }
-    for (renderer::TriangleMesh& mesh : table_and_platform(rig.platform_height_mm, rig.platform_radius_mm)) {
-      transform(mesh, object_from_world);
-      scene.meshes.push_back(std::move(mesh));
-    }
+    const rig::BenchTruth& truth = rig.simulation->truth;
+    const Eigen::Isometry3d world_from_ring =
+        Eigen::AngleAxisd(state.platform_angle_rad, Eigen::Vector3d::UnitZ()) * truth.platform_from_ring;
+    add(scene, table_and_platform(rig.platform_height_mm, rig.platform_radius_mm), object_from_world);
+    add(scene, lying_tag_meshes(rig.platform_ring), object_from_world * world_from_ring);
+    add(scene, lying_tag_meshes(rig.table_tags), object_from_world * truth.world_from_table_sheet);
     if (state.lamp) scene.lights.push_back(flashlight(*state.lamp, object_from_world));
     if (state.room_radiance.maxCoeff() > 0) scene.lights.push_back(room_lamp(state.room_radiance, object_from_world));
     return scene;

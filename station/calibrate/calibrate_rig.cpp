@@ -13,7 +13,6 @@ bool belongs_to(CalibrationRole role, const std::string& part) {
     case CalibrationRole::lens:
       return part == "camera";
     case CalibrationRole::turning:
-    case CalibrationRole::flat:
       return part == "platform";
     case CalibrationRole::front_light:
     case CalibrationRole::back_light:

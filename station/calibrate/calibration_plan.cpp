@@ -8,7 +8,7 @@ namespace station {
 namespace {
 
 constexpr double kRadPerDeg = M_PI / 180.0;
-constexpr std::array<const char*, 5> kRoleWords{"lens", "turning", "flat", "front_light", "back_light"};
+constexpr std::array<const char*, 4> kRoleWords{"lens", "turning", "front_light", "back_light"};
 
 Eigen::Matrix3d turn(double degrees, const Eigen::Vector3d& axis) {
   return Eigen::AngleAxisd(degrees * kRadPerDeg, axis).toRotationMatrix();
@@ -60,28 +60,13 @@ void add_lens_steps(const RigFile& rig, std::vector<CalibrationStep>& plan) {
   }
 }
 
-void add_platform_steps(const RigFile& rig, std::vector<CalibrationStep>& plan) {
-  double half_height_mm = 0;
-  for (const calibration::Tag& tag : rig.board.tags)
-    half_height_mm = std::max(half_height_mm, std::abs(tag.object_from_tag.translation().y()) + tag.size_mm * 0.75);
-  Eigen::Isometry3d standing = Eigen::Isometry3d::Identity();  // faces +x
-  standing.linear() << 0, 0, 1, 1, 0, 0, 0, 1, 0;
-  standing.translation().z() = rig.platform_height_mm + half_height_mm;
+// The empty platform: its ring and the tags on the table are all that is needed.
+void add_platform_steps(std::vector<CalibrationStep>& plan) {
   int number = 0;
   for (int angle_deg = -60; angle_deg <= 60; angle_deg += 15) {
-    CalibrationStep turning =
-        step(CalibrationRole::turning, ++number,
-             {.object = rig::BenchObject::board, .on_platform = true, .pose = standing, .room_light = true});
+    CalibrationStep turning = step(CalibrationRole::turning, ++number, {.room_light = true});
     turning.platform_angle_rad = angle_deg * kRadPerDeg;
     plan.push_back(turning);
-  }
-  number = 0;
-  for (const double away_mm : {20.0, 45.0}) {
-    Eigen::Isometry3d lying = Eigen::Isometry3d::Identity();  // face up, its top away from the camera
-    lying.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
-    lying.translation() = Eigen::Vector3d(-away_mm, 0, rig.platform_height_mm + rig.board_thickness_mm);
-    plan.push_back(step(CalibrationRole::flat, ++number,
-                        {.object = rig::BenchObject::board, .on_platform = true, .pose = lying, .room_light = true}));
   }
 }
 
@@ -123,7 +108,7 @@ CalibrationRole calibration_role(const std::string& text) {
 std::vector<CalibrationStep> make_calibration_plan(const RigFile& rig) {
   std::vector<CalibrationStep> plan;
   add_lens_steps(rig, plan);
-  add_platform_steps(rig, plan);
+  add_platform_steps(plan);
   // High enough that no tilted plate dips into the platform or its shadow.
   const double z = rig.platform_height_mm + rig.spectralon.plate_mm / 2 + 2;
   // Tilts about both axes, two depths and the picture's corners: they separate position, intensity and vignetting.

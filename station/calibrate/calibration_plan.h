@@ -10,7 +10,7 @@
 
 namespace station {
 
-enum class CalibrationRole { lens, turning, flat, front_light, back_light };
+enum class CalibrationRole { lens, turning, front_light, back_light };
 
 struct CalibrationStep {
   std::string id;  // file name without extension

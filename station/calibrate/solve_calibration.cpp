@@ -31,6 +31,26 @@ std::vector<Loaded> load(const std::filesystem::path& folder, const std::vector<
   return loaded;
 }
 
+// All pictures must come from one body at one aperture.
+CameraSetup camera_of_pictures(const RigFile& rig, const std::vector<Loaded>& loaded) {
+  const calibration::SensorPicture& first = loaded.front().raw;
+  for (const Loaded& entry : loaded) {
+    const calibration::SensorPicture& raw = entry.raw;
+    if (raw.model == first.model && raw.serial == first.serial && raw.f_number == first.f_number &&
+        raw.mosaic.size() == first.mosaic.size())
+      continue;
+    throw std::runtime_error("calibration picture " + entry.picture.id + " was taken with camera " + raw.model + " " +
+                             raw.serial + " at f/" + std::to_string(raw.f_number) + ", the first one with " +
+                             first.model + " " + first.serial + " at f/" + std::to_string(first.f_number) +
+                             "; take all of them again with one camera and aperture");
+  }
+  return {.model = first.model,
+          .serial = first.serial,
+          .lens = rig.lens_name,
+          .focus = rig.focus,
+          .f_number = first.f_number};
+}
+
 calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& lens,
                                   const Eigen::Isometry3d& world_from_camera, const std::vector<Loaded>& loaded) {
   std::vector<calibration::LightPatch> patches;
@@ -54,23 +74,25 @@ RigCalibration solve_calibration(const RigFile& rig, const std::filesystem::path
   const std::vector<Loaded> loaded = load(folder, pictures, progress);
   if (loaded.empty())
     throw std::runtime_error("no calibration pictures in " + folder.string() + "; run calibrate with the rig first");
-  std::vector<calibration::TagObservation> lens_views, flat_views;
+  std::vector<calibration::TagObservation> lens_views, still_views;
   std::vector<calibration::PlatformView> turning;
   RigCalibration result;
   for (const Loaded& entry : loaded) {
     result.picture_sha256.push_back(entry.picture.sha256);
     if (entry.picture.role == CalibrationRole::lens) lens_views.push_back(entry.tags);
-    if (entry.picture.role == CalibrationRole::flat) flat_views.push_back(entry.tags);
-    if (entry.picture.role == CalibrationRole::turning)
-      turning.push_back({.reading_rad = entry.picture.reading_rad, .seen = entry.tags});
+    if (entry.picture.role != CalibrationRole::turning) continue;
+    turning.push_back({.reading_rad = entry.picture.reading_rad, .seen = entry.tags});
+    still_views.push_back(entry.tags);
   }
+  result.camera = camera_of_pictures(rig, loaded);
   const cv::Size size = loaded.front().raw.mosaic.size();
   result.rig_name = rig.name;
   result.spectralon_albedo = rig.spectralon.albedo;
   result.linear_srgb_from_camera = rig.linear_srgb_from_camera;
   result.lens = calibration::fit_lens(lens_views, rig.board, size, rig.focal_length_guess_px);
-  result.platform = calibration::fit_platform(result.lens.lens, rig.board, turning, flat_views,
-                                              rig.platform_height_mm + rig.board_thickness_mm);
+  result.platform =
+      calibration::fit_platform(result.lens.lens, {.ring = rig.platform_ring, .table = rig.table_tags}, turning);
+  result.still_tags = calibration::still_tags(rig.table_tags, still_views);
   result.light = solve_light(rig, result.lens.lens, result.platform.world_from_camera, loaded);
   if (!result.lens.converged || !result.platform.converged || !result.light.converged)
     throw std::runtime_error(std::string("the calibration did not converge (") +

@@ -45,7 +45,7 @@ struct PlanRequest {
   std::vector<double> transmission_angles_deg = {-40, -20, 0, 20, 40};      // 5, threads horizontal
 };
 
-// Horizontal: pose, 6 reflections, 5 transmissions; vertical: pose, 6 reflections; then a dark for each view.
+// Horizontal: 2 poses, 6 reflections, 5 transmissions; vertical: 2 poses, 6 reflections; then a dark for each view.
 // Errors: std::runtime_error when the angles are not 6 and 5, or check_plan finds something.
 Plan make_capture_plan(const PlanRequest& request);
 

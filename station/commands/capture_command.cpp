@@ -35,6 +35,8 @@ void add_capture_command(CLI::App& app) {
   CLI::Option* spool = command->add_option("--spool", request.spool, "spool file");
   command->add_option("--out", request.out, "session folder")->required();
   command->add_flag("--unattended", request.unattended, "ask nobody; refused when the rig needs a person");
+  command->add_flag("--accept-calibration", request.accept_calibration,
+                    "use a calibration although it did not pass all its gates");
   CLI::Option* resume =
       command->add_flag("--resume", arguments->resume, "go on with the session in --out; needs nothing else");
   arguments->output.add_to(*command);

@@ -1,15 +1,18 @@
 #include "station/develop/develop_session.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <stdexcept>
 
 #include "calibration/develop.h"
-#include "calibration/pose.h"
 #include "renderer/image_file.h"
+#include "station/bench_reading.h"
 #include "station/capture/manifest.h"
 #include "station/capture/picture_record.h"
 #include "station/capture/sha256.h"
+#include "station/develop/mounted_holder.h"
+#include "station/develop/sheet_width.h"
 #include "station/documents/calibration_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
@@ -21,15 +24,8 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr int kMaskSamples = 8;
-constexpr int kFewestTags = 2;
 
 using Pictures = std::map<std::string, PictureRecord>;
-
-struct MountedHolder {
-  Eigen::Isometry3d world_from_holder;  // at the pose picture
-  double reading_rad = 0;               // of the turntable then
-  double rms_px = 0;
-};
 
 const PictureRecord& picture_of(const Pictures& pictures, const std::string& step) {
   const auto found = pictures.find(step);
@@ -46,29 +42,18 @@ calibration::SensorPicture read_picture(const std::filesystem::path& session, co
   return calibration::read_sensor_file(file);
 }
 
-MountedHolder measure_holder(const std::filesystem::path& session, const PictureRecord& pose_picture,
-                             const RigCalibration& calibration, const RigFile& rig) {
-  const calibration::TagObservation tags = tags_in(read_picture(session, pose_picture));
-  const auto pose = calibration::fit_pose(calibration.lens.lens, rig.holder_tags, tags);
-  if (!pose || pose->tags_used < kFewestTags)
-    throw std::runtime_error("step " + pose_picture.step + ": " + std::to_string(pose ? pose->tags_used : 0) +
-                             " of the holder's tags were found, " + std::to_string(kFewestTags) +
-                             " are needed; uncover the tags and take the picture again");
-  return {.world_from_holder = calibration.platform.world_from_camera * pose->camera_from_object,
-          .reading_rad = pose_picture.read_angle_rad,
-          .rms_px = pose->rms_px};
-}
-
-// Where things stand in one view, holder frame.
-DevelopedView place_view(const PlanStep& step, const PictureRecord& picture, const MountedHolder& mounted,
-                         const RigCalibration& calibration, double lamp_radius_mm) {
-  const double turned_rad = calibration.platform.scale * (picture.read_angle_rad - mounted.reading_rad);
-  const Eigen::Isometry3d world_from_holder =
-      Eigen::AngleAxisd(turned_rad, Eigen::Vector3d::UnitZ()) * mounted.world_from_holder;
-  const Eigen::Isometry3d holder_from_world = world_from_holder.inverse();
+// Where things stand in one view, holder frame. The platform's angle is the ring's where its tags can be read in the
+// lamp's light, else the turntable's.
+DevelopedView place_view(const PlanStep& step, const PictureRecord& picture, const BenchReading& bench,
+                         const MountedHolder& mounted, const RigCalibration& calibration, double lamp_radius_mm) {
   DevelopedView developed;
+  developed.angle_measured = bench.angle.has_value();
+  developed.platform_angle_rad =
+      bench.angle ? bench.angle->angle_rad : calibration.platform.scale * picture.read_angle_rad;
+  const Eigen::Isometry3d world_from_holder =
+      Eigen::AngleAxisd(developed.platform_angle_rad, Eigen::Vector3d::UnitZ()) * mounted.platform_from_holder;
+  const Eigen::Isometry3d holder_from_world = world_from_holder.inverse();
   developed.mounting = step.mounting;
-  developed.platform_angle_rad = calibration.platform.scale * picture.read_angle_rad;
   developed.pose_rms_px = mounted.rms_px;
   developed.image_file = "linear/" + step.id + ".exr";
   developed.mask_file = "masks/" + step.id + ".png";
@@ -82,10 +67,10 @@ DevelopedView place_view(const PlanStep& step, const PictureRecord& picture, con
   return developed;
 }
 
-void develop_view(const std::filesystem::path& session, const Pictures& pictures, const RigCalibration& calibration,
+void develop_view(const std::filesystem::path& session, const Pictures& pictures,
+                  const calibration::SensorPicture& raw, const RigCalibration& calibration,
                   const inversion::WrappedSpool& spool, DevelopedView& developed) {
   inversion::View& view = developed.view;
-  const calibration::SensorPicture raw = read_picture(session, picture_of(pictures, view.id));
   const calibration::SensorPicture dark = read_picture(session, picture_of(pictures, "dark-" + view.id));
   const calibration::Developed picture = calibration::develop(raw, {.dark_dn = calibration::master_dark({dark}),
                                                                     .vignetting = calibration.light.vignetting,
@@ -107,6 +92,29 @@ void develop_view(const std::filesystem::path& session, const Pictures& pictures
   renderer::write_png(session / developed.mask_file, view.mask);
 }
 
+// Median over the reflections that show both edges.
+std::optional<double> measured_width_mm(const DevelopedViews& developed, const inversion::WrappedSpool& spool) {
+  std::vector<double> widths;
+  for (const DevelopedView& view : developed.views) {
+    if (view.view.transmission) continue;
+    if (const auto width = sheet_width_mm(view.view.image, view.view.camera, spool)) widths.push_back(*width);
+  }
+  if (widths.empty()) return std::nullopt;
+  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
+  std::nth_element(widths.begin(), middle, widths.end());
+  return *middle;
+}
+
+void require_expected_width(double width_mm, const Spool& spool) {
+  constexpr double kTolerance = 0.05;  // a pixel or two at either edge; a forgotten turn is 0.02
+  const double expected_mm = spool.wrapping.turns * spool.wrapping.thread_diameter_mm;
+  if (std::abs(width_mm - expected_mm) <= kTolerance * expected_mm) return;
+  throw std::runtime_error("spool \"" + spool.name + "\": " + std::to_string(spool.wrapping.turns) + " turns of " +
+                           number_text(spool.wrapping.thread_diameter_mm, 3) + " mm would be " +
+                           number_text(expected_mm, 2) + " mm wide, the pictures show " + number_text(width_mm, 2) +
+                           " mm; correct turns or thread_diameter_mm in the spool file");
+}
+
 }  // namespace
 
 DevelopedViews develop_session(const std::filesystem::path& session, ProgressStyle progress_style) {
@@ -114,9 +122,13 @@ DevelopedViews develop_session(const std::filesystem::path& session, ProgressSty
   const RigCalibration calibration = read_calibration(session / "calibration");
   const Pictures pictures = taken_pictures(read_journal(session / "journal.jsonl").records);
   std::map<rig::Mounting, MountedHolder> mounted;
-  for (const PlanStep& step : asked.plan.steps)
-    if (step.kind == StepKind::pose)
-      mounted[step.mounting] = measure_holder(session, picture_of(pictures, step.id), calibration, asked.rig);
+  std::map<rig::Mounting, std::vector<PosePicture>> posed;
+  for (const PlanStep& step : asked.plan.steps) {
+    if (step.kind != StepKind::pose) continue;
+    const PictureRecord& picture = picture_of(pictures, step.id);
+    posed[step.mounting].push_back({step.id, picture.read_angle_rad, tags_in(read_picture(session, picture))});
+  }
+  for (const auto& [mounting, seen] : posed) mounted[mounting] = measure_holder(seen, calibration, asked.rig);
 
   ProgressDisplay progress("develop", progress_style);
   DevelopedViews developed;
@@ -125,10 +137,16 @@ DevelopedViews develop_session(const std::filesystem::path& session, ProgressSty
   for (const PlanStep& step : asked.plan.steps) {
     if (step.kind != StepKind::view) continue;
     progress.show(static_cast<int>(developed.views.size()), total, step.id);
-    developed.views.push_back(place_view(step, picture_of(pictures, step.id), mounted.at(step.mounting), calibration,
-                                         asked.rig.lamp_radius_mm));
-    develop_view(session, pictures, calibration, asked.spool.wrapping, developed.views.back());
+    const PictureRecord& record = picture_of(pictures, step.id);
+    const calibration::SensorPicture raw = read_picture(session, record);
+    const BenchReading bench = read_bench(calibration, asked.rig, tags_in(raw));
+    require_calibrated_bench(calibration, bench, record.read_angle_rad, "view " + step.id);
+    developed.views.push_back(
+        place_view(step, record, bench, mounted.at(step.mounting), calibration, asked.rig.lamp_radius_mm));
+    develop_view(session, pictures, raw, calibration, asked.spool.wrapping, developed.views.back());
   }
+  developed.sheet_width_mm = measured_width_mm(developed, asked.spool.wrapping);
+  if (developed.sheet_width_mm) require_expected_width(*developed.sheet_width_mm, asked.spool);
   write_json_file(session / "linear" / "views.json", to_json(developed));
   FileSystem disk;
   write_manifest(session / "linear", disk);
@@ -140,10 +158,13 @@ DevelopedViews develop_session(const std::filesystem::path& session, ProgressSty
 std::string describe(const DevelopedViews& developed) {
   std::string text;
   for (const DevelopedView& view : developed.views)
-    text += view.view.id + ": " + number_text(view.platform_angle_rad * kDegPerRad, 2) + " deg, exposure " +
+    text += view.view.id + ": " + number_text(view.platform_angle_rad * kDegPerRad, 2) +
+            (view.angle_measured ? " deg (tags), exposure " : " deg (turntable), exposure ") +
             number_text(view.exposure_s, 4) + " s, " + std::to_string(view.masked_pixels) +
             " masked pixels, saturated " + number_text(100 * view.saturated_fraction, 2) + " %, holder tags " +
             number_text(view.pose_rms_px, 3) + " px\n";
+  if (developed.sheet_width_mm)
+    text += "sheet of threads: " + number_text(*developed.sheet_width_mm, 2) + " mm wide\n";
   return text;
 }
 

@@ -1,5 +1,6 @@
 #include "station/documents/calibration_file.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "station/documents/reader.h"
@@ -38,6 +39,48 @@ Eigen::MatrixXd read_matrix(ObjectReader& reader, const std::string& key, Eigen:
   return matrix;
 }
 
+json gates_json(const std::vector<calibration::Gate>& gates) {
+  json list = json::array();
+  for (const calibration::Gate& gate : gates)
+    list.push_back({{"name", gate.name},
+                    {"value", gate.value},
+                    {"limit", gate.limit},
+                    {"passed", gate.passed},
+                    {"reason", gate.reason}});
+  return list;
+}
+
+std::vector<calibration::Gate> read_gates(ObjectReader& reader) {
+  std::vector<calibration::Gate> gates;
+  for (ObjectReader& entry : reader.objects("gates")) {
+    gates.push_back({.name = entry.text("name"),
+                     .value = entry.number("value", -1e12, 1e12),
+                     .limit = entry.number("limit", -1e12, 1e12),
+                     .passed = entry.flag("passed"),
+                     .reason = entry.text("reason")});
+    entry.finish();
+  }
+  return gates;
+}
+
+json camera_json(const CameraSetup& camera) {
+  return {{"model", camera.model},
+          {"serial", camera.serial},
+          {"lens", camera.lens},
+          {"focus", camera.focus},
+          {"f_number", camera.f_number}};
+}
+
+CameraSetup parse_camera(ObjectReader reader) {
+  CameraSetup camera{.model = reader.text("model"),
+                     .serial = reader.text("serial"),
+                     .lens = reader.text("lens"),
+                     .focus = reader.text("focus"),
+                     .f_number = reader.number("f_number", 0.5, 100)};
+  reader.finish();
+  return camera;
+}
+
 json lens_json(const calibration::LensFit& fit) {
   const calibration::Lens& lens = fit.lens;
   return {{"width_px", lens.width_px},
@@ -72,11 +115,57 @@ calibration::LensFit parse_lens(ObjectReader reader) {
   return fit;
 }
 
-json platform_json(const calibration::PlatformFit& fit) {
+json degrees_json(const std::vector<double>& angles_rad) {
   json angles = json::array();
-  for (const double angle : fit.angles_rad) angles.push_back(angle / kRadPerDeg);
+  for (const double angle : angles_rad) angles.push_back(angle / kRadPerDeg);
+  return angles;
+}
+
+std::vector<double> read_degrees(ObjectReader& reader, const std::string& key) {
+  std::vector<double> angles_rad;
+  for (const double angle : reader.numbers(key)) angles_rad.push_back(angle * kRadPerDeg);
+  return angles_rad;
+}
+
+// Each tag as [id, x, y, x, y, x, y, x, y].
+json still_tags_json(const calibration::StillTags& tags) {
+  json list = json::array();
+  for (const auto& [id, corners] : tags) {
+    json tag = json::array({id});
+    for (const Eigen::Vector2d& corner : corners) {
+      tag.push_back(corner.x());
+      tag.push_back(corner.y());
+    }
+    list.push_back(tag);
+  }
+  return list;
+}
+
+calibration::StillTags read_still_tags(ObjectReader& reader, const std::string& key) {
+  const std::string expected = "expected a list of [id, x, y, x, y, x, y, x, y]";
+  const json& list = reader.raw(key);
+  if (!list.is_array()) reader.refuse(key, expected);
+  calibration::StillTags tags;
+  for (const json& tag : list) {
+    const bool numbers = tag.is_array() && tag.size() == 9 &&
+                         std::all_of(tag.begin(), tag.end(), [](const json& entry) { return entry.is_number(); });
+    if (!numbers || !tag[0].is_number_integer()) reader.refuse(key, expected);
+    auto& corners = tags[tag[0].get<int>()];
+    for (std::size_t c = 0; c < 4; ++c) corners[c] = {tag[2 * c + 1].get<double>(), tag[2 * c + 2].get<double>()};
+  }
+  return tags;
+}
+
+json platform_json(const calibration::PlatformFit& fit, const calibration::StillTags& still) {
   return {{"world_from_camera", to_json(fit.world_from_camera)},
-          {"angles_deg", angles},
+          {"world_from_ring", to_json(fit.world_from_ring)},
+          {"world_from_table", to_json(fit.world_from_table)},
+          {"angles_deg", degrees_json(fit.angles_rad)},
+          {"readings_deg", degrees_json(fit.readings_rad)},
+          {"view_rms_px", fit.view_rms_px},
+          {"axis_to_table_normal_deg", fit.axis_to_table_normal_rad / kRadPerDeg},
+          {"table_tags_px", still_tags_json(still)},
+          {"gates", gates_json(fit.gates)},
           {"angle_scale", fit.scale},
           {"angle_offset_deg", fit.offset_rad / kRadPerDeg},
           {"angle_rms_deg", fit.angle_rms_rad / kRadPerDeg},
@@ -85,10 +174,17 @@ json platform_json(const calibration::PlatformFit& fit) {
           {"axis_covariance", matrix_json(fit.axis_covariance)}};
 }
 
-calibration::PlatformFit parse_platform(ObjectReader reader) {
+calibration::PlatformFit parse_platform(ObjectReader reader, calibration::StillTags& still) {
   calibration::PlatformFit fit;
   fit.world_from_camera = reader.transform("world_from_camera");
-  for (const double angle : reader.numbers("angles_deg")) fit.angles_rad.push_back(angle * kRadPerDeg);
+  fit.world_from_ring = reader.transform("world_from_ring");
+  fit.world_from_table = reader.transform("world_from_table");
+  fit.angles_rad = read_degrees(reader, "angles_deg");
+  fit.readings_rad = read_degrees(reader, "readings_deg");
+  fit.view_rms_px = reader.numbers("view_rms_px");
+  fit.axis_to_table_normal_rad = reader.number("axis_to_table_normal_deg", 0, 180) * kRadPerDeg;
+  still = read_still_tags(reader, "table_tags_px");
+  fit.gates = read_gates(reader);
   fit.scale = reader.number("angle_scale", 0.1, 10);
   fit.offset_rad = reader.number("angle_offset_deg", -360, 360) * kRadPerDeg;
   fit.angle_rms_rad = reader.number("angle_rms_deg", 0, 360) * kRadPerDeg;
@@ -131,15 +227,20 @@ calibration::LightFit parse_light(ObjectReader reader, double& albedo) {
 
 }  // namespace
 
+std::vector<calibration::Gate> all_gates(const RigCalibration& calibration) {
+  return calibration.platform.gates;
+}
+
 json to_json(const RigCalibration& calibration) {
   return {{"format", "threadstation/calibration"},
           {"version", 1},
           {"rig", calibration.rig_name},
           {"utc", calibration.utc},
           {"software", calibration.software},
+          {"camera", camera_json(calibration.camera)},
           {"linear_srgb_from_camera", calibration.linear_srgb_from_camera},
           {"lens", lens_json(calibration.lens)},
-          {"platform", platform_json(calibration.platform)},
+          {"platform", platform_json(calibration.platform, calibration.still_tags)},
           {"light", light_json(calibration.light, calibration.spectralon_albedo)},
           {"picture_sha256", calibration.picture_sha256}};
 }
@@ -150,10 +251,11 @@ RigCalibration parse_calibration(const json& document, const std::string& source
   calibration.rig_name = reader.text("rig");
   calibration.utc = reader.text("utc");
   calibration.software = reader.text("software");
+  calibration.camera = parse_camera(reader.object("camera"));
   const auto colour = reader.numbers("linear_srgb_from_camera", 9);
   std::copy(colour.begin(), colour.end(), calibration.linear_srgb_from_camera.begin());
   calibration.lens = parse_lens(reader.object("lens"));
-  calibration.platform = parse_platform(reader.object("platform"));
+  calibration.platform = parse_platform(reader.object("platform"), calibration.still_tags);
   calibration.light = parse_light(reader.object("light"), calibration.spectralon_albedo);
   const json& hashes = reader.raw("picture_sha256");
   if (!hashes.is_array()) reader.refuse("picture_sha256", "expected a list of text");

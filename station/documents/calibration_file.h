@@ -10,18 +10,31 @@
 #include "calibration/lens.h"
 #include "calibration/light.h"
 #include "calibration/platform.h"
+#include "calibration/still_tags.h"
 
 namespace station {
 
+// What the lens calibration belongs to: another body, lens, focus or aperture makes other pictures.
+struct CameraSetup {
+  std::string model, serial;  // from the pictures
+  std::string lens, focus;    // from the rig file: most lenses say neither
+  double f_number = 8.0;      // from the pictures
+};
+
 struct RigCalibration {
+  CameraSetup camera;
   calibration::LensFit lens;
   calibration::PlatformFit platform;
-  calibration::LightFit light;  // light 0 = front, 1 = back
+  calibration::StillTags still_tags;  // of the table, as the platform pictures showed them
+  calibration::LightFit light;        // light 0 = front, 1 = back
   double spectralon_albedo = 0.99;
   std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major; for display only
   std::string rig_name, utc, software;
   std::vector<std::string> picture_sha256;  // of the pictures it was solved from, in their order
 };
+
+// Of all its parts, in their order.
+std::vector<calibration::Gate> all_gates(const RigCalibration& calibration);
 
 nlohmann::json to_json(const RigCalibration& calibration);
 RigCalibration parse_calibration(const nlohmann::json& document, const std::string& source);

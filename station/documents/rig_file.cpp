@@ -22,6 +22,12 @@ Eigen::Isometry3d looking_at(const Eigen::Vector3d& position, const Eigen::Vecto
   return pose;
 }
 
+Eigen::Isometry3d lying_at(double x_mm, double y_mm, double turn_deg) {
+  Eigen::Isometry3d pose(Eigen::Translation3d(x_mm, y_mm, 0));
+  pose.rotate(Eigen::AngleAxisd(turn_deg * kRadPerDeg, Eigen::Vector3d::UnitZ()));
+  return pose;
+}
+
 calibration::TagLayout parse_board(ObjectReader board, double& thickness_mm) {
   const int rows = board.integer("rows", 1, 100), columns = board.integer("columns", 1, 100);
   const double tag_mm = board.number("tag_mm", 0.5, 500);
@@ -120,6 +126,11 @@ SimulatedRig parse_simulation(ObjectReader simulation) {
   truth.front.radius_mm = truth.back.radius_mm = lamp.number("radius_mm", 0.1, 100);
   if (truth.front.intensity.minCoeff() < 0) lamp.refuse("intensity_mm2", "cannot be negative");
   lamp.finish();
+  ObjectReader prints = simulation.object("prints");
+  const std::vector<double> ring = prints.numbers("ring_offset_mm", 2), sheet = prints.numbers("table_offset_mm", 2);
+  truth.platform_from_ring = lying_at(ring[0], ring[1], prints.number("ring_turn_deg", -180, 180));
+  truth.world_from_table_sheet = lying_at(sheet[0], sheet[1], prints.number("table_turn_deg", -180, 180));
+  prints.finish();
   truth.room_radiance = simulation.vector3("room_radiance");
   truth.placement_mm = simulation.number("placement_mm", 0, 20);
   truth.placement_rad = simulation.number("placement_deg", 0, 20) * kRadPerDeg;
@@ -143,6 +154,11 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
   rig.camera_driver = reader.choice("camera", {"simulated"});
   rig.turntable_driver = reader.choice("turntable", {"simulated"});
   rig.operator_driver = reader.choice("operator", {"simulated", "console"});
+  ObjectReader setup = reader.object("camera_setup");
+  rig.lens_name = setup.text("lens");
+  rig.focus = setup.text("focus");
+  rig.calibration_valid_days = setup.number("calibration_valid_days", 0.01, 3650);
+  setup.finish();
   rig.focal_length_guess_px = reader.number("focal_length_guess_px", 10, 1e6);
   const std::vector<double> colour = reader.numbers("linear_srgb_from_camera", 9);
   std::copy(colour.begin(), colour.end(), rig.linear_srgb_from_camera.begin());
@@ -174,7 +190,10 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
   rig.lamp_radius_mm = lamps.number("radius_mm", 0.1, 100);
   lamps.finish();
   parse_capture(reader.object("capture"), rig);
-  if (reader.has("simulation")) rig.simulation = parse_simulation(reader.object("simulation"));
+  if (reader.has("simulation")) {
+    rig.simulation = parse_simulation(reader.object("simulation"));
+    rig.simulation->truth.platform_from_ring.pretranslate(Eigen::Vector3d(0, 0, rig.platform_height_mm));
+  }
   if ((rig.camera_driver == "simulated" || rig.turntable_driver == "simulated") && !rig.simulation)
     reader.refuse("simulation", "is missing; a rig with simulated devices needs it");
   reader.finish();

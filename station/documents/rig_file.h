@@ -30,7 +30,9 @@ struct RigFile {
   std::string name;
   std::string camera_driver, turntable_driver, operator_driver;              // "simulated"; operator also "console"
   std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major; for display only
-  double focal_length_guess_px = 0;                                          // from the lens's engraving
+  std::string lens_name, focus;                                              // as people tell them apart
+  double calibration_valid_days = 0;
+  double focal_length_guess_px = 0;                                             // from the lens's engraving
   Eigen::Isometry3d world_from_camera_by_tape = Eigen::Isometry3d::Identity();  // OpenCV axes; roughly
   calibration::TagLayout board;
   double board_thickness_mm = 0;

@@ -18,6 +18,7 @@ json view_json(const DevelopedView& developed) {
           {"light_side", view.transmission ? "back" : "front"},
           {"mounting", developed.mounting == rig::Mounting::horizontal ? "horizontal" : "vertical"},
           {"platform_angle_deg", developed.platform_angle_rad / kRadPerDeg},
+          {"angle_from", developed.angle_measured ? "tags" : "turntable"},
           {"exposure_s", developed.exposure_s},
           {"image_file", developed.image_file},
           {"mask_file", developed.mask_file},
@@ -45,6 +46,7 @@ DevelopedView parse_view(ObjectReader reader) {
                            ? rig::Mounting::horizontal
                            : rig::Mounting::vertical;
   developed.platform_angle_rad = reader.number("platform_angle_deg", -720, 720) * kRadPerDeg;
+  developed.angle_measured = reader.choice("angle_from", {"tags", "turntable"}) == "tags";
   developed.exposure_s = reader.number("exposure_s", 0, 3600);
   developed.image_file = reader.text("image_file");
   developed.mask_file = reader.text("mask_file");
@@ -75,10 +77,12 @@ DevelopedView parse_view(ObjectReader reader) {
 json to_json(const DevelopedViews& views) {
   json list = json::array();
   for (const DevelopedView& view : views.views) list.push_back(view_json(view));
-  return {{"format", "threadstation/views"},
-          {"version", 1},
-          {"linear_srgb_from_camera", views.linear_srgb_from_camera},
-          {"views", list}};
+  json document = {{"format", "threadstation/views"},
+                   {"version", 1},
+                   {"linear_srgb_from_camera", views.linear_srgb_from_camera},
+                   {"views", list}};
+  if (views.sheet_width_mm) document["sheet_width_mm"] = *views.sheet_width_mm;
+  return document;
 }
 
 DevelopedViews read_views(const std::filesystem::path& session) {
@@ -88,6 +92,7 @@ DevelopedViews read_views(const std::filesystem::path& session) {
   DevelopedViews result;
   const auto colour = reader.numbers("linear_srgb_from_camera", 9);
   std::copy(colour.begin(), colour.end(), result.linear_srgb_from_camera.begin());
+  if (reader.has("sheet_width_mm")) result.sheet_width_mm = reader.number("sheet_width_mm", 0, 1000);
   for (const ObjectReader& view : reader.objects("views")) result.views.push_back(parse_view(view));
   reader.finish();
   return result;

@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ namespace station {
 struct DevelopedView {
   inversion::View view;  // image and mask are read on demand (read_view_pictures)
   rig::Mounting mounting = rig::Mounting::horizontal;
-  double platform_angle_rad = 0.0;  // true, measured through the calibration
+  double platform_angle_rad = 0.0;
+  bool angle_measured = false;  // from the ring's tags in this picture; else the turntable's reading, calibrated
   double exposure_s = 0.0;
   std::string image_file, mask_file;  // relative to the session folder
   int masked_pixels = 0;
@@ -25,6 +27,7 @@ struct DevelopedView {
 
 struct DevelopedViews {
   std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major; for display only
+  std::optional<double> sheet_width_mm;  // turns x thread diameter as the pictures show it
   std::vector<DevelopedView> views;
 };
 

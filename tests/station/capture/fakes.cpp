@@ -197,7 +197,7 @@ RunOutcome FakeStation::run(const fs::path& folder, const Plan& plan) {
 Plan small_plan() {
   const Plan whole = make_capture_plan({});
   Plan plan;
-  for (const char* id : {"pose-horizontal", "reflection-horizontal-1", "reflection-horizontal-2", "transmission-1",
+  for (const char* id : {"pose-horizontal-1", "reflection-horizontal-1", "reflection-horizontal-2", "transmission-1",
                          "dark-reflection-horizontal-1", "dark-reflection-horizontal-2", "dark-transmission-1"}) {
     plan.steps.push_back(*find_step(whole, id));
   }

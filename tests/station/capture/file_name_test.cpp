@@ -8,7 +8,7 @@ namespace station {
 namespace {
 
 TEST(FileName, NamesOfStepsAndPicturesAreAllowed) {
-  for (const char* name : {"pose-horizontal", "dark-reflection-vertical-6.arw", "Spool_12", "a", "console.arw"}) {
+  for (const char* name : {"pose-horizontal-1", "dark-reflection-vertical-6.arw", "Spool_12", "a", "console.arw"}) {
     EXPECT_FALSE(problem_with_name(name)) << *problem_with_name(name);
   }
 }

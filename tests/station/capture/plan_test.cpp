@@ -101,7 +101,7 @@ TEST(Plan, SaysInOneLineWhatIsWrongWithAStep) {
   EXPECT_THAT(problem_after("transmission-2", [](PlanStep& s) { s.room_light = true; }), HasSubstr("room light off"));
   EXPECT_THAT(problem_after("dark-transmission-2", [](PlanStep& s) { s.lamp = rig::Lamp::front; }),
               HasSubstr("lamp and the room light off"));
-  EXPECT_THAT(problem_after("pose-vertical", [](PlanStep& s) { s.mounting = rig::Mounting::horizontal; }),
+  EXPECT_THAT(problem_after("reflection-horizontal-1", [](PlanStep& s) { s.mounting = rig::Mounting::vertical; }),
               HasSubstr("a pose picture with its mounting"));
   EXPECT_THAT(check_plan(Plan{}).value_or(""), HasSubstr("no view"));
 }

@@ -92,7 +92,7 @@ TEST_F(RunnerTest, ReportsProgressUpToTheEnd) {
     EXPECT_EQ(reports[i].done, i);
     EXPECT_EQ(reports[i].total, 7U);
   }
-  EXPECT_EQ(reports.front().step, "pose-horizontal");
+  EXPECT_EQ(reports.front().step, "pose-horizontal-1");
   EXPECT_GT(reports.front().seconds_left, 0) << "a guess before anything was measured";
   EXPECT_NEAR(reports[2].seconds_left, 5 * 10, 1e-9) << "five steps left, of the median duration";
   EXPECT_EQ(reports.back().seconds_left, 0);
@@ -156,7 +156,7 @@ TEST_F(RunnerTest, AFailedDeviceStopsThePlatformIsJournalledAndTheSessionResumes
 TEST_F(RunnerTest, APlatformThatReadsAnotherAngleIsAnError) {
   fake.turntable.slips = true;
   EXPECT_THAT(message_of([&] { fake.run(path, small_plan()); }),
-              HasSubstr("asked to turn to 0.000000 deg and reads 2.86"));
+              HasSubstr("asked to turn to -35.000000 deg and reads -32.13"));
   EXPECT_EQ(count_events(path, "picture"), 0U);
 }
 
@@ -164,7 +164,7 @@ TEST_F(RunnerTest, AStalePictureOfTheCameraIsRefused) {
   fake.options.choose_exposure = nullptr;
   fake.camera.stale = true;
   EXPECT_THAT(message_of([&] { fake.run(path, small_plan()); }),
-              HasSubstr("delivered the picture of 'pose-horizontal' again"));
+              HasSubstr("delivered the picture of 'pose-horizontal-1' again"));
   EXPECT_EQ(count_events(path, "picture"), 1U);
   expect_resume_completes(small_plan());
 }
@@ -215,7 +215,7 @@ TEST_F(RunnerTest, TakesAgainWhatWasDamagedOrLostAndWhatNobodyNamed) {
   const auto after = pictures_of(path);
   EXPECT_NE(after.at("reflection-horizontal-1").sha256, before.at("reflection-horizontal-1").sha256);
   EXPECT_NE(after.at("dark-reflection-horizontal-2").sha256, before.at("dark-reflection-horizontal-2").sha256);
-  for (const char* kept : {"pose-horizontal", "reflection-horizontal-2", "transmission-1", "dark-transmission-1"}) {
+  for (const char* kept : {"pose-horizontal-1", "reflection-horizontal-2", "transmission-1", "dark-transmission-1"}) {
     EXPECT_EQ(after.at(kept).sha256, before.at(kept).sha256) << kept;
   }
 }

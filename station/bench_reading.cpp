@@ -1,0 +1,51 @@
+#include "station/bench_reading.h"
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+namespace station {
+namespace {
+
+constexpr double kStill_mm = 0.1;
+constexpr double kLargestSlip_rad = 0.5 * M_PI / 180.0;
+constexpr int kFewestRingTags = 2;
+
+}  // namespace
+
+BenchReading read_bench(const RigCalibration& calibration, const RigFile& rig,
+                        const calibration::TagObservation& seen) {
+  BenchReading found;
+  found.shift = calibration::shift_of(calibration.still_tags, seen);
+  found.angle = calibration::measure_angle(calibration.lens.lens, calibration.platform, rig.platform_ring, seen);
+  if (found.angle && found.angle->tags_used < kFewestRingTags) found.angle.reset();
+  return found;
+}
+
+double still_limit_px(const RigCalibration& calibration) {
+  const double distance_mm =
+      (calibration.platform.world_from_camera.translation() - calibration.platform.world_from_table.translation())
+          .norm();
+  return kStill_mm * calibration.lens.lens.fx_px / distance_mm;
+}
+
+void require_calibrated_bench(const RigCalibration& calibration, const BenchReading& found, double reading_rad,
+                              const std::string& picture) {
+  if (found.shift) {
+    const auto problem = calibration::shift_problem(*found.shift, still_limit_px(calibration), picture);
+    if (problem) throw std::runtime_error(*problem);
+  }
+  if (!found.angle) return;
+  const double expected_rad = calibration.platform.scale * reading_rad;
+  const double slip_rad = std::remainder(found.angle->angle_rad - expected_rad, 2 * M_PI);
+  if (std::abs(slip_rad) <= kLargestSlip_rad) return;
+  char text[300];
+  std::snprintf(
+      text, sizeof text,
+      "%s: the platform's tags stand at %.2f degrees, the turntable reads %.2f: it slipped or lost steps; see "
+      "that nothing blocks it, home it and take the picture again",
+      picture.c_str(), found.angle->angle_rad * 180 / M_PI, expected_rad * 180 / M_PI);
+  throw std::runtime_error(text);
+}
+
+}  // namespace station
