@@ -40,6 +40,7 @@ struct Unknowns {
   std::vector<Vector2d> beams;
   Eigen::Vector4d lamp = {0, 0, 0, 1};  // log intensity over the seed (RGB), mu
   Vector2d droop{0.08, 0.0};            // published shape, incidence alone
+  double table = 0.03;                  // albedo
   Vector2d vignetting = Vector2d::Zero();
   std::vector<double> log_outputs;  // per picture
 };
@@ -49,20 +50,21 @@ struct PatchResidual {
   BeamFrame frame;
   Vector3d seed_intensity;
   double albedo, r2;
+  double bounce;  // table_bounce
 
   template <typename T>
-  void predict(const T* position, const T* beam, const T* lamp, const T* droop, const T* vignetting,
+  void predict(const T* position, const T* beam, const T* lamp, const T* droop, const T* table, const T* vignetting,
                const T* log_output, T* radiance) const {
     using std::exp;
     const T unit = unit_radiance<T>(patch, position, frame.direction(beam), lamp[3], droop, albedo);
-    const T scale = exp(*log_output) * vignetting_gain(r2, vignetting) * unit;
+    const T scale = exp(*log_output) * vignetting_gain(r2, vignetting) * (unit + *table * (albedo / M_PI * bounce));
     for (int c = 0; c < 3; ++c) radiance[c] = scale * exp(lamp[c]) * seed_intensity[c];
   }
 
   template <typename T>
-  bool operator()(const T* position, const T* beam, const T* lamp, const T* droop, const T* vignetting,
-                  const T* log_output, T* residual) const {
-    predict(position, beam, lamp, droop, vignetting, log_output, residual);
+  bool operator()(const T* position, const T* beam, const T* lamp, const T* droop, const T* table,
+                  const T* vignetting, const T* log_output, T* residual) const {
+    predict(position, beam, lamp, droop, table, vignetting, log_output, residual);
     for (int c = 0; c < 3; ++c) residual[c] = (residual[c] - patch.radiance[c]) / patch.sigma[c];
     return true;
   }
@@ -178,6 +180,8 @@ class LightSolver {
   LightSolver(const std::vector<LightPatch>& patches, const std::vector<LightGuess>& guesses,
               const LightOptions& options, const std::vector<LightPicture>& pictures)
       : patches_(patches), guesses_(guesses), options_(options), pictures_(pictures) {
+    for (const LightPatch& patch : patches_)
+      bounces_.push_back(table_bounce(patch, guesses_[static_cast<std::size_t>(patch.light)], options_.table_mm));
     seed_intensity();
   }
 
@@ -224,13 +228,14 @@ class LightSolver {
   // without a usable patch.
   std::vector<Vector3d> relative_errors(const Unknowns& x, int picture) const {
     std::vector<Vector3d> errors;
-    for (const LightPatch& patch : patches_) {
+    for (std::size_t number = 0; number < patches_.size(); ++number) {
+      const LightPatch& patch = patches_[number];
       if (patch.picture != picture) continue;
       const auto light = static_cast<std::size_t>(patch.light);
       Vector3d radiance;
-      residual(patch).predict(x.positions[light].data(), x.beams[light].data(), x.lamp.data(), x.droop.data(),
-                              x.vignetting.data(), &x.log_outputs[static_cast<std::size_t>(picture)],
-                              radiance.data());
+      residual(number).predict(x.positions[light].data(), x.beams[light].data(), x.lamp.data(), x.droop.data(),
+                               &x.table, x.vignetting.data(), &x.log_outputs[static_cast<std::size_t>(picture)],
+                               radiance.data());
       errors.push_back((radiance.array() / patch.radiance.array() - 1.0).matrix());
     }
     return errors;
@@ -241,22 +246,24 @@ class LightSolver {
   BeamFrame frame(std::size_t light) const { return BeamFrame(guesses_[light]); }
 
  private:
-  PatchResidual residual(const LightPatch& patch) const {
-    return {patch, frame(static_cast<std::size_t>(patch.light)), seed_, options_.albedo,
-            radius_squared(patch.pixel, options_.image_size)};
+  PatchResidual residual(std::size_t number) const {
+    const LightPatch& patch = patches_[number];
+    return {patch,           frame(static_cast<std::size_t>(patch.light)),     seed_,
+            options_.albedo, radius_squared(patch.pixel, options_.image_size), bounces_[number]};
   }
 
   void pose_problem(ceres::Problem& problem, Unknowns& x, int without) const {
     std::vector<double> steepness(pictures_.size(), 0.0);  // tangent of the angle of incidence: what a tilt changes
-    for (const LightPatch& patch : patches_) {
+    for (std::size_t number = 0; number < patches_.size(); ++number) {
+      const LightPatch& patch = patches_[number];
       if (patch.picture == without) continue;
       const auto light = static_cast<std::size_t>(patch.light), picture = static_cast<std::size_t>(patch.picture);
       const double cosine = (guesses_[light].position - patch.point).normalized().dot(patch.normal);
       steepness[picture] = std::max(steepness[picture], std::sqrt(1.0 - cosine * cosine) / std::max(cosine, 0.05));
       problem.AddResidualBlock(
-          new ceres::AutoDiffCostFunction<PatchResidual, 3, 3, 2, 4, 2, 2, 1>(new PatchResidual(residual(patch))),
+          new ceres::AutoDiffCostFunction<PatchResidual, 3, 3, 2, 4, 2, 1, 2, 1>(new PatchResidual(residual(number))),
           new ceres::HuberLoss(4.0), x.positions[light].data(), x.beams[light].data(), x.lamp.data(), x.droop.data(),
-          x.vignetting.data(), &x.log_outputs[picture]);
+          &x.table, x.vignetting.data(), &x.log_outputs[picture]);
     }
     add_priors(problem, x, steepness);
   }
@@ -280,6 +287,7 @@ class LightSolver {
     }
     // A flashlight without optics of its own has mu between 0 and 2; panels droop by 0 to 16 %.
     add_prior<4>(problem, x.lamp.data(), {0, 0, 0, 1}, {100, 100, 100, 1});
+    add_prior<1>(problem, &x.table, Eigen::Matrix<double, 1, 1>(0.03), Eigen::Matrix<double, 1, 1>(0.03));
     add_prior<2>(problem, x.droop.data(), {0.08, 0.0}, {0.1, options_.published_droop_only ? 1e-6 : 0.05});
     // Lenses darken by up to about half towards the corners.
     add_prior<2>(problem, x.vignetting.data(), Vector2d::Zero(), Vector2d::Constant(0.5));
@@ -305,6 +313,7 @@ class LightSolver {
   const std::vector<LightGuess>& guesses_;
   const LightOptions& options_;
   const std::vector<LightPicture>& pictures_;
+  std::vector<double> bounces_;  // one per patch
   Vector3d seed_;
 };
 
@@ -506,6 +515,7 @@ LightFit fit_light(const std::vector<LightPatch>& patches, const std::vector<Lig
   fit.beam_exponent = x.lamp[3];
   fit.intensity = solver.seed().array() * x.lamp.head<3>().array().exp();
   fit.droop = x.droop;
+  fit.table_albedo = x.table;
   fit.vignetting = {.v0 = x.vignetting[0], .v1 = x.vignetting[1]};
   fit.patches_used = static_cast<int>(used.size());
   double relative = 0.0;

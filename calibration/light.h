@@ -3,7 +3,8 @@
 //
 // Radiance of a patch: output(picture) * gain(pixel) * albedo / pi * panel * I_c * cos^mu(theta_l) * cos(theta_i) / d^2,
 // d = |light - patch|, theta_i at the panel, theta_l from the lamp's axis; panel = 1 + droop[0] * s (spectralon.h) +
-// droop[1] * 2 (cos(theta_i) - cos(8 degrees)): the published shape, and what a panel may differ from it by. The
+// droop[1] * 2 (cos(theta_i) - cos(8 degrees)): the published shape, and what a panel may differ from it by. The table
+// around, however black, sends light to panels that lean: its albedo is fitted, too (3 % of it put lamps 3 mm off). The
 // lamp, its intensity and beam are the same at every place; every place has its own position and axis. Source of the
 // beam: Queau et al. 2018, doi 10.1007/s10851-017-0761-1.
 #pragma once
@@ -60,6 +61,7 @@ struct LightOptions {
   cv::Size image_size{};
   double drift = 0.005;               // of the lamp's output from picture to picture, without a reading
   double pose_sigma_rad = 0.002;      // of the panel's direction in a picture
+  double table_mm = 0;                // world z of the dark plane that the bench stands on
   bool published_droop_only = false;  // the panel droops as the published one does: no second term
 };
 
@@ -78,6 +80,7 @@ struct LightFit {
   double beam_exponent = 0.0;
   Eigen::Vector3d intensity = Eigen::Vector3d::Zero();  // RGB, radiance unit x mm^2, along the axis
   Eigen::Vector2d droop = Eigen::Vector2d::Zero();      // of the published shape, and with incidence alone
+  double table_albedo = 0.0;
   Vignetting vignetting;
   // What leaving out one picture after the other changes (jackknife), and what another shape of the panel's droop
   // changes. Least squares' own covariance knows of noise only and was a twentieth of the error in simulations.

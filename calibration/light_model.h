@@ -69,4 +69,26 @@ T unit_radiance(const LightPatch& patch, const T* position, const Eigen::Matrix<
          panel_factor<T>(cos_theta_i, to_light, patch, droop);
 }
 
+// Irradiance on a patch by way of a white table at world z = `table_mm`, for a lamp of unit intensity where it is guessed
+// (mu = 1): a small correction, not worth following the fit. The panel's own shadow falls behind it and is left out.
+inline double table_bounce(const LightPatch& patch, const LightGuess& guess, double table_mm) {
+  constexpr int kRings = 12, kTurns = 36;
+  const BeamFrame frame(guess);
+  const Eigen::Vector3d right = patch.normal.unitOrthogonal(), up = patch.normal.cross(right);
+  double sum = 0.0;
+  for (int ring = 0; ring < kRings; ++ring)
+    for (int turn = 0; turn < kTurns; ++turn) {
+      const double sine = std::sqrt((ring + 0.5) / kRings), phi = (turn + 0.5) * 2 * M_PI / kTurns;
+      const Eigen::Vector3d direction =
+          sine * (std::cos(phi) * right + std::sin(phi) * up) + std::sqrt(1 - sine * sine) * patch.normal;
+      if (direction.z() >= 0) continue;
+      const Eigen::Vector3d lit = patch.point + (table_mm - patch.point.z()) / direction.z() * direction;
+      const Eigen::Vector3d to_light = guess.position - lit;
+      const double d2 = to_light.squaredNorm();
+      sum += beam_falloff<double>(frame.axis, -to_light / std::sqrt(d2), 1.0) * std::max(0.0, to_light.z()) /
+             (d2 * std::sqrt(d2));
+    }
+  return sum / (kRings * kTurns);
+}
+
 }  // namespace calibration

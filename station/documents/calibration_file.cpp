@@ -158,6 +158,7 @@ json light_json(const calibration::LightFit& fit, double albedo) {
           {"spectralon_albedo", albedo},
           {"spectralon_droop", {fit.droop[0], fit.droop[1]}},
           {"spectralon_droop_sigma", {fit.droop_sigma[0], fit.droop_sigma[1]}},
+          {"table_albedo", fit.table_albedo},
           {"relative_rms", fit.relative_rms},
           {"patches_used", fit.patches_used},
           {"held_out", held_out},
@@ -181,6 +182,7 @@ calibration::LightFit parse_light(ObjectReader reader, double& albedo) {
   const auto droop = reader.numbers("spectralon_droop", 2), droop_sigma = reader.numbers("spectralon_droop_sigma", 2);
   fit.droop = {droop[0], droop[1]};
   fit.droop_sigma = {droop_sigma[0], droop_sigma[1]};
+  fit.table_albedo = reader.number("table_albedo", -1, 2);
   fit.relative_rms = reader.number("relative_rms", 0, 1e6);
   fit.patches_used = reader.integer("patches_used", 0, 1 << 30);
   for (ObjectReader& entry : reader.objects("held_out")) {

@@ -36,6 +36,22 @@ double true_panel_factor(const LampTruth& t, const Vector3d& normal, const Vecto
   return 1 + t.droop * droop_shape(cos_i, cos_e, a.dot(b));
 }
 
+// Irradiance by way of the table, over its squares of 20 mm out to half a metre.
+Vector3d table_irradiance(const LampTruth& t, std::size_t light, const Vector3d& point, const Vector3d& normal) {
+  Vector3d sum = Vector3d::Zero();
+  if (t.table_albedo == 0) return sum;
+  for (double x = -490; x < 500; x += 20)
+    for (double y = -490; y < 500; y += 20) {
+      const Vector3d lit = Vector3d(point.x() + x, point.y() + y, 0), to_light = t.positions[light] - lit,
+                     to_point = point - lit;
+      const double d2 = to_point.squaredNorm(), facing = -normal.dot(to_point) / std::sqrt(d2);
+      if (facing <= 0) continue;
+      sum += true_irradiance(t, light, lit) *
+             (to_light.normalized().z() * facing * to_point.z() / std::sqrt(d2) / d2 * 400);
+    }
+  return sum * (t.table_albedo / M_PI);
+}
+
 Eigen::Isometry3d nudged(const Eigen::Isometry3d& pose, const Imperfections& by, std::mt19937& random) {
   Eigen::Isometry3d out = pose;
   const Vector3d turn = normals(random, by.turn_rad);
@@ -51,6 +67,7 @@ LampTruth drawn_truth(std::mt19937& random) {
   LampTruth t;
   t.mu = 2 * unit(random);
   t.droop = 0.15 * unit(random);
+  t.table_albedo = 0.06 * unit(random);
   for (std::size_t i = 0; i < 2; ++i) {
     t.positions[i] += 30 * (2 * Vector3d(unit(random), unit(random), unit(random)) - Vector3d::Ones());
     t.axes[i] = (kSpool - t.positions[i]).normalized() + normals(random, 3 * M_PI / 180);
@@ -115,9 +132,10 @@ PanelPictures panel_pictures(const LampTruth& t, const std::vector<PanelPose>& p
       if (patch.pixel.x() < 0 || patch.pixel.y() < 0 || patch.pixel.x() > kSize.width - 1 ||
           patch.pixel.y() > kSize.height - 1)
         continue;
-      const double factor = output * t.vignetting.gain(patch.pixel.x(), patch.pixel.y(), kSize) * 0.99 / M_PI *
-                            std::max(0.0, normal.dot(to_light)) * true_panel_factor(t, normal, to_light, to_camera);
-      const Vector3d exact = factor * true_irradiance(t, light, point);
+      const double direct = std::max(0.0, normal.dot(to_light)) * true_panel_factor(t, normal, to_light, to_camera);
+      const double gain = output * t.vignetting.gain(patch.pixel.x(), patch.pixel.y(), kSize);
+      const Vector3d by_table = table_irradiance(t, light, point, normal);
+      const Vector3d exact = gain * 0.99 / M_PI * (direct * true_irradiance(t, light, point) + by_table);
       for (int c = 0; c < 3; ++c) {
         patch.radiance[c] = exact[c] * (1 + by.noise * gauss(random));
         patch.sigma[c] = std::max(by.noise, 1e-6) * exact[c] + 1e-9;

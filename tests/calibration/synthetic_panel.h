@@ -16,12 +16,13 @@ struct LampTruth {
   double mu = 1.0;
   Eigen::Vector3d intensity{2.5e6, 3.2e6, 2.3e6};
   double droop = 0.08;
+  double table_albedo = 0.03;  // of the plane z = 0
   bool droop_of_incidence_only =
       false;  // 1 + droop * 2 (cos theta_i - cos 8 degrees) in place of the published shape
   Vignetting vignetting{.v0 = -0.18, .v1 = -0.03};
 };
 
-// As drawn for the statistics: mu 0 to 2, droop 0 to 15 %, beams aimed within 3 degrees, lamps moved by 30 mm.
+// As drawn for the statistics: mu 0 to 2, droop 0 to 15 %, table albedo 0 to 6 %, beams aimed within 3 degrees, lamps moved by 30 mm.
 LampTruth drawn_truth(std::mt19937& random);
 
 // Independent of calibration's own model.
