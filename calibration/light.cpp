@@ -2,100 +2,139 @@
 
 #include <ceres/ceres.h>
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstdio>
 #include <stdexcept>
-#include <string>
+
+#include "calibration/light_model.h"
 
 namespace calibration {
 namespace {
 
+using Eigen::Vector2d, Eigen::Vector3d;
+
 constexpr std::size_t kFewestPatches = 6;
+constexpr std::size_t kFewestPictures = 6;
+constexpr double kWeakest_mm = 8.0;      // of a position, for the scatter and drift expected
+constexpr double kHeldOutLimit = 0.005;  // a picture that the fit has not seen
+constexpr double kResidualLimit = 0.01;  // rms of the patches of one picture
+constexpr double kOutputLimit = 0.03;    // a lamp that changed by more is not warmed up, or not the only light
+constexpr double kTapeLimit_mm = 150.0;
+constexpr double kDarkLimit = 0.3;  // of the other pictures' brightness
+
+std::string text(const char* format, double value) {
+  char out[64];
+  std::snprintf(out, sizeof out, format, value);
+  return out;
+}
 
 [[noreturn]] void refuse(const std::string& found, const std::string& what_to_do) {
   throw std::runtime_error("light calibration: " + found + ": " + what_to_do);
 }
 
-// Square of the distance to the image centre, in half diagonals.
-double radius_squared(double column, double row, cv::Size size) {
-  const double dx = column - 0.5 * (size.width - 1), dy = row - 0.5 * (size.height - 1);
-  const double width = size.width, height = size.height;
-  return 4.0 * (dx * dx + dy * dy) / (width * width + height * height);
-}
+// Intensities are of the order of 1e6 beside positions of 1e2 and a droop of 1e-1; the fit sees logarithms of factors
+// of their first guess.
+struct Unknowns {
+  std::vector<Vector3d> positions;
+  std::vector<Vector2d> beams;
+  Eigen::Vector4d lamp = {0, 0, 0, 1};  // log intensity over the seed (RGB), mu
+  Vector2d droop{0.08, 0.0};            // published shape, incidence alone
+  double table = 0.03;                  // albedo
+  Vector2d vignetting = Vector2d::Zero();
+  std::vector<double> log_outputs;  // per picture
+};
 
-template <typename T>
-T gain_at(double r2, const T& v0, const T& v1) {
-  return T(1) + r2 * (v0 + r2 * v1);
-}
-
-// cos(theta) / d^2 at a patch.
-template <typename T>
-T falloff(const T* position, const Eigen::Vector3d& point, const Eigen::Vector3d& normal) {
-  const Eigen::Matrix<T, 3, 1> to_light(position[0] - point.x(), position[1] - point.y(), position[2] - point.z());
-  const T d2 = to_light.squaredNorm();
-  return to_light.dot(normal.cast<T>()) / (d2 * sqrt(d2));
-}
-
-// Intensities are of the order of 1e6 beside positions of 1e2 and vignetting of 1e-1; the fit sees them as factors of
-// their first guess, or the covariance would look singular.
 struct PatchResidual {
   LightPatch patch;
-  double albedo;
-  double r2;
-  Eigen::Vector3d seed_intensity;
+  BeamFrame frame;
+  Vector3d seed_intensity;
+  double albedo, r2;
+  double bounce;  // table_bounce
 
   template <typename T>
-  bool operator()(const T* position, const T* factor, const T* vignetting, T* residual) const {
-    const T irradiance = falloff(position, patch.point, patch.normal);
-    const T scale = gain_at(r2, vignetting[0], vignetting[1]) * (albedo / M_PI) * irradiance;
-    for (int c = 0; c < 3; ++c)
-      residual[c] = (scale * (factor[c] * seed_intensity[c]) - patch.radiance[c]) / patch.sigma[c];
+  void predict(const T* position, const T* beam, const T* lamp, const T* droop, const T* table, const T* vignetting,
+               const T* log_output, T* radiance) const {
+    using std::exp;
+    const T unit = unit_radiance<T>(patch, position, frame.direction(beam), lamp[3], droop, albedo);
+    const T scale = exp(*log_output) * vignetting_gain(r2, vignetting) * (unit + *table * (albedo / M_PI * bounce));
+    for (int c = 0; c < 3; ++c) radiance[c] = scale * exp(lamp[c]) * seed_intensity[c];
+  }
+
+  template <typename T>
+  bool operator()(const T* position, const T* beam, const T* lamp, const T* droop, const T* table,
+                  const T* vignetting, const T* log_output, T* residual) const {
+    predict(position, beam, lamp, droop, table, vignetting, log_output, residual);
+    for (int c = 0; c < 3; ++c) residual[c] = (residual[c] - patch.radiance[c]) / patch.sigma[c];
     return true;
   }
 };
 
-// Lenses darken by up to about half towards the corners. Without the prior a panel that stays in the picture's middle
-// would leave the second term undetermined.
-struct VignettingPrior {
+// What is known beforehand of N numbers.
+template <int N>
+struct Prior {
+  Eigen::Matrix<double, N, 1> mean, sigma;
+
   template <typename T>
-  bool operator()(const T* vignetting, T* residual) const {
-    constexpr double kSigma = 0.5;
-    residual[0] = vignetting[0] / kSigma;
-    residual[1] = vignetting[1] / kSigma;
+  bool operator()(const T* x, T* residual) const {
+    for (int i = 0; i < N; ++i) residual[i] = (x[i] - mean[i]) / sigma[i];
     return true;
   }
 };
 
-void check(const std::vector<LightPatch>& patches, const std::vector<Eigen::Vector3d>& guesses, double albedo,
-           cv::Size size) {
+template <int N>
+void add_prior(ceres::Problem& problem, double* x, const Eigen::Matrix<double, N, 1>& mean,
+               const Eigen::Matrix<double, N, 1>& sigma, ceres::LossFunction* loss = nullptr) {
+  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Prior<N>, N, N>(new Prior<N>{mean, sigma}), loss, x);
+}
+
+void check(const std::vector<LightPatch>& patches, const std::vector<LightGuess>& guesses,
+           const LightOptions& options, std::size_t pictures) {
   if (guesses.empty()) refuse("no guess of a light's position was given", "measure it with a tape");
-  if (!(albedo > 0.0 && albedo <= 1.0))
-    refuse("the panel's albedo is " + std::to_string(albedo), "give a number above 0 and up to 1");
-  if (size.width < 2 || size.height < 2) refuse("the size of the pictures is missing", "give it");
+  if (!(options.albedo > 0.0 && options.albedo <= 1.0))
+    refuse("the panel's albedo is " + std::to_string(options.albedo), "give a number above 0 and up to 1");
+  if (options.image_size.width < 2 || options.image_size.height < 2)
+    refuse("the size of the pictures is missing", "give it");
   for (const LightPatch& patch : patches) {
     if (patch.light < 0 || patch.light >= static_cast<int>(guesses.size())) {
       refuse("a patch belongs to light " + std::to_string(patch.light) + ", positions of " +
                  std::to_string(guesses.size()) + " lights were given",
              "give one guess per light");
     }
-    const bool finite = patch.point.allFinite() && patch.normal.allFinite() && patch.pixel.allFinite() &&
-                        patch.radiance.allFinite() && patch.sigma.allFinite();
+    if (patch.picture < 0 || patch.picture >= static_cast<int>(pictures))
+      refuse("a patch belongs to picture " + std::to_string(patch.picture) + " of " + std::to_string(pictures),
+             "give every picture");
+    const bool finite = patch.point.allFinite() && patch.normal.allFinite() && patch.to_camera.allFinite() &&
+                        patch.pixel.allFinite() && patch.radiance.allFinite() && patch.sigma.allFinite();
     if (!finite || !(patch.sigma.minCoeff() > 0.0)) {
       refuse("a patch has a measurement that is not a finite number, or no standard error", "leave this picture out");
     }
   }
-  for (const Eigen::Vector3d& guess : guesses) {
-    if (!guess.allFinite()) refuse("a guessed position is not a finite number", "measure it with a tape");
+  for (const LightGuess& guess : guesses) {
+    if (!guess.position.allFinite() || !guess.aim.allFinite())
+      refuse("a guessed position is not a finite number", "measure it with a tape");
   }
 }
 
+std::vector<LightPicture> named(std::vector<LightPicture> pictures, const std::vector<LightPatch>& patches) {
+  if (pictures.empty())
+    for (const LightPatch& patch : patches)
+      while (static_cast<int>(pictures.size()) <= patch.picture && patch.picture < 100000)
+        pictures.push_back({.name = "picture " + std::to_string(pictures.size() + 1)});
+  for (const LightPicture& picture : pictures)
+    if (picture.output && !(*picture.output > 0.0 && std::isfinite(*picture.output) && picture.output_sigma > 0.0))
+      refuse(picture.name + " has a reading of the lamp's output that is not a positive number", "read it again");
+  return pictures;
+}
+
 // The patches that face their light. Grazing ones say more about the panel's edge and surface than about the light.
-std::vector<LightPatch> usable(const std::vector<LightPatch>& patches, const std::vector<Eigen::Vector3d>& guesses) {
+std::vector<LightPatch> usable(const std::vector<LightPatch>& patches, const std::vector<LightGuess>& guesses) {
   const double kSmallestCosine = std::sin(5.0 * M_PI / 180.0);
   std::vector<LightPatch> out;
   for (LightPatch patch : patches) {
     patch.normal.normalize();
-    const Eigen::Vector3d to_light = (guesses[static_cast<std::size_t>(patch.light)] - patch.point).normalized();
+    patch.to_camera.normalize();
+    const Vector3d to_light = (guesses[static_cast<std::size_t>(patch.light)].position - patch.point).normalized();
     const bool bright = (patch.radiance.array() > 3.0 * patch.sigma.array()).all();
     if (bright && to_light.dot(patch.normal) > kSmallestCosine) out.push_back(patch);
   }
@@ -103,130 +142,399 @@ std::vector<LightPatch> usable(const std::vector<LightPatch>& patches, const std
 }
 
 // One direction of the panel alone leaves the distance of the light to its intensity.
-void require_enough(const std::vector<LightPatch>& used, std::size_t lights) {
+void require_enough(const std::vector<LightPatch>& used, const std::vector<LightGuess>& guesses) {
   constexpr double kSameDirection = 0.99619;  // cosine of 5 degrees
-  for (std::size_t light = 0; light < lights; ++light) {
+  for (std::size_t light = 0; light < guesses.size(); ++light) {
     std::size_t count = 0;
+    std::vector<int> pictures;
     bool turned = false;
     const LightPatch* first = nullptr;
     for (const LightPatch& patch : used) {
       if (patch.light != static_cast<int>(light)) continue;
       if (first == nullptr) first = &patch;
       turned = turned || patch.normal.dot(first->normal) < kSameDirection;
+      if (std::find(pictures.begin(), pictures.end(), patch.picture) == pictures.end())
+        pictures.push_back(patch.picture);
       ++count;
     }
-    const std::string name = "light " + std::to_string(light);
+    const std::string name = guesses[light].name;
     if (count < kFewestPatches) {
-      refuse(name + " lights " + std::to_string(count) + " patches of the panel, at least " +
+      refuse("the " + name + " lights " + std::to_string(count) + " patches of the panel, at least " +
                  std::to_string(kFewestPatches) + " are needed",
-             "turn the panel's face to the lamp and to the camera, and check the lamp's measured position");
+             "switch it on, turn the panel's face to the lamp and to the camera, and check the lamp's measured "
+             "position");
     }
     if (!turned)
-      refuse(name + " was seen on the panel in one direction only",
-             "take pictures with the panel turned by 20 to 40 degrees");
+      refuse("under the " + name + " the panel was seen in one direction only",
+             "take pictures with the panel turned by 20 to 40 degrees to all sides");
+    if (pictures.size() < kFewestPictures)
+      refuse("under the " + name + " the panel was seen in " + std::to_string(pictures.size()) + " poses, at least " +
+                 std::to_string(kFewestPictures) + " are needed",
+             "take pictures with the panel turned to all sides and in two depths");
   }
 }
 
-// Least squares of the intensity with everything else as guessed.
-Eigen::Vector3d seed_intensity(const std::vector<LightPatch>& used, const std::vector<Eigen::Vector3d>& guesses,
-                               double albedo) {
-  Eigen::Array3d cross = Eigen::Array3d::Zero(), square = cross;
-  for (const LightPatch& patch : used) {
-    const double model =
-        albedo / M_PI * falloff(guesses[static_cast<std::size_t>(patch.light)].data(), patch.point, patch.normal);
-    const Eigen::Array3d weight = patch.sigma.array().square().inverse();
-    cross += weight * model * patch.radiance.array();
-    square += weight * model * model;
+// Fits to all pictures, or to all but one.
+class LightSolver {
+ public:
+  LightSolver(const std::vector<LightPatch>& patches, const std::vector<LightGuess>& guesses,
+              const LightOptions& options, const std::vector<LightPicture>& pictures)
+      : patches_(patches), guesses_(guesses), options_(options), pictures_(pictures) {
+    for (const LightPatch& patch : patches_)
+      bounces_.push_back(table_bounce(patch, guesses_[static_cast<std::size_t>(patch.light)], options_.table_mm));
+    seed_intensity();
   }
-  return cross / square;
-}
 
-struct Unknowns {
-  std::vector<Eigen::Vector3d> positions;
-  Eigen::Vector3d factor = Eigen::Vector3d::Ones();  // of the intensity's first guess
-  std::array<double, 2> vignetting{};
-};
-
-void take_covariances(ceres::Problem& problem, const Unknowns& unknowns, const Eigen::Vector3d& seed, double variance,
-                      LightFit& fit) {
-  std::vector<const double*> blocks{unknowns.factor.data(), unknowns.vignetting.data()};
-  for (const Eigen::Vector3d& position : unknowns.positions) blocks.push_back(position.data());
-  ceres::Covariance::Options options;
-  options.algorithm_type = ceres::DENSE_SVD;
-  ceres::Covariance covariance(options);
-  fit.position_covariances.assign(unknowns.positions.size(),
-                                  Eigen::Matrix3d::Constant(std::numeric_limits<double>::infinity()));
-  fit.intensity_covariance.setConstant(std::numeric_limits<double>::infinity());
-  if (!covariance.Compute(blocks, &problem)) {
-    fit.converged = false;
-    return;
+  Unknowns first_guess() const {
+    Unknowns start;
+    for (const LightGuess& guess : guesses_) {
+      start.positions.push_back(guess.position);
+      start.beams.push_back(Vector2d::Zero());
+    }
+    for (const LightPicture& picture : pictures_)
+      start.log_outputs.push_back(picture.output ? std::log(*picture.output) : 0.0);
+    return start;
   }
-  const auto block3 = [&](const double* block) {
+
+  // `without`: index of a picture to leave out, or -1.
+  bool solve(Unknowns& x, int without = -1) const {
+    ceres::Problem problem;
+    pose_problem(problem, x, without);
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+    options.max_num_iterations = 200;
+    options.function_tolerance = 1e-11;
+    options.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+    return summary.termination_type == ceres::CONVERGENCE;
+  }
+
+  // Of a position, for the scatter of patches and the drift and tilts that are expected, without the tape.
+  std::optional<Eigen::Matrix3d> position_covariance(Unknowns x, std::size_t light) const {
+    ceres::Problem problem;
+    pose_problem(problem, x, -1);
+    ceres::Covariance::Options options;
+    options.algorithm_type = ceres::DENSE_SVD;
+    ceres::Covariance covariance(options);
+    const double* block = x.positions[light].data();
+    if (!covariance.Compute(std::vector<const double*>{block}, &problem)) return std::nullopt;
     Eigen::Matrix<double, 3, 3, Eigen::RowMajor> out;
     covariance.GetCovarianceBlock(block, block, out.data());
-    return Eigen::Matrix3d(variance * out);
-  };
-  for (std::size_t i = 0; i < unknowns.positions.size(); ++i)
-    fit.position_covariances[i] = block3(unknowns.positions[i].data());
-  fit.intensity_covariance = seed.asDiagonal() * block3(unknowns.factor.data()) * seed.asDiagonal();
-  Eigen::Matrix<double, 2, 2, Eigen::RowMajor> vignetting;
-  covariance.GetCovarianceBlock(blocks[1], blocks[1], vignetting.data());
-  fit.vignetting_covariance = variance * vignetting;
+    return Eigen::Matrix3d(out);
+  }
+
+  // Predicted radiance of each patch for each channel over the measured one, less 1; an empty list of a picture is one
+  // without a usable patch.
+  std::vector<Vector3d> relative_errors(const Unknowns& x, int picture) const {
+    std::vector<Vector3d> errors;
+    for (std::size_t number = 0; number < patches_.size(); ++number) {
+      const LightPatch& patch = patches_[number];
+      if (patch.picture != picture) continue;
+      const auto light = static_cast<std::size_t>(patch.light);
+      Vector3d radiance;
+      residual(number).predict(x.positions[light].data(), x.beams[light].data(), x.lamp.data(), x.droop.data(),
+                               &x.table, x.vignetting.data(), &x.log_outputs[static_cast<std::size_t>(picture)],
+                               radiance.data());
+      errors.push_back((radiance.array() / patch.radiance.array() - 1.0).matrix());
+    }
+    return errors;
+  }
+
+  const std::vector<LightPatch>& patches() const { return patches_; }
+  const Vector3d& seed() const { return seed_; }
+  BeamFrame frame(std::size_t light) const { return BeamFrame(guesses_[light]); }
+
+ private:
+  PatchResidual residual(std::size_t number) const {
+    const LightPatch& patch = patches_[number];
+    return {patch,           frame(static_cast<std::size_t>(patch.light)),     seed_,
+            options_.albedo, radius_squared(patch.pixel, options_.image_size), bounces_[number]};
+  }
+
+  void pose_problem(ceres::Problem& problem, Unknowns& x, int without) const {
+    std::vector<double> steepness(pictures_.size(), 0.0);  // tangent of the angle of incidence: what a tilt changes
+    for (std::size_t number = 0; number < patches_.size(); ++number) {
+      const LightPatch& patch = patches_[number];
+      if (patch.picture == without) continue;
+      const auto light = static_cast<std::size_t>(patch.light), picture = static_cast<std::size_t>(patch.picture);
+      const double cosine = (guesses_[light].position - patch.point).normalized().dot(patch.normal);
+      steepness[picture] = std::max(steepness[picture], std::sqrt(1.0 - cosine * cosine) / std::max(cosine, 0.05));
+      problem.AddResidualBlock(
+          new ceres::AutoDiffCostFunction<PatchResidual, 3, 3, 2, 4, 2, 1, 2, 1>(new PatchResidual(residual(number))),
+          new ceres::HuberLoss(4.0), x.positions[light].data(), x.beams[light].data(), x.lamp.data(), x.droop.data(),
+          &x.table, x.vignetting.data(), &x.log_outputs[picture]);
+    }
+    add_priors(problem, x, steepness);
+  }
+
+  void add_priors(ceres::Problem& problem, Unknowns& x, const std::vector<double>& steepness) const {
+    for (std::size_t i = 0; i < pictures_.size(); ++i) {
+      if (!problem.HasParameterBlock(&x.log_outputs[i])) continue;
+      const LightPicture& picture = pictures_[i];
+      const double output = picture.output ? std::log(*picture.output) : 0.0;
+      const double sigma =
+          std::hypot(picture.output ? picture.output_sigma : options_.drift, options_.pose_sigma_rad * steepness[i]);
+      add_prior<1>(problem, &x.log_outputs[i], Eigen::Matrix<double, 1, 1>(output),
+                   Eigen::Matrix<double, 1, 1>(sigma), new ceres::HuberLoss(3.0));
+    }
+    for (std::size_t i = 0; i < guesses_.size(); ++i) {
+      if (!problem.HasParameterBlock(x.positions[i].data())) continue;
+      // A tape that was read wrong by decimetres must not pull.
+      add_prior<3>(problem, x.positions[i].data(), guesses_[i].position,
+                   Vector3d::Constant(guesses_[i].position_sigma_mm), new ceres::HuberLoss(3.0));
+      add_prior<2>(problem, x.beams[i].data(), Vector2d::Zero(), Vector2d::Constant(guesses_[i].aim_sigma_rad));
+    }
+    // A flashlight without optics of its own has mu between 0 and 2; panels droop by 0 to 16 %.
+    add_prior<4>(problem, x.lamp.data(), {0, 0, 0, 1}, {100, 100, 100, 1});
+    add_prior<1>(problem, &x.table, Eigen::Matrix<double, 1, 1>(0.03), Eigen::Matrix<double, 1, 1>(0.03));
+    add_prior<2>(problem, x.droop.data(), {0.08, 0.0}, {0.1, options_.published_droop_only ? 1e-6 : 0.05});
+    // Lenses darken by up to about half towards the corners.
+    add_prior<2>(problem, x.vignetting.data(), Vector2d::Zero(), Vector2d::Constant(0.5));
+  }
+
+  // Least squares of the intensity with everything else as guessed.
+  void seed_intensity() {
+    seed_.setOnes();
+    const Unknowns start = first_guess();
+    Eigen::Array3d cross = Eigen::Array3d::Zero(), square = cross;
+    for (const LightPatch& patch : patches_) {
+      const auto light = static_cast<std::size_t>(patch.light);
+      const double unit = unit_radiance<double>(patch, start.positions[light].data(), frame(light).axis,
+                                                start.lamp[3], start.droop.data(), options_.albedo);
+      const Eigen::Array3d weight = patch.sigma.array().square().inverse();
+      cross += weight * unit * patch.radiance.array();
+      square += weight * unit * unit;
+    }
+    seed_ = cross / square;
+  }
+
+  const std::vector<LightPatch>& patches_;
+  const std::vector<LightGuess>& guesses_;
+  const LightOptions& options_;
+  const std::vector<LightPicture>& pictures_;
+  std::vector<double> bounces_;  // one per patch
+  Vector3d seed_;
+};
+
+// Everything that the covariances are of, in one vector: positions, log intensity, mu, droop, vignetting, log
+// irradiance at the aims.
+struct Summary {
+  std::size_t lights = 0;
+  Eigen::Index positions(std::size_t light) const { return static_cast<Eigen::Index>(3 * light); }
+  Eigen::Index intensity() const { return static_cast<Eigen::Index>(3 * lights); }
+  Eigen::Index mu() const { return intensity() + 3; }
+  Eigen::Index droop() const { return intensity() + 4; }
+  Eigen::Index vignetting() const { return intensity() + 6; }
+  Eigen::Index aim(std::size_t light) const { return intensity() + 8 + static_cast<Eigen::Index>(light); }
+
+  Eigen::VectorXd of(const Unknowns& x, const LightSolver& solver, const std::vector<LightGuess>& guesses) const {
+    Eigen::VectorXd out(intensity() + 8 + static_cast<Eigen::Index>(lights));
+    out.segment<4>(intensity()) = x.lamp;
+    out.segment<2>(droop()) = x.droop;
+    out.segment<2>(vignetting()) = x.vignetting;
+    for (std::size_t i = 0; i < lights; ++i) {
+      out.segment<3>(positions(i)) = x.positions[i];
+      const Vector3d to_aim = guesses[i].aim - x.positions[i];
+      const double beam =
+          beam_falloff<double>(solver.frame(i).direction(x.beams[i].data()), to_aim.normalized(), x.lamp[3]);
+      out[aim(i)] = x.lamp.head<3>().mean() + std::log(beam / to_aim.squaredNorm());
+    }
+    return out;
+  }
+};
+
+void refuse_dark_pictures(const LightSolver& solver, const Unknowns& start,
+                          const std::vector<LightPicture>& pictures) {
+  std::vector<double> brightness;  // measured over expected
+  std::vector<std::size_t> index;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    double sum = 0.0;
+    const auto errors = solver.relative_errors(start, static_cast<int>(i));
+    for (const Vector3d& error : errors) sum += 1.0 / (1.0 + error.mean());
+    if (errors.empty()) continue;
+    brightness.push_back(sum / static_cast<double>(errors.size()));
+    index.push_back(i);
+  }
+  std::vector<double> sorted = brightness;
+  std::sort(sorted.begin(), sorted.end());
+  const double median = sorted[sorted.size() / 2];
+  for (std::size_t i = 0; i < brightness.size(); ++i)
+    if (brightness[i] < kDarkLimit * median)
+      refuse(pictures[index[i]].name + " is dark beside the others (" +
+                 text("%.0f %%", 100 * brightness[i] / median) + " of what is expected)",
+             "switch the lamp on, see that nothing shades the panel, and take it again");
+}
+
+// The direction in which the pictures leave a light undetermined, in words, and the pose that is missing.
+void refuse_weak_light(const LightSolver& solver, const Unknowns& x, std::size_t light, const LightGuess& guess) {
+  const std::optional<Eigen::Matrix3d> covariance = solver.position_covariance(x, light);
+  if (!covariance) refuse("the position of the " + guess.name + " is undetermined", "take the whole set of poses");
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(*covariance);
+  const double sigma_mm = std::sqrt(axes.eigenvalues()[2]);
+  if (sigma_mm < kWeakest_mm) return;
+  const Vector3d weak = axes.eigenvectors().col(2);
+  Vector3d centre = Vector3d::Zero();
+  double count = 0.0;
+  for (const LightPatch& patch : solver.patches())
+    if (patch.light == static_cast<int>(light)) centre += patch.point, count += 1.0;
+  const Vector3d beam = (x.positions[light] - centre / count).normalized();
+  const Vector3d sideways = Vector3d::UnitZ().cross(beam).normalized();
+  const std::string found =
+      "the poses of the panel leave the " + guess.name + " uncertain by " + text("%.0f mm", sigma_mm) + " in ";
+  if (std::abs(weak.dot(beam)) > 0.7)
+    refuse(found + "distance along its beam",
+           "add poses turned by 30 degrees to either side, at two depths at least 50 mm apart");
+  if (std::abs(weak.dot(sideways)) > 0.7)
+    refuse(found + "direction, sideways", "add poses with the panel turned left and right by 30 degrees");
+  refuse(found + "direction, up and down", "add poses with the panel tilted up and down by 30 degrees");
+}
+
+// Fits without one picture after the other: what each predicts of the picture left out, and the spread of results.
+Eigen::MatrixXd leave_each_out(const LightSolver& solver, const Summary& summary, const Unknowns& x,
+                               const std::vector<LightGuess>& guesses, const std::vector<LightPicture>& pictures,
+                               LightFit& fit) {
+  std::vector<Eigen::VectorXd> results;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const int picture = static_cast<int>(i);
+    if (solver.relative_errors(x, picture).empty()) continue;
+    Unknowns without = x;
+    fit.converged = solver.solve(without, picture) && fit.converged;
+    results.push_back(summary.of(without, solver, guesses));
+    without.log_outputs[i] = pictures[i].output ? std::log(*pictures[i].output) : 0.0;
+    HeldOutPicture held{.name = pictures[i].name, .output = std::exp(x.log_outputs[i])};
+    const auto errors = solver.relative_errors(without, picture);
+    for (const Vector3d& error : errors) {
+      held.patch_error += error.squaredNorm() / 3.0;
+      held.picture_error += error.mean();
+    }
+    held.patch_error = std::sqrt(held.patch_error / static_cast<double>(errors.size()));
+    held.picture_error /= static_cast<double>(errors.size());
+    for (const LightPatch& patch : solver.patches())
+      if (patch.picture == picture) held.light = patch.light;
+    fit.held_out.push_back(held);
+  }
+  const auto n = static_cast<double>(results.size());
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(results.front().size());
+  for (const Eigen::VectorXd& result : results) mean += result / n;
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(mean.size(), mean.size());
+  for (const Eigen::VectorXd& result : results)
+    covariance += (n - 1) / n * (result - mean) * (result - mean).transpose();
+  return covariance;
+}
+
+void add_gates(const LightSolver& solver, const Unknowns& x, const std::vector<LightGuess>& guesses,
+               const std::vector<LightPicture>& pictures, LightFit& fit) {
+  for (std::size_t light = 0; light < guesses.size(); ++light) {
+    const double error = held_out_error(fit, static_cast<int>(light));
+    fit.gates.push_back(at_most(
+        guesses[light].name + ", held-out panel pictures, rms error %", 100 * error, 100 * kHeldOutLimit,
+        "panel pictures under the " + guesses[light].name + " are predicted from the others to " +
+            text("%.2f %%", 100 * error) + " only: let the lamp warm up, leave it where it is, take them again"));
+    const double off = (x.positions[light] - guesses[light].position).norm();
+    fit.gates.push_back(at_most(guesses[light].name + ", distance from the tape's position mm", off, kTapeLimit_mm,
+                                "the " + guesses[light].name + " is found " + text("%.0f mm", off) +
+                                    " from where the tape put it: measure again, or look for a second light"));
+  }
+  Gate worst_output = at_most("lamp output in one picture, off by %", 0, 100 * kOutputLimit, "no picture was used"),
+       worst_residual =
+           at_most("panel patches of one picture, rms error %", 0, 100 * kResidualLimit, "no picture was used");
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const auto errors = solver.relative_errors(x, static_cast<int>(i));
+    if (errors.empty()) continue;
+    const double expected = pictures[i].output.value_or(1.0);
+    const double off = 100 * std::abs(std::exp(x.log_outputs[i]) / expected - 1.0);
+    if (off > worst_output.value)
+      worst_output =
+          at_most(worst_output.name, off, worst_output.limit,
+                  pictures[i].name + " is " + text("%.1f %%", off) +
+                      " off in brightness: room light, a moved lamp or a lamp that is not warm; take it again");
+    double sum = 0.0;
+    for (const Vector3d& error : errors) sum += error.squaredNorm() / 3.0;
+    const double rms = 100 * std::sqrt(sum / static_cast<double>(errors.size()));
+    if (rms > worst_residual.value)
+      worst_residual =
+          at_most(worst_residual.name, rms, worst_residual.limit,
+                  pictures[i].name + " does not look like a panel under one lamp (" + text("%.1f %%", rms) +
+                      " rms): a shadow, room light, a stain or a moved lamp; take it again");
+  }
+  fit.gates.push_back(worst_output);
+  fit.gates.push_back(worst_residual);
+}
+
+void take_covariances(const Summary& summary, const Eigen::MatrixXd& covariance, LightFit& fit) {
+  fit.position_covariances.clear();
+  for (std::size_t i = 0; i < summary.lights; ++i) {
+    fit.position_covariances.push_back(covariance.block<3, 3>(summary.positions(i), summary.positions(i)));
+    fit.aim_irradiance_sigma.push_back(std::sqrt(covariance(summary.aim(i), summary.aim(i))));
+  }
+  fit.intensity_covariance = fit.intensity.asDiagonal() *
+                             covariance.block<3, 3>(summary.intensity(), summary.intensity()) *
+                             fit.intensity.asDiagonal();
+  fit.vignetting_covariance = covariance.block<2, 2>(summary.vignetting(), summary.vignetting());
+  fit.beam_exponent_sigma = std::sqrt(covariance(summary.mu(), summary.mu()));
+  fit.droop_sigma = covariance.diagonal().segment<2>(summary.droop()).cwiseSqrt();
 }
 
 }  // namespace
 
 double Vignetting::gain(double column, double row, cv::Size image_size) const {
-  return gain_at(radius_squared(column, row, image_size), v0, v1);
+  const double v[] = {v0, v1};
+  return vignetting_gain(radius_squared({column, row}, image_size), v);
 }
 
-LightFit fit_light(const std::vector<LightPatch>& patches, const std::vector<Eigen::Vector3d>& guesses, double albedo,
-                   cv::Size image_size) {
-  check(patches, guesses, albedo, image_size);
+double held_out_error(const LightFit& fit, int light) {
+  double sum = 0.0, count = 0.0;
+  for (const HeldOutPicture& held : fit.held_out)
+    if (held.light == light) sum += held.picture_error * held.picture_error, count += 1.0;
+  return std::sqrt(sum / count);
+}
+
+Vector3d facing_irradiance(const LightFit& fit, std::size_t light, const Vector3d& point) {
+  const Vector3d from_light = point - fit.positions.at(light);
+  return fit.intensity * (beam_falloff<double>(fit.beam_axes.at(light), from_light.normalized(), fit.beam_exponent) /
+                          from_light.squaredNorm());
+}
+
+LightFit fit_light(const std::vector<LightPatch>& patches, const std::vector<LightGuess>& guesses,
+                   const LightOptions& options, const std::vector<LightPicture>& given_pictures) {
+  const std::vector<LightPicture> pictures = named(given_pictures, patches);
+  check(patches, guesses, options, pictures.size());
   const std::vector<LightPatch> used = usable(patches, guesses);
-  require_enough(used, guesses.size());
+  require_enough(used, guesses);
 
-  const Eigen::Vector3d seed = seed_intensity(used, guesses, albedo);
-  Unknowns unknowns{.positions = guesses};
-  ceres::Problem problem;
-  std::vector<PatchResidual*> residuals;  // owned by the problem
-  for (const LightPatch& patch : used) {
-    residuals.push_back(
-        new PatchResidual{patch, albedo, radius_squared(patch.pixel.x(), patch.pixel.y(), image_size), seed});
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PatchResidual, 3, 3, 3, 2>(residuals.back()),
-                             new ceres::HuberLoss(4.0),
-                             unknowns.positions[static_cast<std::size_t>(patch.light)].data(), unknowns.factor.data(),
-                             unknowns.vignetting.data());
-  }
-  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<VignettingPrior, 2, 2>(new VignettingPrior), nullptr,
-                           unknowns.vignetting.data());
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = 200;
-  options.function_tolerance = 1e-12;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-
+  const LightSolver solver(used, guesses, options, pictures);
+  Unknowns x = solver.first_guess();
+  refuse_dark_pictures(solver, x, pictures);
   LightFit fit;
-  fit.converged = summary.termination_type == ceres::CONVERGENCE && unknowns.factor.minCoeff() > 0.0;
-  fit.positions = unknowns.positions;
-  fit.intensity = unknowns.factor.cwiseProduct(seed);
-  fit.vignetting = {.v0 = unknowns.vignetting[0], .v1 = unknowns.vignetting[1]};
+  fit.converged = solver.solve(x);
+  for (std::size_t light = 0; light < guesses.size(); ++light) refuse_weak_light(solver, x, light, guesses[light]);
+  fit.positions = x.positions;
+  for (std::size_t light = 0; light < guesses.size(); ++light)
+    fit.beam_axes.push_back(solver.frame(light).direction(x.beams[light].data()));
+  fit.beam_exponent = x.lamp[3];
+  fit.intensity = solver.seed().array() * x.lamp.head<3>().array().exp();
+  fit.droop = x.droop;
+  fit.table_albedo = x.table;
+  fit.vignetting = {.v0 = x.vignetting[0], .v1 = x.vignetting[1]};
   fit.patches_used = static_cast<int>(used.size());
-  double weighted = 0.0, relative = 0.0;
-  for (const PatchResidual* residual : residuals) {
-    Eigen::Vector3d r;
-    (*residual)(unknowns.positions[static_cast<std::size_t>(residual->patch.light)].data(), unknowns.factor.data(),
-                unknowns.vignetting.data(), r.data());
-    weighted += r.squaredNorm();
-    relative += (r.array() * residual->patch.sigma.array() / residual->patch.radiance.array()).square().sum();
-  }
-  const double count = 3.0 * static_cast<double>(used.size());
-  const double parameters = 3.0 * static_cast<double>(guesses.size()) + 5.0;
-  fit.relative_rms = std::sqrt(relative / count);
-  // Scatter beyond the given standard errors widens the covariance; less than them does not narrow it.
-  take_covariances(problem, unknowns, seed, std::max(1.0, weighted / (count - parameters)), fit);
+  double relative = 0.0;
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    for (const Vector3d& error : solver.relative_errors(x, static_cast<int>(i))) relative += error.squaredNorm();
+  fit.relative_rms = std::sqrt(relative / (3.0 * static_cast<double>(used.size())));
+
+  const Summary summary{guesses.size()};
+  Eigen::MatrixXd covariance = leave_each_out(solver, summary, x, guesses, pictures, fit);
+  LightOptions published = options;
+  published.published_droop_only = true;
+  Unknowns y = x;
+  y.droop[1] = 0.0;
+  const LightSolver other(used, guesses, published, pictures);
+  other.solve(y);
+  const Eigen::VectorXd shift = summary.of(y, other, guesses) - summary.of(x, solver, guesses);
+  covariance += shift * shift.transpose();
+  take_covariances(summary, covariance, fit);
+  add_gates(solver, x, guesses, pictures, fit);
   return fit;
 }
 

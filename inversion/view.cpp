@@ -21,7 +21,9 @@ renderer::SphereLight sphere_light(const NearLight& light) {
   return {.center = light.position,
           .radius_mm = light.radius_mm,
           .radiance = light.intensity / (M_PI * light.radius_mm * light.radius_mm),
-          .visible = false};
+          .visible = false,
+          .beam_axis = light.beam_axis,
+          .beam_exponent = light.beam_exponent};
 }
 
 renderer::Scene view_scene(const WrappedSpool& spool, const renderer::ScatteringModel& scattering,
@@ -56,7 +58,8 @@ cv::Mat1b thread_mask(const WrappedSpool& spool, const renderer::Camera& camera,
 }
 
 Eigen::Vector3d diffuser_radiance(const NearLight& light) {
-  return light.intensity / (M_PI * light.position.squaredNorm());
+  const double beam = renderer::beam_factor(sphere_light(light), Eigen::Vector3d::Zero());
+  return light.intensity * (beam / (M_PI * light.position.squaredNorm()));
 }
 
 }  // namespace inversion

@@ -13,9 +13,12 @@ namespace inversion {
 
 struct NearLight {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // mm, holder frame
-  Eigen::Vector3d intensity =
-      Eigen::Vector3d::Ones();  // RGB, radiance unit x mm^2: irradiance at distance d facing it is I / d^2
+  Eigen::Vector3d intensity = Eigen::Vector3d::
+      Ones();  // RGB, radiance unit x mm^2: irradiance at distance d facing it on its axis is I / d^2
   double radius_mm = 4;
+  // Intensity falls off as cos^beam_exponent of the angle from beam_axis (unit); `intensity` is along the axis.
+  Eigen::Vector3d beam_axis = -Eigen::Vector3d::UnitX();
+  double beam_exponent = 0.0;
 };
 
 struct View {
@@ -39,7 +42,7 @@ renderer::Scene view_scene(const WrappedSpool& spool, const renderer::Scattering
 cv::Mat1b thread_mask(const WrappedSpool& spool, const renderer::Camera& camera, const NearLight& light,
                       int samples_per_pixel);
 
-// Radiance of a perfect diffuser at the holder frame's origin facing the light: I / (pi d^2). Pictures are divided by its
+// Radiance of a perfect diffuser at the holder frame's origin facing the light: I cos^beam / (pi d^2). Pictures are divided by its
 // mean in the objective of eq. 6.
 Eigen::Vector3d diffuser_radiance(const NearLight& light);
 

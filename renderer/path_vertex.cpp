@@ -16,6 +16,12 @@ Matrix3f frame_rows(const Vector3f& x, const Vector3f& y, const Vector3f& z) {
   return rows;
 }
 
+// Of the azimuth between two directions about z; 1 where one of them is z.
+float cos_azimuth(const Vector3f& a, const Vector3f& b) {
+  const float product = a.head<2>().norm() * b.head<2>().norm();
+  return product > 0 ? std::clamp(a.head<2>().dot(b.head<2>()) / product, -1.0f, 1.0f) : 1.0f;
+}
+
 FiberModel<float> prepare(const FiberParameters& p) {
   return FiberModel<float>(in_scalar<float>(p));
 }
@@ -67,13 +73,19 @@ PathVertex::PathVertex(const SurfaceHit& hit, const Vector3f& wo, const std::vec
     albedo_ = mesh.albedo;
     const Vector3f side = mesh.normal.unitOrthogonal();
     local_from_world_ = frame_rows(side, mesh.normal.cross(side), mesh.normal);
+    reflectance_factor_ = mesh.reflectance_factor;
+    if (reflectance_factor_) wo_local_ = local_from_world_ * wo;
   }
 }
 
 ScatteringValue<float> PathVertex::evaluate(const Vector3f& wi) const {
   if (is_curve_) return lobes_.evaluate(local_from_world_ * wi);
   const float cosine = std::max(0.0f, local_from_world_.row(2).dot(wi)) * kInvPi;
-  return {albedo_ * cosine, cosine};
+  if (!reflectance_factor_ || cosine == 0.0f) return {albedo_ * cosine, cosine};
+  const Vector3f wi_local = local_from_world_ * wi;
+  const auto factor =
+      static_cast<float>((*reflectance_factor_)(wi_local.z(), wo_local_.z(), cos_azimuth(wi_local, wo_local_)));
+  return {albedo_ * (cosine * factor), cosine};
 }
 
 Vector3f PathVertex::sample(Sampler& sampler) const {

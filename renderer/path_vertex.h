@@ -43,7 +43,9 @@ class PathVertex {
  private:
   Eigen::Vector3f position_;
   Eigen::Matrix3f local_from_world_;  // curve: tangent, side, normal; surface: z = normal
-  Eigen::Array3f albedo_;             // diffuse surfaces
+  Eigen::Array3f albedo_;             // matt surfaces
+  const ReflectanceFactor* reflectance_factor_ = nullptr;
+  Eigen::Vector3f wo_local_;  // of a surface that is not Lambertian
   bool is_curve_;
   CurveLobes<float> lobes_;  // curves
 };

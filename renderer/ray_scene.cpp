@@ -129,6 +129,7 @@ MeshPoint RayScene::mesh_point(std::uint32_t mesh_index, std::uint32_t triangle,
   };
   const cv::Vec3f& albedo = mesh.albedo(texel(texture.y(), mesh.albedo.rows), texel(texture.x(), mesh.albedo.cols));
   point.albedo = {albedo[0], albedo[1], albedo[2]};
+  point.reflectance_factor = mesh.reflectance_factor ? &mesh.reflectance_factor : nullptr;
   return point;
 }
 

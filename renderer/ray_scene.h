@@ -37,6 +37,7 @@ struct MeshPoint {
   Eigen::Vector3f position;
   Eigen::Vector3f normal;  // unit, towards the ray's origin
   Eigen::Array3f albedo;
+  const ReflectanceFactor* reflectance_factor;  // none: Lambertian
 };
 
 struct SurfaceHit {

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <opencv2/core.hpp>
 #include <variant>
 #include <vector>
@@ -31,12 +32,17 @@ struct CurveSet {
   void add_clamped_curve(const std::vector<Eigen::Vector4f>& points);
 };
 
-// Triangles with a Lambertian, optionally textured, two-sided surface.
+// A real matt surface's brightness over a Lambertian one's (1), same albedo: from the cosines of the angles of incidence
+// and of viewing and of the azimuth between the two (1 = light and viewer on the same side).
+using ReflectanceFactor = std::function<double(double cos_theta_i, double cos_theta_o, double cos_phi)>;
+
+// Triangles with a matt, optionally textured, two-sided surface.
 struct TriangleMesh {
   std::vector<Eigen::Vector3f> vertices{};  // mm
   std::vector<std::array<std::uint32_t, 3>> triangles{};
   std::vector<Eigen::Vector2f> texture_coordinates{};  // per vertex, (0, 0) = top left of the texture; may be empty
   cv::Mat3f albedo = cv::Mat3f(1, 1, cv::Vec3f(0, 0, 0));  // looked up at the nearest texel (crisp tags)
+  ReflectanceFactor reflectance_factor{};                  // none: Lambertian
 };
 
 // A smooth surface that says where each place of an endless patch (patch.h) lies: the patch's plane z = 0. Triangles
@@ -56,13 +62,19 @@ struct Cloth {
   std::vector<ScatteringModel> threads{};  // by thread index of the patch's yarns
 };
 
-// Uniformly emitting sphere; irradiance at distance d facing it: radiance * pi * radius^2 / d^2.
+// Emitting sphere; irradiance at distance d facing it: radiance * beam_factor * pi * radius^2 / d^2.
 struct SphereLight {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double radius_mm = 1.0;
   Eigen::Vector3d radiance = Eigen::Vector3d::Ones();  // RGB
   bool visible = true;                                 // seen by camera rays
+  // A beam: radiance falls off as cos^beam_exponent of the angle from beam_axis (unit) to the point that sees it, and is
+  // none behind. Exponent 0: the same in all directions. [Queau et al. 2018, doi 10.1007/s10851-017-0761-1]
+  Eigen::Vector3d beam_axis = -Eigen::Vector3d::UnitZ();
+  double beam_exponent = 0.0;
 };
+
+double beam_factor(const SphereLight& light, const Eigen::Vector3d& point);
 
 struct Scene {
   std::vector<CurveSet> curves{};

@@ -38,6 +38,12 @@ Vector3d direction_in_cone(const Vector3d& axis, double one_minus_cos_max, const
 
 }  // namespace
 
+double beam_factor(const SphereLight& light, const Vector3d& point) {
+  if (light.beam_exponent == 0.0) return 1.0;
+  const double cosine = light.beam_axis.dot((point - light.center).normalized());
+  return cosine > 0.0 ? std::pow(cosine, light.beam_exponent) : 0.0;
+}
+
 std::optional<LightHit> SphereLights::intersect(const Vector3d& origin, const Vector3d& direction,
                                                 bool for_camera) const {
   std::optional<LightHit> nearest;
@@ -45,7 +51,7 @@ std::optional<LightHit> SphereLights::intersect(const Vector3d& origin, const Ve
     if (for_camera && !light.visible) continue;
     const std::optional<double> distance = distance_along(light, origin, direction);
     if (distance && (!nearest || *distance < nearest->distance)) {
-      nearest = LightHit{*distance, light.radiance.cast<float>().array()};
+      nearest = LightHit{*distance, (light.radiance * beam_factor(light, origin)).cast<float>().array()};
     }
   }
   return nearest;

@@ -24,7 +24,8 @@ std::uint64_t placement_key(const Arrangement& arrangement) {
 
 bool same_lamp(const std::optional<TrueLamp>& a, const std::optional<TrueLamp>& b) {
   return a.has_value() == b.has_value() &&
-         (!a || (a->position == b->position && a->intensity == b->intensity && a->radius_mm == b->radius_mm));
+         (!a || (a->position == b->position && a->intensity == b->intensity && a->radius_mm == b->radius_mm &&
+                 a->aim == b->aim && a->beam_exponent == b->beam_exponent));
 }
 
 class SimulatedOperator final : public Operator {

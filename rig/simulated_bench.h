@@ -47,6 +47,9 @@ struct TrueLamp {
   Eigen::Vector3d intensity =
       Eigen::Vector3d::Ones();  // RGB, radiance unit x mm^2 (irradiance at distance d facing: I / d^2)
   double radius_mm = 4;
+  // Its beam: intensity falls off as cos^beam_exponent of the angle from the direction to `aim` (world, mm).
+  Eigen::Vector3d aim = Eigen::Vector3d::Zero();
+  double beam_exponent = 0.0;
 };
 
 struct BenchTruth {

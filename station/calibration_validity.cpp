@@ -49,12 +49,10 @@ void require_valid(const RigCalibration& calibration, const RigFile& rig, const 
   if (age_days > rig.calibration_valid_days)
     throw std::runtime_error("the calibration is " + number_text(age_days, 0) + " days old, rig \"" + rig.name +
                              "\" allows " + number_text(rig.calibration_valid_days, 0) + "; calibrate again");
-  for (const calibration::Gate& gate : all_gates(calibration)) {
-    if (gate.passed || accept_failed_gates) continue;
-    throw std::runtime_error("the calibration did not pass \"" + gate.name + "\": " + number_text(gate.value, 4) +
-                             " against a limit of " + number_text(gate.limit, 4) + " (" + gate.reason +
-                             "); calibrate again, or accept it with --accept-calibration");
-  }
+  const std::string failed = failed_gates(calibration);
+  if (failed.empty() || accept_failed_gates) return;
+  throw std::runtime_error("the calibration is not good enough: " + failed +
+                           "; calibrate again, or accept it with --accept-calibration");
 }
 
 void require_same_camera(const RigCalibration& calibration, const calibration::SensorPicture& picture,

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "calibration/spectralon.h"
+
 namespace station {
 namespace {
 
@@ -84,11 +86,15 @@ std::vector<renderer::TriangleMesh> board_meshes(const calibration::TagLayout& b
   return meshes;
 }
 
-std::vector<renderer::TriangleMesh> spectralon_meshes(const SpectralonPanel& panel) {
+std::vector<renderer::TriangleMesh> spectralon_meshes(const SpectralonPanel& panel, double droop) {
   const Eigen::Isometry3d lifted(Eigen::Translation3d(0, 0, kPaperLift_mm));
   std::vector<renderer::TriangleMesh> meshes{
       rectangle(Eigen::Isometry3d::Identity(), panel.plate_mm, panel.plate_mm, plain(kBlackPaintAlbedo)),
       rectangle(lifted, panel.white_mm, panel.white_mm, plain(static_cast<float>(panel.albedo)))};
+  if (droop != 0)
+    meshes.back().reflectance_factor = [droop](double cos_theta_i, double cos_theta_o, double cos_phi) {
+      return 1 + droop * calibration::droop_shape(cos_theta_i, cos_theta_o, cos_phi);
+    };
   add_tags(meshes, panel.tags);
   return meshes;
 }

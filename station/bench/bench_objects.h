@@ -18,7 +18,8 @@ std::vector<renderer::TriangleMesh> table_and_platform(double platform_height_mm
 std::vector<renderer::TriangleMesh> lying_tag_meshes(const calibration::TagLayout& tags);
 
 std::vector<renderer::TriangleMesh> board_meshes(const calibration::TagLayout& board);
-std::vector<renderer::TriangleMesh> spectralon_meshes(const SpectralonPanel& panel);
+std::vector<renderer::TriangleMesh> spectralon_meshes(const SpectralonPanel& panel,
+                                                      double droop);  // calibration/spectralon.h
 std::vector<renderer::TriangleMesh> holder_meshes(const inversion::WrappedSpool& spool,
                                                   const calibration::TagLayout& tags);
 

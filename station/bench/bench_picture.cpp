@@ -20,8 +20,11 @@ const Eigen::Vector3d kRoomLampPosition(900, 350, 1100);  // above and beside th
 
 renderer::SphereLight flashlight(const rig::TrueLamp& lamp, const Eigen::Isometry3d& object_from_world) {
   const double area = M_PI * lamp.radius_mm * lamp.radius_mm;
-  return {
-      .center = object_from_world * lamp.position, .radius_mm = lamp.radius_mm, .radiance = lamp.intensity / area};
+  return {.center = object_from_world * lamp.position,
+          .radius_mm = lamp.radius_mm,
+          .radiance = lamp.intensity / area,
+          .beam_axis = object_from_world.linear() * (lamp.aim - lamp.position).normalized(),
+          .beam_exponent = lamp.beam_exponent};
 }
 
 // A ceiling lamp that gives a white diffuser at the origin, facing it, the asked radiance.
@@ -57,7 +60,7 @@ struct Painter {
         scene.meshes = board_meshes(rig.board);
         break;
       case rig::BenchObject::spectralon:
-        scene.meshes = spectralon_meshes(rig.spectralon);
+        scene.meshes = spectralon_meshes(rig.spectralon, rig.simulation->spectralon_droop);
         break;
       case rig::BenchObject::holder:
         if (!spool)

@@ -5,14 +5,14 @@
 #include <optional>
 
 #include "calibration/develop.h"
+#include "calibration/light_plan.h"
 #include "station/views.h"
 
 namespace station {
 namespace {
 
-constexpr int kCells = 5;               // across the white square, each way
-constexpr double kUsedFraction = 0.84;  // of the square's edge: away from its border, which blurs into the plate
-constexpr int kMinPixels = 30;          // per cell, for a mean and its error
+constexpr int kCells = 5;       // across the white square, each way
+constexpr int kMinPixels = 30;  // per cell, for a mean and its error
 // Tag pose, flat panel and demosaicing are not known better than this; keeps bright cells from dominating.
 constexpr double kRelativeFloor = 2e-3;
 
@@ -50,30 +50,32 @@ std::vector<calibration::LightPatch> panel_patches(const calibration::SensorPict
                                                    const calibration::Lens& lens,
                                                    const Eigen::Isometry3d& world_from_camera,
                                                    const Eigen::Isometry3d& camera_from_panel,
-                                                   const SpectralonPanel& panel, int light) {
+                                                   const SpectralonPanel& panel, int light, int number) {
   const calibration::Developed developed = calibration::develop(picture, {});
   const Eigen::Isometry3d panel_from_camera = camera_from_panel.inverse();
   const renderer::Camera camera = camera_of(lens, panel_from_camera, false);
   const Eigen::Isometry3d world_from_panel = world_from_camera * camera_from_panel;
-  const double cell = panel.white_mm * kUsedFraction / kCells;
+  const Eigen::Vector3d eye = world_from_camera.translation();
+  const double cell = calibration::panel_cell_mm(panel.white_mm, kCells);
   std::vector<calibration::LightPatch> patches;
-  for (int i = 0; i < kCells; ++i)
-    for (int j = 0; j < kCells; ++j) {
-      const Eigen::Vector3d centre((i - (kCells - 1) / 2.0) * cell, (j - (kCells - 1) / 2.0) * cell, 0);
-      std::vector<cv::Point2f> outline;
-      for (const auto& [x, y] : {std::pair{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}) {
-        const Eigen::Vector2d pixel = renderer::project(camera, centre + Eigen::Vector3d(x * cell, y * cell, 0));
-        outline.emplace_back(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
-      }
-      const auto measured = mean_inside(developed, outline);
-      if (!measured) continue;
-      patches.push_back({.light = light,
-                         .point = world_from_panel * centre,
-                         .normal = world_from_panel.linear().col(2),
-                         .pixel = renderer::project(camera, centre),
-                         .radiance = measured->mean,
-                         .sigma = measured->standard_error});
+  for (const Eigen::Vector3d& centre : calibration::panel_cells(panel.white_mm, kCells)) {
+    std::vector<cv::Point2f> outline;
+    for (const auto& [x, y] : {std::pair{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}) {
+      const Eigen::Vector2d pixel = renderer::project(camera, centre + Eigen::Vector3d(x * cell, y * cell, 0));
+      outline.emplace_back(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
     }
+    const auto measured = mean_inside(developed, outline);
+    if (!measured) continue;
+    const Eigen::Vector3d point = world_from_panel * centre;
+    patches.push_back({.light = light,
+                       .picture = number,
+                       .point = point,
+                       .normal = world_from_panel.linear().col(2),
+                       .to_camera = (eye - point).normalized(),
+                       .pixel = renderer::project(camera, centre),
+                       .radiance = measured->mean,
+                       .sigma = measured->standard_error});
+  }
   return patches;
 }
 

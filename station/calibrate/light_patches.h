@@ -10,11 +10,11 @@
 
 namespace station {
 
-// `light`: 0 front, 1 back. Cells that leave the picture or are saturated are left out.
+// `light`: 0 front, 1 back; `number`: of the picture, among those of the lights. Cells that leave the picture or are saturated are left out.
 std::vector<calibration::LightPatch> panel_patches(const calibration::SensorPicture& picture,
                                                    const calibration::Lens& lens,
                                                    const Eigen::Isometry3d& world_from_camera,
                                                    const Eigen::Isometry3d& camera_from_panel,
-                                                   const SpectralonPanel& panel, int light);
+                                                   const SpectralonPanel& panel, int light, int number);
 
 }  // namespace station

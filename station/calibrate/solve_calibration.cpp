@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "calibration/pose.h"
+#include "station/calibrate/lamps.h"
 #include "station/calibrate/light_patches.h"
 #include "station/views.h"
 
@@ -54,17 +55,19 @@ CameraSetup camera_of_pictures(const RigFile& rig, const std::vector<Loaded>& lo
 calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& lens,
                                   const Eigen::Isometry3d& world_from_camera, const std::vector<Loaded>& loaded) {
   std::vector<calibration::LightPatch> patches;
+  std::vector<calibration::LightPicture> pictures;
   for (const Loaded& entry : loaded) {
     const bool front = entry.picture.role == CalibrationRole::front_light;
     if (!front && entry.picture.role != CalibrationRole::back_light) continue;
     const auto pose = calibration::fit_pose(lens, rig.spectralon.tags, entry.tags);
     if (!pose) continue;  // a panel without a seen tag says nothing; the fit refuses when too few are left
-    const auto cells =
-        panel_patches(entry.raw, lens, world_from_camera, pose->camera_from_object, rig.spectralon, front ? 0 : 1);
+    const auto cells = panel_patches(entry.raw, lens, world_from_camera, pose->camera_from_object, rig.spectralon,
+                                     front ? 0 : 1, static_cast<int>(pictures.size()));
     patches.insert(patches.end(), cells.begin(), cells.end());
+    pictures.push_back({.name = entry.picture.id});
   }
-  return calibration::fit_light(patches, {rig.front_lamp_mm, rig.back_lamp_mm}, rig.spectralon.albedo,
-                                cv::Size(lens.width_px, lens.height_px));
+  return calibration::fit_light(patches, lamp_guesses(rig), light_options(rig, {lens.width_px, lens.height_px}),
+                                pictures);
 }
 
 }  // namespace
@@ -106,22 +109,28 @@ RigCalibration solve_calibration(const RigFile& rig, const std::filesystem::path
 std::string describe(const RigCalibration& calibration) {
   const calibration::Lens& lens = calibration.lens.lens;
   const Eigen::Vector3d camera = calibration.platform.world_from_camera.translation();
-  const auto sigma_mm = [&](std::size_t i) {
-    return std::sqrt(calibration.light.position_covariances.at(i).trace());
-  };
-  char text[900];
+  const calibration::LightFit& light = calibration.light;
+  char text[1200];
   std::snprintf(text, sizeof text,
                 "lens      f %.1f / %.1f px, centre %.1f / %.1f px, %d corners, rms %.3f px\n"
-                "platform  camera at %.1f, %.1f, %.1f mm; angle scale %.5f; angles rms %.4f deg; rms %.3f px\n"
-                "light     front %.1f, %.1f, %.1f mm (+-%.1f), back %.1f, %.1f, %.1f mm (+-%.1f), rms %.2f %%\n",
+                "platform  camera at %.1f, %.1f, %.1f mm; angle scale %.5f; angles rms %.4f deg; rms %.3f px\n",
                 lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, calibration.lens.corners_used,
                 calibration.lens.rms_px, camera.x(), camera.y(), camera.z(), calibration.platform.scale,
-                calibration.platform.angle_rms_rad * kDegPerRad, calibration.platform.rms_px,
-                calibration.light.positions[0].x(), calibration.light.positions[0].y(),
-                calibration.light.positions[0].z(), sigma_mm(0), calibration.light.positions[1].x(),
-                calibration.light.positions[1].y(), calibration.light.positions[1].z(), sigma_mm(1),
-                100 * calibration.light.relative_rms);
-  return text;
+                calibration.platform.angle_rms_rad * kDegPerRad, calibration.platform.rms_px);
+  std::string lines = text;
+  for (std::size_t i = 0; i < light.positions.size(); ++i) {
+    const Eigen::Vector3d& at = light.positions[i];
+    std::snprintf(text, sizeof text,
+                  "light     %s at %.1f, %.1f, %.1f mm (+-%.1f), irradiance at the platform +-%.2f %%, pictures held "
+                  "out %.2f %%\n",
+                  i == 0 ? "front" : "back ", at.x(), at.y(), at.z(),
+                  std::sqrt(light.position_covariances.at(i).trace()), 100 * light.aim_irradiance_sigma.at(i),
+                  100 * held_out_error(light, static_cast<int>(i)));
+    lines += text;
+  }
+  std::snprintf(text, sizeof text, "          beam cos^%.2f, panel's droop %.1f %% at 60 deg, patches rms %.2f %%\n",
+                light.beam_exponent, 100 * light.droop.sum(), 100 * light.relative_rms);
+  return lines + text;
 }
 
 }  // namespace station

@@ -20,11 +20,8 @@ void run(Arguments& arguments) {
   else if (!arguments.output.quiet)
     std::cout << describe(calibration) << "calibration: " << (arguments.request.out / "calibration.json").string()
               << "\n";
-  for (const calibration::Gate& gate : all_gates(calibration))
-    if (!gate.passed)
-      throw std::runtime_error("the calibration is written but not good enough: " + gate.name + " is " +
-                               std::to_string(gate.value) + ", the limit is " + std::to_string(gate.limit) + " (" +
-                               gate.reason + ")");
+  const std::string failed = failed_gates(calibration);
+  if (!failed.empty()) throw std::runtime_error("the calibration is written but not good enough: " + failed);
 }
 
 }  // namespace

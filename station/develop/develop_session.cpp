@@ -61,7 +61,10 @@ DevelopedView place_view(const PlanStep& step, const PictureRecord& picture, con
   view.id = step.id;
   view.transmission = is_transmission(step);
   view.camera = camera_of(calibration.lens.lens, holder_from_world * calibration.platform.world_from_camera, true);
-  view.light.position = holder_from_world * calibration.light.positions.at(view.transmission ? 1 : 0);
+  const std::size_t place = view.transmission ? 1 : 0;
+  view.light.position = holder_from_world * calibration.light.positions.at(place);
+  view.light.beam_axis = holder_from_world.linear() * calibration.light.beam_axes.at(place);
+  view.light.beam_exponent = calibration.light.beam_exponent;
   view.light.intensity = calibration.light.intensity;
   view.light.radius_mm = lamp_radius_mm;
   return developed;

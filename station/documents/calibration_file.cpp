@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "station/documents/reader.h"
 
@@ -195,31 +196,77 @@ calibration::PlatformFit parse_platform(ObjectReader reader, calibration::StillT
   return fit;
 }
 
+json place_json(const calibration::LightFit& fit, std::size_t place) {
+  return {{"position_mm", to_json(fit.positions.at(place))},
+          {"position_covariance", matrix_json(fit.position_covariances.at(place))},
+          {"beam_axis", to_json(fit.beam_axes.at(place))},
+          {"aim_irradiance_sigma", fit.aim_irradiance_sigma.at(place)}};
+}
+
+void parse_place(ObjectReader reader, calibration::LightFit& fit) {
+  fit.positions.push_back(reader.vector3("position_mm"));
+  fit.position_covariances.emplace_back(read_matrix(reader, "position_covariance", 3));
+  fit.beam_axes.push_back(reader.vector3("beam_axis").normalized());
+  fit.aim_irradiance_sigma.push_back(reader.number("aim_irradiance_sigma", 0, 1e6));
+  reader.finish();
+}
+
 json light_json(const calibration::LightFit& fit, double albedo) {
-  return {{"front_position_mm", to_json(fit.positions.at(0))},
-          {"back_position_mm", to_json(fit.positions.at(1))},
-          {"front_position_covariance", matrix_json(fit.position_covariances.at(0))},
-          {"back_position_covariance", matrix_json(fit.position_covariances.at(1))},
+  json held_out = json::array();
+  for (const calibration::HeldOutPicture& held : fit.held_out)
+    held_out.push_back({{"picture", held.name},
+                        {"light", held.light == 0 ? "front" : "back"},
+                        {"output", held.output},
+                        {"patch_error", held.patch_error},
+                        {"picture_error", held.picture_error}});
+  return {{"front", place_json(fit, 0)},
+          {"back", place_json(fit, 1)},
           {"intensity_mm2", to_json(fit.intensity)},
           {"intensity_covariance", matrix_json(fit.intensity_covariance)},
+          {"beam_exponent", fit.beam_exponent},
+          {"beam_exponent_sigma", fit.beam_exponent_sigma},
           {"vignetting", {fit.vignetting.v0, fit.vignetting.v1}},
+          {"vignetting_covariance", matrix_json(fit.vignetting_covariance)},
           {"spectralon_albedo", albedo},
+          {"spectralon_droop", {fit.droop[0], fit.droop[1]}},
+          {"spectralon_droop_sigma", {fit.droop_sigma[0], fit.droop_sigma[1]}},
+          {"table_albedo", fit.table_albedo},
           {"relative_rms", fit.relative_rms},
+          {"patches_used", fit.patches_used},
+          {"held_out", held_out},
+          {"gates", gates_json(fit.gates)},
           {"converged", fit.converged}};
 }
 
 calibration::LightFit parse_light(ObjectReader reader, double& albedo) {
   calibration::LightFit fit;
-  fit.positions = {reader.vector3("front_position_mm"), reader.vector3("back_position_mm")};
-  fit.position_covariances = {read_matrix(reader, "front_position_covariance", 3),
-                              read_matrix(reader, "back_position_covariance", 3)};
+  parse_place(reader.object("front"), fit);
+  parse_place(reader.object("back"), fit);
   fit.intensity = reader.vector3("intensity_mm2");
   fit.intensity_covariance = read_matrix(reader, "intensity_covariance", 3);
+  fit.beam_exponent = reader.number("beam_exponent", -10, 1000);
+  fit.beam_exponent_sigma = reader.number("beam_exponent_sigma", 0, 1e6);
   const auto vignetting = reader.numbers("vignetting", 2);
   fit.vignetting.v0 = vignetting[0];
   fit.vignetting.v1 = vignetting[1];
+  fit.vignetting_covariance = read_matrix(reader, "vignetting_covariance", 2);
   albedo = reader.number("spectralon_albedo", 0.5, 1);
+  const auto droop = reader.numbers("spectralon_droop", 2), droop_sigma = reader.numbers("spectralon_droop_sigma", 2);
+  fit.droop = {droop[0], droop[1]};
+  fit.droop_sigma = {droop_sigma[0], droop_sigma[1]};
+  fit.table_albedo = reader.number("table_albedo", -1, 2);
   fit.relative_rms = reader.number("relative_rms", 0, 1e6);
+  fit.patches_used = reader.integer("patches_used", 0, 1 << 30);
+  for (ObjectReader& entry : reader.objects("held_out")) {
+    calibration::HeldOutPicture held{.name = entry.text("picture")};
+    held.light = entry.choice("light", {"front", "back"}) == "front" ? 0 : 1;
+    held.output = entry.number("output", 0, 1e6);
+    held.patch_error = entry.number("patch_error", 0, 1e6);
+    held.picture_error = entry.number("picture_error", -1e6, 1e6);
+    entry.finish();
+    fit.held_out.push_back(held);
+  }
+  fit.gates = read_gates(reader);
   fit.converged = reader.flag("converged");
   reader.finish();
   return fit;
@@ -228,7 +275,20 @@ calibration::LightFit parse_light(ObjectReader reader, double& albedo) {
 }  // namespace
 
 std::vector<calibration::Gate> all_gates(const RigCalibration& calibration) {
-  return calibration.platform.gates;
+  std::vector<calibration::Gate> gates = calibration.platform.gates;
+  gates.insert(gates.end(), calibration.light.gates.begin(), calibration.light.gates.end());
+  return gates;
+}
+
+std::string failed_gates(const RigCalibration& calibration) {
+  std::string text;
+  for (const calibration::Gate& gate : all_gates(calibration)) {
+    if (gate.passed) continue;
+    char numbers[80];
+    std::snprintf(numbers, sizeof numbers, " is %.4g, the limit is %.4g (", gate.value, gate.limit);
+    text += (text.empty() ? "" : "; ") + gate.name + numbers + gate.reason + ")";
+  }
+  return text;
 }
 
 json to_json(const RigCalibration& calibration) {

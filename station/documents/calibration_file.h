@@ -35,6 +35,8 @@ struct RigCalibration {
 
 // Of all its parts, in their order.
 std::vector<calibration::Gate> all_gates(const RigCalibration& calibration);
+// Those that failed, in one line with found value, limit and reason; empty when all passed.
+std::string failed_gates(const RigCalibration& calibration);
 
 nlohmann::json to_json(const RigCalibration& calibration);
 RigCalibration parse_calibration(const nlohmann::json& document, const std::string& source);

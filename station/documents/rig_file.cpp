@@ -124,6 +124,9 @@ SimulatedRig parse_simulation(ObjectReader simulation) {
   truth.back.position = lamp.vector3("back_position_mm");
   truth.front.intensity = truth.back.intensity = lamp.vector3("intensity_mm2");
   truth.front.radius_mm = truth.back.radius_mm = lamp.number("radius_mm", 0.1, 100);
+  truth.front.aim = lamp.vector3("front_aim_mm");
+  truth.back.aim = lamp.vector3("back_aim_mm");
+  truth.front.beam_exponent = truth.back.beam_exponent = lamp.number("beam_exponent", 0, 100);
   if (truth.front.intensity.minCoeff() < 0) lamp.refuse("intensity_mm2", "cannot be negative");
   lamp.finish();
   ObjectReader prints = simulation.object("prints");
@@ -132,6 +135,7 @@ SimulatedRig parse_simulation(ObjectReader simulation) {
   truth.world_from_table_sheet = lying_at(sheet[0], sheet[1], prints.number("table_turn_deg", -180, 180));
   prints.finish();
   truth.room_radiance = simulation.vector3("room_radiance");
+  result.spectralon_droop = simulation.number("spectralon_droop_percent", 0, 30) / 100;
   truth.placement_mm = simulation.number("placement_mm", 0, 20);
   truth.placement_rad = simulation.number("placement_deg", 0, 20) * kRadPerDeg;
   simulation.finish();
@@ -187,6 +191,7 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
   ObjectReader lamps = reader.object("lamp_by_tape");
   rig.front_lamp_mm = lamps.vector3("front_position_mm");
   rig.back_lamp_mm = lamps.vector3("back_position_mm");
+  rig.lamp_aim_mm = lamps.vector3("aim_mm");
   rig.lamp_radius_mm = lamps.number("radius_mm", 0.1, 100);
   lamps.finish();
   parse_capture(reader.object("capture"), rig);

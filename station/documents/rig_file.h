@@ -22,6 +22,7 @@ struct SpectralonPanel {
 
 struct SimulatedRig {
   rig::BenchTruth truth;
+  double spectralon_droop = 0;        // calibration/spectralon.h
   int samples_per_pixel = 32;         // of the path tracer that draws the spool
   int target_samples_per_pixel = 12;  // and of pictures without threads
 };
@@ -44,6 +45,7 @@ struct RigFile {
   calibration::TagLayout holder_tags;
   SpectralonPanel spectralon;
   Eigen::Vector3d front_lamp_mm, back_lamp_mm;  // by tape, world frame
+  Eigen::Vector3d lamp_aim_mm;                  // what both are pointed at
   double lamp_radius_mm = 0;                    // of its bright face
   std::vector<double> reflection_angles_deg, transmission_angles_deg;
   double target_level = 0.6;  // of full scale that the brightest thread pixels should reach

@@ -34,7 +34,9 @@ json view_json(const DevelopedView& developed) {
           {"light",
            {{"position_mm", to_json(view.light.position)},
             {"intensity_mm2", to_json(view.light.intensity)},
-            {"radius_mm", view.light.radius_mm}}}};
+            {"radius_mm", view.light.radius_mm},
+            {"beam_axis", to_json(view.light.beam_axis)},
+            {"beam_exponent", view.light.beam_exponent}}}};
 }
 
 DevelopedView parse_view(ObjectReader reader) {
@@ -67,6 +69,8 @@ DevelopedView parse_view(ObjectReader reader) {
   view.light.position = light.vector3("position_mm");
   view.light.intensity = light.vector3("intensity_mm2");
   view.light.radius_mm = light.number("radius_mm", 1e-3, 1000);
+  view.light.beam_axis = light.vector3("beam_axis").normalized();
+  view.light.beam_exponent = light.number("beam_exponent", -10, 1000);
   light.finish();
   reader.finish();
   return developed;

@@ -77,7 +77,11 @@ std::string calibration_table(const RigCalibration& calibration) {
        {"lamp behind", position_text(light.positions[1], light.position_covariances[1])},
        {"lamp intensity (R, G, B)",
         numbers_text({light.intensity[0], light.intensity[1], light.intensity[2]}, 0) + " (radiance unit × mm²)"},
-       {"Spectralon residual", number_text(100 * light.relative_rms, 2) + " % rms"}});
+       {"lamp's beam", "cos^" + number_text(light.beam_exponent, 2) + " of the angle from its axis"},
+       {"Spectralon", "patches " + number_text(100 * light.relative_rms, 2) + " % rms, pictures held out " +
+                          number_text(100 * calibration::held_out_error(light, 0), 2) + " % (in front) and " +
+                          number_text(100 * calibration::held_out_error(light, 1), 2) + " % (behind), droop " +
+                          number_text(100 * light.droop.sum(), 1) + " %"}});
 }
 
 }  // namespace

@@ -29,6 +29,8 @@ TEST(ViewTest, TheDiffuserShowsWhatADiffuserInTheSceneShows) {
   NearLight light;
   light.position = {400, 0, 0};
   light.intensity = {5e5, 3e5, 1e5};
+  light.beam_axis = Vector3d(-1, 0.3, 0).normalized();
+  light.beam_exponent = 1.5;
   renderer::TriangleMesh white{.vertices = {{0, -5, -5}, {0, 5, -5}, {0, 5, 5}, {0, -5, 5}},
                                .triangles = {{0, 1, 2}, {0, 2, 3}},
                                .albedo = cv::Mat3f(1, 1, cv::Vec3f(1, 1, 1))};

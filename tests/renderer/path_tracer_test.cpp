@@ -35,6 +35,12 @@ TriangleMesh white_floor(float albedo) {
           .albedo = cv::Mat3f(1, 1, cv::Vec3f::all(albedo))};
 }
 
+// The floor's middle from `degrees` off its normal, towards +x.
+Camera look_at_floor(double degrees) {
+  const double angle = degrees * kPi / 180;
+  return small_camera({20 * std::sin(angle), 0, 20 * std::cos(angle)}, 0.5);
+}
+
 double mean(const cv::Mat3f& image, int channel = 0) {
   return cv::mean(image)[channel];
 }
@@ -65,6 +71,22 @@ TEST(PathTracerTest, YarnsOfOneWhiteFiberInAUniformEnvironmentDisappear) {
 TEST(PathTracerTest, DiffuseFloorInAUniformEnvironmentShowsItsAlbedo) {
   const PathTracer tracer({.meshes = {white_floor(0.6f)}, .lights = {{.radius_mm = 500}}});
   EXPECT_NEAR(mean(tracer.render(small_camera({0, 2, 20}, 4), {.samples_per_pixel = 64})), 0.6, 3e-3);
+}
+
+TEST(PathTracerTest, ASurfacesReflectanceFactorScalesWhatItReflectsOfEachDirection) {
+  // Lit at 45 degrees and seen at 60, on opposite sides: both strategies must know of it.
+  TriangleMesh panel = white_floor(0.5f);
+  const auto lit = [&] {
+    const PathTracer tracer(
+        {.meshes = {panel}, .lights = {{.center = {100, 0, 100}, .radius_mm = 40, .visible = false}}});
+    return mean(tracer.render(look_at_floor(-60), {.samples_per_pixel = 256, .max_vertices = 1}));
+  };
+  const double lambertian = lit();
+  panel.reflectance_factor = [](double cos_theta_i, double cos_theta_o, double cos_phi) {
+    return 1 + cos_theta_i * cos_theta_i + 0.1 * cos_theta_o * cos_phi;
+  };
+  // 0.5 from incidence, averaged over a lamp of 16 degrees; 1 % for that and for noise
+  EXPECT_NEAR(lit() / lambertian, 1 + 0.5 + 0.1 * 0.5 * -1, 0.015);
 }
 
 TEST(PathTracerTest, IrradianceOfASphereFollowsTheInverseSquareLaw) {

@@ -56,6 +56,18 @@ TEST(SphereLightsTest, ASurroundingSphereIsSeenAndSampledInAllDirections) {
   EXPECT_LT(mean.norm(), 1e-5);  // a symmetric lattice of directions; single-precision input
 }
 
+TEST(SphereLightsTest, ABeamFallsOffWithThePowerOfTheCosineFromItsAxis) {
+  SphereLight light{.center = {0, 0, 100}, .radius_mm = 5, .beam_axis = {0, 0, -1}, .beam_exponent = 3};
+  const auto seen_from = [&light](const Vector3d& point) {
+    return SphereLights({light}).intersect(point, (light.center - point).normalized(), false)->radiance[0];
+  };
+  EXPECT_FLOAT_EQ(seen_from({0, 0, 0}), 1.0f);
+  EXPECT_FLOAT_EQ(seen_from({100, 0, 0}), static_cast<float>(std::pow(0.5, 1.5)));  // 45 degrees off its axis
+  EXPECT_EQ(seen_from({0, 0, 200}), 0.0f);                                          // behind it
+  light.beam_exponent = 0;
+  EXPECT_EQ(seen_from({0, 0, 200}), 1.0f);
+}
+
 TEST(SphereLightsTest, WithoutLightsThereIsNothingToSample) {
   const SphereLights lights(std::vector<SphereLight>{});
   EXPECT_FALSE(lights.sample(Vector3d::Zero(), 0.5f, {0.5f, 0.5f}));

@@ -1,0 +1,16 @@
+// What a rig file says of the lamps and of the Spectralon panel, in the words of the light calibration.
+#pragma once
+
+#include <vector>
+
+#include "calibration/light_plan.h"
+#include "station/documents/rig_file.h"
+
+namespace station {
+
+std::vector<calibration::LightGuess> lamp_guesses(const RigFile& rig);  // front, back
+calibration::LightOptions light_options(const RigFile& rig, cv::Size picture);
+// The bench as it is known by tape, before anything is calibrated.
+calibration::PanelBench panel_bench(const RigFile& rig);
+
+}  // namespace station
