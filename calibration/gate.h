@@ -1,15 +1,30 @@
-// One check that a calibration must pass: what was found against what is allowed, with a sentence for people.
+// One acceptance check of a calibration: what was measured, what it may be at most or must be at least, and why.
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace calibration {
 
 struct Gate {
-  std::string name;
+  std::string name;  // with its unit, e.g. "board tilt, deg"
   double value = 0.0, limit = 0.0;
   bool passed = false;
-  std::string reason;
+  std::string reason;  // one sentence: what the limit is for, and what to do when it is not kept
 };
+
+inline Gate at_most(const std::string& name, double value, double limit, const std::string& reason) {
+  return {.name = name, .value = value, .limit = limit, .passed = value <= limit, .reason = reason};  // NaN fails
+}
+
+inline Gate at_least(const std::string& name, double value, double limit, const std::string& reason) {
+  return {.name = name, .value = value, .limit = limit, .passed = value >= limit, .reason = reason};
+}
+
+inline bool all_passed(const std::vector<Gate>& gates) {
+  for (const Gate& gate : gates)
+    if (!gate.passed) return false;
+  return true;
+}
 
 }  // namespace calibration

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
@@ -136,6 +138,24 @@ DarkFit fit_dark_maps(const PictureStack& brief, const PictureStack& lasting) {
   return fit;
 }
 
+double dark_offset_dn(const SensorPicture& dark, const SensorMaps& maps) {
+  if (maps.bias_dn.size() != dark.mosaic.size() || maps.dark_dn_per_s.size() != dark.mosaic.size())
+    throw std::runtime_error("dark frame: it has another size than the sensor's maps: use the calibrated camera");
+  std::vector<double> offsets;
+  offsets.reserve(dark.mosaic.total());
+  for (int row = 0; row < dark.mosaic.rows; ++row)
+    for (int column = 0; column < dark.mosaic.cols; ++column)
+      if (maps.bad.empty() || !maps.bad(row, column))
+        offsets.push_back(dark.mosaic(row, column) - static_cast<double>(maps.bias_dn(row, column)) -
+                          static_cast<double>(maps.dark_dn_per_s(row, column)) * dark.exposure_s);
+  const auto cut = static_cast<std::ptrdiff_t>(offsets.size() / 1000);
+  if (offsets.empty()) return 0.0;
+  std::nth_element(offsets.begin(), offsets.begin() + cut, offsets.end());
+  std::nth_element(offsets.begin() + cut, offsets.end() - cut - 1, offsets.end());
+  return std::accumulate(offsets.begin() + cut, offsets.end() - cut, 0.0) /
+         static_cast<double>(offsets.size() - 2 * static_cast<std::size_t>(cut));
+}
+
 FlatFit fit_flat_maps(const std::vector<PictureStack>& flats, double white_level_dn, SensorMaps& maps,
                       double smoothing_px) {
   if (flats.empty())
@@ -198,6 +218,7 @@ FlatFit fit_flat_maps(const std::vector<PictureStack>& flats, double white_level
         }
     }
   maps.flat = smoothed(sum, weight, smoothing_px);
+  fit.covered = cv::countNonZero(weight) / static_cast<double>(weight.total());
   // Noise of one site from neighbours' differences; a Gaussian window averages over 4 pi sigma^2 sites.
   const double one = pairs > 0 ? std::sqrt(squares / static_cast<double>(pairs) / 2) : 0.0;
   fit.flat_noise = one / std::sqrt(4 * M_PI * smoothing_px * smoothing_px * static_cast<double>(signals.size()));

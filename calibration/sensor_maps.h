@@ -29,6 +29,10 @@ struct DarkFit {
 // Throws std::runtime_error when there are too few frames or the exposures are less than a factor of 4 apart.
 DarkFit fit_dark_maps(const PictureStack& brief, const PictureStack& lasting);
 
+// How much higher than the maps say a dark frame is: mean over good pixels, the brightest and darkest thousandth left out. A
+// drift of the bias with the day's temperature; light in the dark frame when it is large.
+double dark_offset_dn(const SensorPicture& dark, const SensorMaps& maps);
+
 // `flats`: stacks of an even white surface that fills the picture, each from another place, none saturated. Adds dead
 // pixels (answer with less than 3/4 of their neighbours, or more than 5/4) to maps.bad, and sets maps.flat: what is left of
 // the flats when a surface of 4th order in column and row is taken out, mean of all colours and flats, smoothed over
@@ -37,6 +41,7 @@ struct FlatFit {
   int dead = 0;
   double flat_noise = 0.0;  // standard deviation that the noise of the flats leaves in maps.flat
   double deepest = 0.0;     // 1 - smallest value of maps.flat
+  double covered = 0.0;     // part of the picture where the white surface was seen
 };
 FlatFit fit_flat_maps(const std::vector<PictureStack>& flats, double white_level_dn, SensorMaps& maps,
                       double smoothing_px = 3.0);

@@ -4,11 +4,14 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "station/calibrate/response_plan.h"
+
 namespace station {
 namespace {
 
 constexpr double kRadPerDeg = M_PI / 180.0;
-constexpr std::array<const char*, 5> kRoleWords{"lens", "turning", "flat", "front_light", "back_light"};
+constexpr std::array<const char*, 9> kRoleWords{"lens",     "turning", "flat", "front_light", "back_light",
+                                                "response", "rapid",   "dark", "white_field"};
 
 Eigen::Matrix3d turn(double degrees, const Eigen::Vector3d& axis) {
   return Eigen::AngleAxisd(degrees * kRadPerDeg, axis).toRotationMatrix();
@@ -124,6 +127,7 @@ std::vector<CalibrationStep> make_calibration_plan(const RigFile& rig) {
   std::vector<CalibrationStep> plan;
   add_lens_steps(rig, plan);
   add_platform_steps(rig, plan);
+  add_response_steps(rig, plan);
   // High enough that no tilted plate dips into the platform or its shadow.
   const double z = rig.platform_height_mm + rig.spectralon.plate_mm / 2 + 2;
   // Tilts about both axes, two depths and the picture's corners: they separate position, intensity and vignetting.

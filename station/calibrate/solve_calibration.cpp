@@ -1,11 +1,13 @@
 #include "station/calibrate/solve_calibration.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
 
 #include "calibration/pose.h"
 #include "station/calibrate/light_patches.h"
+#include "station/calibrate/solve_response.h"
 #include "station/views.h"
 
 namespace station {
@@ -23,6 +25,7 @@ std::vector<Loaded> load(const std::filesystem::path& folder, const std::vector<
                          const StepProgress& progress) {
   std::vector<Loaded> loaded;
   for (const CalibrationPicture& picture : pictures) {
+    if (is_sensor_role(picture.role)) continue;
     progress(static_cast<int>(loaded.size()), static_cast<int>(pictures.size()), "tags in " + picture.id);
     Loaded entry{.picture = picture, .raw = calibration::read_sensor_file(folder / picture.file), .tags = {}};
     entry.tags = tags_in(entry.raw);
@@ -32,15 +35,16 @@ std::vector<Loaded> load(const std::filesystem::path& folder, const std::vector<
 }
 
 calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& lens,
-                                  const Eigen::Isometry3d& world_from_camera, const std::vector<Loaded>& loaded) {
+                                  const Eigen::Isometry3d& world_from_camera, const std::vector<Loaded>& loaded,
+                                  const calibration::SensorResponse* response) {
   std::vector<calibration::LightPatch> patches;
   for (const Loaded& entry : loaded) {
     const bool front = entry.picture.role == CalibrationRole::front_light;
     if (!front && entry.picture.role != CalibrationRole::back_light) continue;
     const auto pose = calibration::fit_pose(lens, rig.spectralon.tags, entry.tags);
     if (!pose) continue;  // a panel without a seen tag says nothing; the fit refuses when too few are left
-    const auto cells =
-        panel_patches(entry.raw, lens, world_from_camera, pose->camera_from_object, rig.spectralon, front ? 0 : 1);
+    const auto cells = panel_patches(entry.raw, lens, world_from_camera, pose->camera_from_object, rig.spectralon,
+                                     front ? 0 : 1, response);
     patches.insert(patches.end(), cells.begin(), cells.end());
   }
   return calibration::fit_light(patches, {rig.front_lamp_mm, rig.back_lamp_mm}, rig.spectralon.albedo,
@@ -57,8 +61,8 @@ RigCalibration solve_calibration(const RigFile& rig, const std::filesystem::path
   std::vector<calibration::TagObservation> lens_views, flat_views;
   std::vector<calibration::PlatformView> turning;
   RigCalibration result;
+  for (const CalibrationPicture& picture : pictures) result.picture_sha256.push_back(picture.sha256);
   for (const Loaded& entry : loaded) {
-    result.picture_sha256.push_back(entry.picture.sha256);
     if (entry.picture.role == CalibrationRole::lens) lens_views.push_back(entry.tags);
     if (entry.picture.role == CalibrationRole::flat) flat_views.push_back(entry.tags);
     if (entry.picture.role == CalibrationRole::turning)
@@ -71,7 +75,12 @@ RigCalibration solve_calibration(const RigFile& rig, const std::filesystem::path
   result.lens = calibration::fit_lens(lens_views, rig.board, size, rig.focal_length_guess_px);
   result.platform = calibration::fit_platform(result.lens.lens, rig.board, turning, flat_views,
                                               rig.platform_height_mm + rig.board_thickness_mm);
-  result.light = solve_light(rig, result.lens.lens, result.platform.world_from_camera, loaded);
+  auto read = static_cast<int>(loaded.size());
+  const auto total = static_cast<int>(pictures.size());
+  result.sensor = solve_response(folder, pictures,
+                                 [&](const std::string& label) { progress(std::min(read++, total), total, label); });
+  result.light =
+      solve_light(rig, result.lens.lens, result.platform.world_from_camera, loaded, &result.sensor->response);
   if (!result.lens.converged || !result.platform.converged || !result.light.converged)
     throw std::runtime_error(std::string("the calibration did not converge (") +
                              (result.lens.converged ? "" : "lens ") + (result.platform.converged ? "" : "platform ") +
@@ -99,7 +108,7 @@ std::string describe(const RigCalibration& calibration) {
                 calibration.light.positions[0].z(), sigma_mm(0), calibration.light.positions[1].x(),
                 calibration.light.positions[1].y(), calibration.light.positions[1].z(), sigma_mm(1),
                 100 * calibration.light.relative_rms);
-  return text;
+  return text + (calibration.sensor ? describe(*calibration.sensor) : std::string());
 }
 
 }  // namespace station

@@ -26,14 +26,14 @@ void run(Arguments& arguments) {
 
 void add_calibrate_command(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("calibrate", "calibrate lens, platform and lamp with the rig");
+  CLI::App* command = app.add_subcommand("calibrate", "calibrate lens, platform, sensor and lamp with the rig");
   command->add_option("--rig", arguments->request.rig, "rig file")->required();
   command
       ->add_option("--out", arguments->request.out,
                    "folder for pictures and calibration.json; an interrupted one goes on")
       ->required();
   command->add_option("--only", arguments->request.only, "take the pictures of this part again")
-      ->check(CLI::IsMember({"camera", "platform", "light"}));
+      ->check(CLI::IsMember({"camera", "platform", "light", "response"}));
   command->add_flag("--solve", arguments->request.solve_only, "take no pictures: solve again from those in --out");
   arguments->output.add_to(*command);
   command->callback([arguments] { run(*arguments); });

@@ -132,16 +132,18 @@ calibration::LightFit parse_light(ObjectReader reader, double& albedo) {
 }  // namespace
 
 json to_json(const RigCalibration& calibration) {
-  return {{"format", "threadstation/calibration"},
-          {"version", 1},
-          {"rig", calibration.rig_name},
-          {"utc", calibration.utc},
-          {"software", calibration.software},
-          {"linear_srgb_from_camera", calibration.linear_srgb_from_camera},
-          {"lens", lens_json(calibration.lens)},
-          {"platform", platform_json(calibration.platform)},
-          {"light", light_json(calibration.light, calibration.spectralon_albedo)},
-          {"picture_sha256", calibration.picture_sha256}};
+  json document = {{"format", "threadstation/calibration"},
+                   {"version", 1},
+                   {"rig", calibration.rig_name},
+                   {"utc", calibration.utc},
+                   {"software", calibration.software},
+                   {"linear_srgb_from_camera", calibration.linear_srgb_from_camera},
+                   {"lens", lens_json(calibration.lens)},
+                   {"platform", platform_json(calibration.platform)},
+                   {"light", light_json(calibration.light, calibration.spectralon_albedo)},
+                   {"picture_sha256", calibration.picture_sha256}};
+  if (calibration.sensor) document["sensor"] = to_json(*calibration.sensor);
+  return document;
 }
 
 RigCalibration parse_calibration(const json& document, const std::string& source) {
@@ -155,6 +157,7 @@ RigCalibration parse_calibration(const json& document, const std::string& source
   calibration.lens = parse_lens(reader.object("lens"));
   calibration.platform = parse_platform(reader.object("platform"));
   calibration.light = parse_light(reader.object("light"), calibration.spectralon_albedo);
+  if (reader.has("sensor")) calibration.sensor = parse_sensor_section(reader.object("sensor"));
   const json& hashes = reader.raw("picture_sha256");
   if (!hashes.is_array()) reader.refuse("picture_sha256", "expected a list of text");
   for (const json& hash : hashes) {

@@ -1,22 +1,26 @@
-// The rig calibration that sessions use (kind "calibration"): lens, camera pose, platform, lamp positions and intensity.
+// The rig calibration that sessions use (kind "calibration"): lens, camera pose, platform, sensor, lamp positions and
+// intensity.
 #pragma once
 
 #include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "calibration/lens.h"
 #include "calibration/light.h"
 #include "calibration/platform.h"
+#include "station/documents/sensor_section.h"
 
 namespace station {
 
 struct RigCalibration {
   calibration::LensFit lens;
   calibration::PlatformFit platform;
-  calibration::LightFit light;  // light 0 = front, 1 = back
+  calibration::LightFit light;          // light 0 = front, 1 = back
+  std::optional<SensorSection> sensor;  // absent: black level and exposure times as the files say
   double spectralon_albedo = 0.99;
   std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major; for display only
   std::string rig_name, utc, software;
