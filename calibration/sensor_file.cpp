@@ -50,7 +50,18 @@ cv::Mat1w visible_mosaic(const LibRaw& raw) {
 }
 
 // In its own frame, as LibRaw objects are too large for the stack.
+// Sony's compressed files (tag 259 = 32767, 8 bits a pixel) went through a tone curve to 11 bits and then keep 16 pixels
+// as two extremes and 7-bit steps between: beside bright threads the dark is wrong.
+void refuse_lossy(LibRaw& raw, const std::string& name) {
+  libraw_decoder_info_t decoder{};
+  require(raw.get_decoder_info(&decoder), name, "looking for a decoder");
+  if (decoder.decoder_flags & LIBRAW_DECODER_SONYARW2)
+    refuse(name, "is a compressed RAW (11 bits, steps between neighbours)",
+           "set the camera's RAW File Type to Uncompressed and take it again");
+}
+
 SensorPicture unpack(LibRaw& raw, const std::string& name) {
+  refuse_lossy(raw, name);
   require(raw.unpack(), name, "unpacking");
   if (raw.imgdata.rawdata.raw_image == nullptr || raw.imgdata.idata.filters < 1000) {
     refuse(name, "holds no 2 x 2 colour mosaic", "set the camera to uncompressed RAW");

@@ -18,7 +18,7 @@ struct SensorPicture {
   std::string make, model, serial, date_time;
 };
 
-// Errors: std::runtime_error naming the file, what LibRaw found and what to do.
+// Errors: std::runtime_error naming the file, what LibRaw found and what to do; lossy (compressed) Sony files are refused.
 SensorPicture read_sensor_file(const std::filesystem::path& file);
 SensorPicture read_sensor_bytes(std::span<const std::byte> bytes, const std::string& name_for_errors);
 

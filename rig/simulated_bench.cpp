@@ -54,10 +54,23 @@ BenchState SimulatedBench::state() const {
   if (arrangement_.lamp != Lamp::off) {
     now.lamp = arrangement_.lamp == Lamp::front ? truth_.front : truth_.back;
   }
-  if (arrangement_.room_light) {
-    now.room_radiance = truth_.room_radiance;
-  }
+  now.room_radiance = (arrangement_.room_light ? 1.0 : truth_.room_leak) * truth_.room_radiance;
   return now;
+}
+
+cv::Mat3f SimulatedBench::draw_lamp() const {
+  BenchState now = state();
+  now.room_radiance.setZero();
+  return now.lamp ? draw_(now) : cv::Mat3f();
+}
+
+cv::Mat3f SimulatedBench::draw_without_lamp() const {
+  BenchState now = state();
+  if (now.lamp && now.room_radiance.maxCoeff() <= 0) {
+    return {};
+  }
+  now.lamp.reset();
+  return draw_(now);
 }
 
 // The hand's error: an offset in the parent's frame and a small turn about the object's own origin. What stands or

@@ -12,7 +12,9 @@
 
 #include "rig/camera.h"
 #include "rig/clock.h"
+#include "rig/lamp_changes.h"
 #include "rig/operator.h"
+#include "rig/sensor_defects.h"
 #include "rig/turntable.h"
 
 namespace rig {
@@ -24,16 +26,19 @@ struct TrueLens {
   // gain = 1 + v0 r^2 + v1 r^4, r = distance to the image centre ((w - 1) / 2, (h - 1) / 2) / half diagonal hypot(w,
   // h) / 2
   std::array<double, 2> vignetting{};
+  double blur_px = 0.0;  // standard deviation of a Gaussian: out of focus
   Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();  // OpenCV axes, mm
 };
 
-// A pixel's value = black level + (Poisson(photo + dark electrons) + normal(0, read noise)) * gain, rounded and kept
-// within 0 and the white level; gain = ISO / 100 * (white - black) / full well [DN per electron].
+// A pixel's value = black level + (counted(Poisson(photo + dark electrons)) + normal(0, read noise)) * gain, rounded
+// and kept within 0 and the white level; gain = ISO / 100 * (white - black) / full well [DN per electron]; what counting
+// loses, and what single pixels and shutter times have of their own: SensorDefects.
 struct TrueSensor {
   double black_level_dn = 512, white_level_dn = 16383;  // as the files have them: 14 bits
   double full_well_e = 50000;                           // electrons from black to white level at base ISO
   double read_noise_e = 5;
   double dark_current_e_s = 2;  // electrons per second
+  SensorDefects defects{};
 };
 
 struct TrueTurntable {
@@ -60,8 +65,10 @@ struct BenchTruth {
   // Where the printed tags truly are: the ring glued on the platform, the sheet lying on the table.
   Eigen::Isometry3d platform_from_ring = Eigen::Isometry3d::Identity();  // platform frame at angle 0 = world
   Eigen::Isometry3d world_from_table_sheet = Eigen::Isometry3d::Identity();
+  LampChanges lamp_changes{};
   Eigen::Vector3d room_radiance =
       Eigen::Vector3d::Constant(0.3);  // of a white diffuser under the room light, roughly
+  double room_leak = 0.0;              // part of the room light that shines when it should be off
   double placement_mm = 1.0;           // a hand places an object this well (standard deviation per axis)
   double placement_rad = 0.01;
   std::uint64_t seed = 1;
@@ -93,6 +100,10 @@ class SimulatedBench {
   const BenchTruth& truth() const { return truth_; }
   BenchState state() const;  // what is true now
   cv::Mat3f draw() const { return draw_(state()); }
+  // Light adds: what the lamp alone gives at strength 1 (empty when it is off), and all other light (empty when there is
+  // none beside the lamp's).
+  cv::Mat3f draw_lamp() const;
+  cv::Mat3f draw_without_lamp() const;
 
   // With the placement error of a hand, which depends only on the truth's seed and on the object, its mounting and
   // pose (not on the lights): asked again for the same, the hand places it the same. On the platform only the place
@@ -109,8 +120,8 @@ class SimulatedBench {
 };
 
 // Devices that share one bench and one clock (both must outlive them).
-// Camera: draws only when the bench has changed since its last picture; the noise is fresh each time. It offers
-// thirds of stops; light gathered goes with (8 / f)^2. Files: rig/raw_writer.h. Turntable: the position is unknown
+// Camera: draws only when the bench has changed since its last picture; the noise is fresh each time, and the lamp has the
+// strength of the exposure's own seconds on the clock. It offers thirds of stops; light gathered goes with (8 / f)^2. Files: rig/raw_writer.h. Turntable: the position is unknown
 // until it is homed; angles within +-360 deg, on the truth's steps.
 std::unique_ptr<Camera> make_simulated_camera(SimulatedBench& bench, Clock& clock);
 std::unique_ptr<Turntable> make_simulated_turntable(SimulatedBench& bench, Clock& clock);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -16,7 +17,7 @@ constexpr double kCalibratedFNumber = 8.0;
 constexpr double kBaseIso = 100.0;
 constexpr double kCountedElectrons = 50.0;  // below: counted one by one; above: a normal number of the same variance
 
-// Thirds of a stop as they are engraved; the simulated shutter keeps exactly these.
+// Thirds of a stop as they are engraved.
 constexpr std::array kShutterTimesS{
     1 / 4000., 1 / 3200., 1 / 2500., 1 / 2000., 1 / 1600., 1 / 1250., 1 / 1000., 1 / 800., 1 / 640.,
     1 / 500.,  1 / 400.,  1 / 320.,  1 / 250.,  1 / 200.,  1 / 160.,  1 / 125.,  1 / 100., 1 / 80.,
@@ -31,18 +32,21 @@ constexpr std::array kFNumbers{2.8, 3.2, 3.5, 4.,  4.5, 5.,  5.6, 6.3, 7.1, 8.,
 
 // What one exposure does to every pixel alike.
 struct Conversion {
-  double electrons_per_radiance, dark_electrons, read_noise_e, dn_per_electron, black_dn, white_dn;
+  double exposure_s, electrons_per_radiance, dark_electrons, read_noise_e, dn_per_electron, black_dn, white_dn;
+  double lost_per_electron;  // of the electrons, for each of them: what makes the response bend
 };
 
 Conversion conversion(const TrueSensor& sensor, const ExposureSettings& settings) {
   const double aperture = std::pow(kCalibratedFNumber / settings.f_number, 2);
   const double gain = settings.iso / kBaseIso;
-  return {.electrons_per_radiance = settings.exposure_s * aperture * sensor.full_well_e,
+  return {.exposure_s = settings.exposure_s,
+          .electrons_per_radiance = settings.exposure_s * aperture * sensor.full_well_e,
           .dark_electrons = settings.exposure_s * sensor.dark_current_e_s,
           .read_noise_e = sensor.read_noise_e,
           .dn_per_electron = gain * (sensor.white_level_dn - sensor.black_level_dn) / sensor.full_well_e,
           .black_dn = sensor.black_level_dn,
-          .white_dn = sensor.white_level_dn};
+          .white_dn = sensor.white_level_dn,
+          .lost_per_electron = sensor.defects.nonlinearity / sensor.full_well_e};
 }
 
 // Gain at a pixel, 1 at the centre of the image.
@@ -58,12 +62,20 @@ int mosaic_channel(int row, int column) {
   return (row & 1) + (column & 1);
 }
 
-std::uint16_t exposed_dn(const Conversion& convert, double radiance, NoiseStream& noise) {
-  const double mean_e = std::max(radiance, 0.0) * convert.electrons_per_radiance + convert.dark_electrons;
+// What a pixel has of its own, beside the light that reaches it.
+struct PixelOwn {
+  double offset_dn, dark_current_e_s, read_noise_factor;
+};
+
+std::uint16_t exposed_dn(const Conversion& convert, double radiance, const PixelOwn& own, NoiseStream& noise) {
+  const double mean_e = std::max(radiance, 0.0) * convert.electrons_per_radiance + convert.dark_electrons +
+                        own.dark_current_e_s * convert.exposure_s;
   const auto [read, shot] = noise.normals();
   const double counted_e =
       mean_e < kCountedElectrons ? noise.small_poisson(mean_e) : mean_e + std::sqrt(mean_e) * shot;
-  const double dn = convert.black_dn + (counted_e + convert.read_noise_e * read) * convert.dn_per_electron;
+  const double kept_e = counted_e * (1 - convert.lost_per_electron * counted_e);
+  const double dn = convert.black_dn + own.offset_dn +
+                    (kept_e + convert.read_noise_e * own.read_noise_factor * read) * convert.dn_per_electron;
   return static_cast<std::uint16_t>(std::lround(std::clamp(dn, 0.0, convert.white_dn)));
 }
 
@@ -128,12 +140,12 @@ class SimulatedCamera final : public Camera {
     const BenchState now = bench_.state();
     if (!drawn_state_ || !same_state(*drawn_state_, now)) {
       drawn_state_.reset();  // a drawing that fails must not leave the old one behind
-      radiance_ = bench_.draw();
-      check_drawing(radiance_, now.lens);
+      by_lamp_ = focused(bench_.draw_lamp(), now.lens);
+      without_lamp_ = focused(bench_.draw_without_lamp(), now.lens);
       drawn_state_ = now;
     }
     RawFrame frame;
-    frame.mosaic = expose();
+    frame.mosaic = expose(light_of(now.lens));
     frame.black_level_dn = static_cast<std::uint16_t>(bench_.truth().sensor.black_level_dn);
     frame.settings = settings_;
     frame.utc = clock_.utc();
@@ -143,16 +155,44 @@ class SimulatedCamera final : public Camera {
   }
 
  private:
+  static cv::Mat3f focused(const cv::Mat3f& drawn, const TrueLens& lens) {
+    if (drawn.empty()) return drawn;
+    check_drawing(drawn, lens);
+    if (!(lens.blur_px > 0)) return drawn;
+    cv::Mat3f blurred;
+    cv::GaussianBlur(drawn, blurred, {0, 0}, lens.blur_px);
+    return blurred;
+  }
+
+  // The picture that falls on the sensor in the coming exposure: mean radiance over its time.
+  cv::Mat3f light_of(const TrueLens& lens) const {
+    cv::Mat3f light =
+        without_lamp_.empty() ? cv::Mat3f(lens.height_px, lens.width_px, cv::Vec3f()) : without_lamp_.clone();
+    if (!by_lamp_.empty()) {
+      light += by_lamp_ * lamp_strength(bench_.truth().lamp_changes, clock_.monotonic_s(), settings_.exposure_s);
+    }
+    return light;
+  }
+
   // Fresh noise for each picture, the same in each run.
-  cv::Mat1w expose() {
+  cv::Mat1w expose(const cv::Mat3f& light) {
     const BenchTruth& truth = bench_.truth();
-    const Conversion convert = conversion(truth.sensor, settings_);
+    if (defects_.sensitivity.empty()) {
+      defects_ = defect_maps(truth.sensor.defects, light.size(), truth.seed);
+    }
+    ExposureSettings true_settings = settings_;
+    true_settings.exposure_s *= shutter_factor(truth.sensor.defects, settings_.exposure_s, truth.seed);
+    const Conversion convert = conversion(truth.sensor, true_settings);
     NoiseStream noise(truth.seed, ++pictures_taken_);
-    cv::Mat1w mosaic(radiance_.size());
+    cv::Mat1w mosaic(light.size());
     for (int row = 0; row < mosaic.rows; ++row) {
       for (int column = 0; column < mosaic.cols; ++column) {
-        const double radiance = static_cast<double>(radiance_(row, column)[mosaic_channel(row, column)]);
-        mosaic(row, column) = exposed_dn(convert, radiance * vignetting(truth.lens, row, column), noise);
+        const double radiance = static_cast<double>(light(row, column)[mosaic_channel(row, column)]);
+        const double gain = vignetting(truth.lens, row, column) * defects_.sensitivity(row, column);
+        const PixelOwn own{.offset_dn = defects_.offset_dn(row, column),
+                           .dark_current_e_s = defects_.dark_current_e_s(row, column),
+                           .read_noise_factor = defects_.read_noise_factor(row, column)};
+        mosaic(row, column) = exposed_dn(convert, radiance * gain, own, noise);
       }
     }
     return mosaic;
@@ -162,8 +202,9 @@ class SimulatedCamera final : public Camera {
   Clock& clock_;
   ExposureSettings settings_;
   std::uint64_t pictures_taken_ = 0;
-  std::optional<BenchState> drawn_state_;  // what radiance_ shows
-  cv::Mat3f radiance_;
+  std::optional<BenchState> drawn_state_;  // what the drawings show
+  cv::Mat3f by_lamp_, without_lamp_;       // one of them may be empty
+  DefectMaps defects_;
 };
 
 }  // namespace

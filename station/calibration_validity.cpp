@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "station/documents/gate_list.h"
 #include "station/report/html.h"
 
 namespace station {
@@ -49,7 +50,7 @@ void require_valid(const RigCalibration& calibration, const RigFile& rig, const 
   if (age_days > rig.calibration_valid_days)
     throw std::runtime_error("the calibration is " + number_text(age_days, 0) + " days old, rig \"" + rig.name +
                              "\" allows " + number_text(rig.calibration_valid_days, 0) + "; calibrate again");
-  const std::string failed = failed_gates(calibration);
+  const std::string failed = failed_gates(all_gates(calibration));
   if (failed.empty() || accept_failed_gates) return;
   throw std::runtime_error("the calibration is not good enough: " + failed +
                            "; calibrate again, or accept it with --accept-calibration");

@@ -1,5 +1,6 @@
 #include "station/capture_session.h"
 
+#include <fstream>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
@@ -93,10 +94,24 @@ RunOutcome run(SessionFolder& session, RigDevices& devices, const SessionFile& a
   return outcome;
 }
 
-CalibrationFiles calibration_files(const std::filesystem::path& folder) {
+std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::vector<std::byte> bytes(std::filesystem::file_size(file));
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (!stream) throw std::runtime_error("cannot read " + file.string() + "; check the disk and its permissions");
+  return bytes;
+}
+
+CalibrationFiles calibration_files(const std::filesystem::path& folder, const RigCalibration& calibration) {
   const std::string text = read_json_file(folder / "calibration.json").dump(2) + "\n";
   const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
-  return {{"calibration.json", {bytes, bytes + text.size()}}};
+  CalibrationFiles files{{"calibration.json", {bytes, bytes + text.size()}}};
+  if (calibration.sensor) {
+    SensorSection sensor = *calibration.sensor;
+    load_sensor_maps(folder, sensor);  // whole and of this calibration, or refused
+    for (const char* name : {kSensorMapsFile, kBadPixelsFile}) files[name] = read_bytes(folder / name);
+  }
+  return files;
 }
 
 }  // namespace
@@ -119,7 +134,7 @@ RunOutcome capture_session(const CaptureRequest& request) {
       std::filesystem::is_directory(request.calibration) ? request.calibration : request.calibration.parent_path();
   SessionFolder session = SessionFolder::create(
       request.out, make_session_document(devices.clock->utc(), rig_document, spool_document, plan),
-      calibration_files(calibration_folder), *devices.clock, disk);
+      calibration_files(calibration_folder, calibration), *devices.clock, disk);
   return run(session, devices, read_session_file(request.out), calibration, request.progress_style);
 }
 

@@ -17,6 +17,11 @@ bool belongs_to(CalibrationRole role, const std::string& part) {
     case CalibrationRole::front_light:
     case CalibrationRole::back_light:
       return part == "light";
+    case CalibrationRole::response:
+    case CalibrationRole::rapid:
+    case CalibrationRole::dark:
+    case CalibrationRole::white_field:
+      return part == "response";
   }
   return false;
 }
@@ -40,6 +45,7 @@ RigCalibration calibrate_rig(const CalibrateRequest& request) {
   RigCalibration calibration = solve_calibration(rig, request.out, read_calibration_pictures(request.out), show);
   calibration.utc = utc.empty() ? rig::SystemClock().utc() : utc;
   calibration.software = software_version();
+  if (calibration.sensor) write_sensor_maps(request.out, *calibration.sensor);
   write_json_file(request.out / "calibration.json", to_json(calibration));
   progress.finish("done");
   return calibration;

@@ -11,7 +11,8 @@ namespace station {
 
 struct CalibrateRequest {
   std::filesystem::path rig, out;
-  std::string only;         // "camera", "platform", "light": these pictures are taken again; empty = what is missing
+  std::string
+      only;  // "camera", "platform", "light", "response": these pictures are taken again; empty = what is missing
   bool solve_only = false;  // pictures are there already
   ProgressStyle progress_style = ProgressStyle::automatic;
 };

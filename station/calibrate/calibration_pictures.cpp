@@ -24,7 +24,10 @@ void write_list(const std::filesystem::path& folder, const std::vector<Calibrati
                     {"role", to_text(p.role)},
                     {"file", p.file},
                     {"sha256", p.sha256},
-                    {"reading_deg", p.reading_rad * kDegPerRad}});
+                    {"reading_deg", p.reading_rad * kDegPerRad},
+                    {"exposure_s", p.exposure_s},
+                    {"exposure_of", p.exposure_of},
+                    {"utc", p.utc}});
   write_json_file(folder / "pictures.json",
                   {{"format", "threadstation/calibration_pictures"}, {"version", 1}, {"pictures", list}});
 }
@@ -41,6 +44,9 @@ std::vector<CalibrationPicture> read_list(const std::filesystem::path& folder) {
     p.file = entry.text("file");
     p.sha256 = entry.text("sha256");
     p.reading_rad = entry.number("reading_deg", -360, 360) / kDegPerRad;
+    p.exposure_s = entry.number("exposure_s", 1e-9, 1e6);
+    p.exposure_of = entry.text("exposure_of");
+    p.utc = entry.text("utc");
     entry.finish();
     pictures.push_back(p);
   }
@@ -53,10 +59,15 @@ bool intact(const std::filesystem::path& folder, const CalibrationPicture& pictu
   return std::filesystem::is_regular_file(file) && sha256_of_file(file) == picture.sha256;
 }
 
+// The sensor's pictures are closer to the white level: the ladder goes on from there.
+ExposureAim aim_of(CalibrationRole role) {
+  const bool sensor = role == CalibrationRole::response || role == CalibrationRole::white_field;
+  return sensor ? ExposureAim{.level = 0.7, .tolerance = 1.25} : ExposureAim{};
+}
+
 // Meters with test pictures, then takes the one to keep.
-rig::Picture well_exposed_picture(rig::Camera& camera, double& exposure_s) {
+rig::Picture well_exposed_picture(rig::Camera& camera, const ExposureAim& aim, double& exposure_s) {
   const std::vector<double> offered = camera.shutter_times_s();
-  const ExposureAim aim;
   for (int attempt = 0; attempt < kMaxTestPictures; ++attempt) {
     exposure_s = camera.configure({.exposure_s = rig::nearest_shutter_s(offered, exposure_s)}).exposure_s;
     rig::Picture picture = camera.capture();
@@ -66,6 +77,24 @@ rig::Picture well_exposed_picture(rig::Camera& camera, double& exposure_s) {
   }
   throw std::runtime_error("no exposure suits the calibration picture after " + std::to_string(kMaxTestPictures) +
                            " tries; check the light and that nothing shines into the lens");
+}
+
+// The same exposure as another picture's, so many stops longer.
+rig::Picture picture_like(rig::Camera& camera, const std::vector<CalibrationPicture>& pictures,
+                          const CalibrationStep& step) {
+  const auto like = std::find_if(pictures.begin(), pictures.end(),
+                                 [&](const CalibrationPicture& p) { return p.id == step.exposure_of; });
+  if (like == pictures.end())
+    throw std::runtime_error("step " + step.id + " repeats the exposure of " + step.exposure_of +
+                             ", which is missing; take it again with calibrate");
+  const double wanted_s = like->exposure_s * std::exp2(step.stops);
+  const double exposure_s = rig::nearest_shutter_s(camera.shutter_times_s(), wanted_s);
+  if (std::abs(std::log2(exposure_s / wanted_s)) > 0.2)
+    throw std::runtime_error("step " + step.id + " needs an exposure of " + std::to_string(wanted_s) +
+                             " s, the camera's nearest is " + std::to_string(exposure_s) +
+                             " s; move the lamp so that the panel is well exposed near 1/8 s");
+  camera.configure({.exposure_s = exposure_s});
+  return camera.capture();
 }
 
 }  // namespace
@@ -98,10 +127,19 @@ std::vector<CalibrationPicture> record_calibration(const std::vector<Calibration
     }
     devices.person->arrange(step.arrangement);
     devices.turntable->move_to(step.platform_angle_rad);
-    const rig::Picture picture = well_exposed_picture(*devices.camera, exposure_s);
-    CalibrationPicture entry{
-        .id = step.id, .role = step.role, .file = "pictures/" + step.id + "." + picture.extension};
+    const rig::Picture picture = step.exposure_of.empty()
+                                     ? well_exposed_picture(*devices.camera, aim_of(step.role), exposure_s)
+                                     : picture_like(*devices.camera, pictures, step);
+    CalibrationPicture entry{.id = step.id,
+                             .role = step.role,
+                             .file = "pictures/" + step.id + "." + picture.extension,
+                             .sha256 = {},
+                             .exposure_of = {},
+                             .utc = {}};
     entry.reading_rad = devices.turntable->angle_rad();
+    entry.exposure_s = picture.settings.exposure_s;
+    entry.exposure_of = step.exposure_of;
+    entry.utc = picture.utc;
     entry.sha256 = store_file(disk, folder / entry.file, picture.bytes);
     pictures.push_back(entry);
     write_list(folder, pictures);

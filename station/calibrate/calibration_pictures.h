@@ -20,6 +20,9 @@ struct CalibrationPicture {
   std::string file;  // relative to the folder
   std::string sha256;
   double reading_rad = 0.0;  // of the turntable
+  double exposure_s = 0.0;   // as the camera read it back
+  std::string exposure_of;   // as CalibrationStep; pictures of one series name the same
+  std::string utc;           // when the exposure began
 };
 
 using StepProgress = std::function<void(int done, int total, const std::string& label)>;

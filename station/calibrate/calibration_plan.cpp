@@ -5,12 +5,14 @@
 #include <stdexcept>
 
 #include "station/calibrate/lamps.h"
+#include "station/calibrate/response_plan.h"
 
 namespace station {
 namespace {
 
 constexpr double kRadPerDeg = M_PI / 180.0;
-constexpr std::array<const char*, 4> kRoleWords{"lens", "turning", "front_light", "back_light"};
+constexpr std::array<const char*, 8> kRoleWords{"lens",     "turning", "front_light", "back_light",
+                                                "response", "rapid",   "dark",        "white_field"};
 
 Eigen::Matrix3d turn(double degrees, const Eigen::Vector3d& axis) {
   return Eigen::AngleAxisd(degrees * kRadPerDeg, axis).toRotationMatrix();
@@ -107,6 +109,7 @@ std::vector<CalibrationStep> make_calibration_plan(const RigFile& rig) {
   std::vector<CalibrationStep> plan;
   add_lens_steps(rig, plan);
   add_platform_steps(plan);
+  add_response_steps(rig, plan);
   add_panel_steps(rig, plan);
   return plan;
 }

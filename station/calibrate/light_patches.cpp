@@ -50,8 +50,9 @@ std::vector<calibration::LightPatch> panel_patches(const calibration::SensorPict
                                                    const calibration::Lens& lens,
                                                    const Eigen::Isometry3d& world_from_camera,
                                                    const Eigen::Isometry3d& camera_from_panel,
-                                                   const SpectralonPanel& panel, int light, int number) {
-  const calibration::Developed developed = calibration::develop(picture, {});
+                                                   const SpectralonPanel& panel, int light, int number,
+                                                   const calibration::SensorResponse* response) {
+  const calibration::Developed developed = calibration::develop(picture, {.response = response});
   const Eigen::Isometry3d panel_from_camera = camera_from_panel.inverse();
   const renderer::Camera camera = camera_of(lens, panel_from_camera, false);
   const Eigen::Isometry3d world_from_panel = world_from_camera * camera_from_panel;

@@ -1,5 +1,6 @@
 #include "station/calibrate/solve_calibration.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -7,6 +8,7 @@
 #include "calibration/pose.h"
 #include "station/calibrate/lamps.h"
 #include "station/calibrate/light_patches.h"
+#include "station/calibrate/solve_response.h"
 #include "station/views.h"
 
 namespace station {
@@ -24,6 +26,7 @@ std::vector<Loaded> load(const std::filesystem::path& folder, const std::vector<
                          const StepProgress& progress) {
   std::vector<Loaded> loaded;
   for (const CalibrationPicture& picture : pictures) {
+    if (is_sensor_role(picture.role)) continue;
     progress(static_cast<int>(loaded.size()), static_cast<int>(pictures.size()), "tags in " + picture.id);
     Loaded entry{.picture = picture, .raw = calibration::read_sensor_file(folder / picture.file), .tags = {}};
     entry.tags = tags_in(entry.raw);
@@ -53,7 +56,8 @@ CameraSetup camera_of_pictures(const RigFile& rig, const std::vector<Loaded>& lo
 }
 
 calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& lens,
-                                  const Eigen::Isometry3d& world_from_camera, const std::vector<Loaded>& loaded) {
+                                  const Eigen::Isometry3d& world_from_camera, const std::vector<Loaded>& loaded,
+                                  const calibration::SensorResponse* response) {
   std::vector<calibration::LightPatch> patches;
   std::vector<calibration::LightPicture> pictures;
   for (const Loaded& entry : loaded) {
@@ -62,7 +66,7 @@ calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& l
     const auto pose = calibration::fit_pose(lens, rig.spectralon.tags, entry.tags);
     if (!pose) continue;  // a panel without a seen tag says nothing; the fit refuses when too few are left
     const auto cells = panel_patches(entry.raw, lens, world_from_camera, pose->camera_from_object, rig.spectralon,
-                                     front ? 0 : 1, static_cast<int>(pictures.size()));
+                                     front ? 0 : 1, static_cast<int>(pictures.size()), response);
     patches.insert(patches.end(), cells.begin(), cells.end());
     pictures.push_back({.name = entry.picture.id});
   }
@@ -80,8 +84,8 @@ RigCalibration solve_calibration(const RigFile& rig, const std::filesystem::path
   std::vector<calibration::TagObservation> lens_views, still_views;
   std::vector<calibration::PlatformView> turning;
   RigCalibration result;
+  for (const CalibrationPicture& picture : pictures) result.picture_sha256.push_back(picture.sha256);
   for (const Loaded& entry : loaded) {
-    result.picture_sha256.push_back(entry.picture.sha256);
     if (entry.picture.role == CalibrationRole::lens) lens_views.push_back(entry.tags);
     if (entry.picture.role != CalibrationRole::turning) continue;
     turning.push_back({.reading_rad = entry.picture.reading_rad, .seen = entry.tags});
@@ -96,7 +100,12 @@ RigCalibration solve_calibration(const RigFile& rig, const std::filesystem::path
   result.platform =
       calibration::fit_platform(result.lens.lens, {.ring = rig.platform_ring, .table = rig.table_tags}, turning);
   result.still_tags = calibration::still_tags(rig.table_tags, still_views);
-  result.light = solve_light(rig, result.lens.lens, result.platform.world_from_camera, loaded);
+  auto read = static_cast<int>(loaded.size());
+  const auto total = static_cast<int>(pictures.size());
+  result.sensor = solve_response(folder, pictures,
+                                 [&](const std::string& label) { progress(std::min(read++, total), total, label); });
+  result.light =
+      solve_light(rig, result.lens.lens, result.platform.world_from_camera, loaded, &result.sensor->response);
   if (!result.lens.converged || !result.platform.converged || !result.light.converged)
     throw std::runtime_error(std::string("the calibration did not converge (") +
                              (result.lens.converged ? "" : "lens ") + (result.platform.converged ? "" : "platform ") +
@@ -130,7 +139,7 @@ std::string describe(const RigCalibration& calibration) {
   }
   std::snprintf(text, sizeof text, "          beam cos^%.2f, panel's droop %.1f %% at 60 deg, patches rms %.2f %%\n",
                 light.beam_exponent, 100 * light.droop.sum(), 100 * light.relative_rms);
-  return lines + text;
+  return lines + text + (calibration.sensor ? describe(*calibration.sensor) : std::string());
 }
 
 }  // namespace station

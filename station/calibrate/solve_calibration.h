@@ -1,4 +1,4 @@
-// From a folder of calibration pictures to the rig's calibration: lens, platform, then light.
+// From a folder of calibration pictures to the rig's calibration: lens, platform, sensor, then light.
 #pragma once
 
 #include <filesystem>

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "calibration/develop.h"
+#include "calibration/sensor_maps.h"
 #include "renderer/image_file.h"
 #include "station/bench_reading.h"
 #include "station/capture/manifest.h"
@@ -24,6 +25,7 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr int kMaskSamples = 8;
+constexpr double kMostDarkOffset = 1e-3;  // of the range; a bias drifts by a DN or two
 
 using Pictures = std::map<std::string, PictureRecord>;
 
@@ -70,14 +72,32 @@ DevelopedView place_view(const PlanStep& step, const PictureRecord& picture, con
   return developed;
 }
 
+// The session's dark frame says how far the bias has drifted since the calibration; the maps say the rest, with the noise
+// of many frames. Without a calibrated sensor it is the dark level itself.
+calibration::DevelopOptions develop_options(const RigCalibration& calibration, const calibration::SensorPicture& dark,
+                                            const std::string& view) {
+  calibration::DevelopOptions options{.vignetting = calibration.light.vignetting, .lens = calibration.lens.lens};
+  if (!calibration.sensor) {
+    options.dark_dn = calibration::master_dark({dark});
+    return options;
+  }
+  options.response = &calibration.sensor->response;
+  options.dark_offset_dn = calibration::dark_offset_dn(dark, options.response->maps);
+  const double range_dn = dark.white_level_dn - dark.black_level_dn;
+  if (std::abs(options.dark_offset_dn) > kMostDarkOffset * range_dn)
+    throw std::runtime_error(
+        "the dark frame of view " + view + " is " + number_text(100 * options.dark_offset_dn / range_dn, 2) +
+        " % of the range brighter than the calibration's; light fell on it: switch lamp and room "
+        "light off, discard it and take it again with capture --resume");
+  return options;
+}
+
 void develop_view(const std::filesystem::path& session, const Pictures& pictures,
                   const calibration::SensorPicture& raw, const RigCalibration& calibration,
                   const inversion::WrappedSpool& spool, DevelopedView& developed) {
   inversion::View& view = developed.view;
   const calibration::SensorPicture dark = read_picture(session, picture_of(pictures, "dark-" + view.id));
-  const calibration::Developed picture = calibration::develop(raw, {.dark_dn = calibration::master_dark({dark}),
-                                                                    .vignetting = calibration.light.vignetting,
-                                                                    .lens = calibration.lens.lens});
+  const calibration::Developed picture = calibration::develop(raw, develop_options(calibration, dark, view.id));
   developed.exposure_s = raw.exposure_s;
   view.image = picture.radiance;
   view.mask = inversion::thread_mask(spool, view.camera, view.light, kMaskSamples);
@@ -122,7 +142,8 @@ void require_expected_width(double width_mm, const Spool& spool) {
 
 DevelopedViews develop_session(const std::filesystem::path& session, ProgressStyle progress_style) {
   const SessionFile asked = read_session_file(session);
-  const RigCalibration calibration = read_calibration(session / "calibration");
+  RigCalibration calibration = read_calibration(session / "calibration");
+  if (calibration.sensor) load_sensor_maps(session / "calibration", *calibration.sensor);
   const Pictures pictures = taken_pictures(read_journal(session / "journal.jsonl").records);
   std::map<rig::Mounting, MountedHolder> mounted;
   std::map<rig::Mounting, std::vector<PosePicture>> posed;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "station/documents/gate_list.h"
 #include "station/documents/reader.h"
 
 namespace station {
@@ -38,30 +38,6 @@ Eigen::MatrixXd read_matrix(ObjectReader& reader, const std::string& key, Eigen:
     }
   }
   return matrix;
-}
-
-json gates_json(const std::vector<calibration::Gate>& gates) {
-  json list = json::array();
-  for (const calibration::Gate& gate : gates)
-    list.push_back({{"name", gate.name},
-                    {"value", gate.value},
-                    {"limit", gate.limit},
-                    {"passed", gate.passed},
-                    {"reason", gate.reason}});
-  return list;
-}
-
-std::vector<calibration::Gate> read_gates(ObjectReader& reader) {
-  std::vector<calibration::Gate> gates;
-  for (ObjectReader& entry : reader.objects("gates")) {
-    gates.push_back({.name = entry.text("name"),
-                     .value = entry.number("value", -1e12, 1e12),
-                     .limit = entry.number("limit", -1e12, 1e12),
-                     .passed = entry.flag("passed"),
-                     .reason = entry.text("reason")});
-    entry.finish();
-  }
-  return gates;
 }
 
 json camera_json(const CameraSetup& camera) {
@@ -185,7 +161,7 @@ calibration::PlatformFit parse_platform(ObjectReader reader, calibration::StillT
   fit.view_rms_px = reader.numbers("view_rms_px");
   fit.axis_to_table_normal_rad = reader.number("axis_to_table_normal_deg", 0, 180) * kRadPerDeg;
   still = read_still_tags(reader, "table_tags_px");
-  fit.gates = read_gates(reader);
+  fit.gates = parse_gates(reader);
   fit.scale = reader.number("angle_scale", 0.1, 10);
   fit.offset_rad = reader.number("angle_offset_deg", -360, 360) * kRadPerDeg;
   fit.angle_rms_rad = reader.number("angle_rms_deg", 0, 360) * kRadPerDeg;
@@ -266,7 +242,7 @@ calibration::LightFit parse_light(ObjectReader reader, double& albedo) {
     entry.finish();
     fit.held_out.push_back(held);
   }
-  fit.gates = read_gates(reader);
+  fit.gates = parse_gates(reader);
   fit.converged = reader.flag("converged");
   reader.finish();
   return fit;
@@ -277,32 +253,25 @@ calibration::LightFit parse_light(ObjectReader reader, double& albedo) {
 std::vector<calibration::Gate> all_gates(const RigCalibration& calibration) {
   std::vector<calibration::Gate> gates = calibration.platform.gates;
   gates.insert(gates.end(), calibration.light.gates.begin(), calibration.light.gates.end());
+  if (calibration.sensor)
+    gates.insert(gates.end(), calibration.sensor->gates.begin(), calibration.sensor->gates.end());
   return gates;
 }
 
-std::string failed_gates(const RigCalibration& calibration) {
-  std::string text;
-  for (const calibration::Gate& gate : all_gates(calibration)) {
-    if (gate.passed) continue;
-    char numbers[80];
-    std::snprintf(numbers, sizeof numbers, " is %.4g, the limit is %.4g (", gate.value, gate.limit);
-    text += (text.empty() ? "" : "; ") + gate.name + numbers + gate.reason + ")";
-  }
-  return text;
-}
-
 json to_json(const RigCalibration& calibration) {
-  return {{"format", "threadstation/calibration"},
-          {"version", 1},
-          {"rig", calibration.rig_name},
-          {"utc", calibration.utc},
-          {"software", calibration.software},
-          {"camera", camera_json(calibration.camera)},
-          {"linear_srgb_from_camera", calibration.linear_srgb_from_camera},
-          {"lens", lens_json(calibration.lens)},
-          {"platform", platform_json(calibration.platform, calibration.still_tags)},
-          {"light", light_json(calibration.light, calibration.spectralon_albedo)},
-          {"picture_sha256", calibration.picture_sha256}};
+  json document = {{"format", "threadstation/calibration"},
+                   {"version", 1},
+                   {"rig", calibration.rig_name},
+                   {"utc", calibration.utc},
+                   {"software", calibration.software},
+                   {"camera", camera_json(calibration.camera)},
+                   {"linear_srgb_from_camera", calibration.linear_srgb_from_camera},
+                   {"lens", lens_json(calibration.lens)},
+                   {"platform", platform_json(calibration.platform, calibration.still_tags)},
+                   {"light", light_json(calibration.light, calibration.spectralon_albedo)},
+                   {"picture_sha256", calibration.picture_sha256}};
+  if (calibration.sensor) document["sensor"] = to_json(*calibration.sensor);
+  return document;
 }
 
 RigCalibration parse_calibration(const json& document, const std::string& source) {
@@ -317,6 +286,7 @@ RigCalibration parse_calibration(const json& document, const std::string& source
   calibration.lens = parse_lens(reader.object("lens"));
   calibration.platform = parse_platform(reader.object("platform"), calibration.still_tags);
   calibration.light = parse_light(reader.object("light"), calibration.spectralon_albedo);
+  if (reader.has("sensor")) calibration.sensor = parse_sensor_section(reader.object("sensor"));
   const json& hashes = reader.raw("picture_sha256");
   if (!hashes.is_array()) reader.refuse("picture_sha256", "expected a list of text");
   for (const json& hash : hashes) {

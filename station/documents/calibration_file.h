@@ -1,9 +1,11 @@
-// The rig calibration that sessions use (kind "calibration"): lens, camera pose, platform, lamp positions and intensity.
+// The rig calibration that sessions use (kind "calibration"): lens, camera pose, platform, sensor, lamp positions and
+// intensity.
 #pragma once
 
 #include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include "calibration/light.h"
 #include "calibration/platform.h"
 #include "calibration/still_tags.h"
+#include "station/documents/sensor_section.h"
 
 namespace station {
 
@@ -25,8 +28,9 @@ struct RigCalibration {
   CameraSetup camera;
   calibration::LensFit lens;
   calibration::PlatformFit platform;
-  calibration::StillTags still_tags;  // of the table, as the platform pictures showed them
-  calibration::LightFit light;        // light 0 = front, 1 = back
+  calibration::StillTags still_tags;    // of the table, as the platform pictures showed them
+  calibration::LightFit light;          // light 0 = front, 1 = back
+  std::optional<SensorSection> sensor;  // absent: black level and exposure times as the files say
   double spectralon_albedo = 0.99;
   std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major; for display only
   std::string rig_name, utc, software;
@@ -35,8 +39,6 @@ struct RigCalibration {
 
 // Of all its parts, in their order.
 std::vector<calibration::Gate> all_gates(const RigCalibration& calibration);
-// Those that failed, in one line with found value, limit and reason; empty when all passed.
-std::string failed_gates(const RigCalibration& calibration);
 
 nlohmann::json to_json(const RigCalibration& calibration);
 RigCalibration parse_calibration(const nlohmann::json& document, const std::string& source);

@@ -77,6 +77,34 @@ void scale_prints(RigFile& rig, const ObjectReader& reader) {
   if (!shared.empty()) reader.refuse("first_id", shared + "; give each printed target ids of its own");
 }
 
+rig::SensorDefects parse_defects(ObjectReader reader) {
+  rig::SensorDefects defects;
+  defects.hot_fraction = reader.number("hot_fraction", 0, 0.1);
+  defects.hot_dark_current_e_s = reader.number("hot_dark_current_e_s", 0, 1e7);
+  defects.dead_fraction = reader.number("dead_fraction", 0, 0.1);
+  defects.noisy_fraction = reader.number("noisy_fraction", 0, 0.1);
+  defects.sensitivity_spread = reader.number("sensitivity_spread", 0, 0.2);
+  defects.offset_spread_dn = reader.number("offset_spread_dn", 0, 100);
+  defects.dust_spots = reader.integer("dust_spots", 0, 1000);
+  defects.dust_depth = reader.number("dust_depth", 0, 0.9);
+  defects.dust_radius_px = reader.number("dust_radius_px", 0, 1000);
+  defects.nonlinearity = reader.number("nonlinearity", -0.2, 0.2);
+  defects.shutter_spread = reader.number("shutter_spread", 0, 0.2);
+  reader.finish();
+  return defects;
+}
+
+rig::LampChanges parse_lamp_changes(ObjectReader reader) {
+  rig::LampChanges changes;
+  changes.drift_per_s = reader.number("drift_per_s", -0.1, 0.1);
+  changes.jump = reader.number("jump", -1, 10);
+  changes.jump_at_s = reader.number("jump_at_s", 0, 1e6);
+  changes.pwm_hz = reader.number("pwm_hz", 0, 1e6);
+  changes.pwm_duty = reader.number("pwm_duty", 0.01, 1);
+  reader.finish();
+  return changes;
+}
+
 rig::TrueSensor parse_sensor(ObjectReader sensor, rig::TrueLens& lens) {
   rig::TrueSensor truth;
   lens.width_px = sensor.integer("width_px", 16, 20000);
@@ -86,6 +114,7 @@ rig::TrueSensor parse_sensor(ObjectReader sensor, rig::TrueLens& lens) {
   truth.full_well_e = sensor.number("full_well_e", 100, 1e7);
   truth.read_noise_e = sensor.number("read_noise_e", 0, 1000);
   truth.dark_current_e_s = sensor.number("dark_current_e_s", 0, 1e5);
+  truth.defects = parse_defects(sensor.object("defects"));
   sensor.finish();
   return truth;
 }
@@ -102,6 +131,7 @@ void parse_lens(ObjectReader lens, rig::TrueLens& truth) {
   truth.cy_px = centre[1];
   std::copy(distortion.begin(), distortion.end(), truth.distortion.begin());
   std::copy(vignetting.begin(), vignetting.end(), truth.vignetting.begin());
+  truth.blur_px = lens.number("blur_px", 0, 100);
   truth.world_from_camera = looking_at(lens.vector3("position_mm"), lens.vector3("aim_mm"));
   lens.finish();
 }
@@ -128,12 +158,14 @@ SimulatedRig parse_simulation(ObjectReader simulation) {
   truth.back.aim = lamp.vector3("back_aim_mm");
   truth.front.beam_exponent = truth.back.beam_exponent = lamp.number("beam_exponent", 0, 100);
   if (truth.front.intensity.minCoeff() < 0) lamp.refuse("intensity_mm2", "cannot be negative");
+  truth.lamp_changes = parse_lamp_changes(lamp.object("changes"));
   lamp.finish();
   ObjectReader prints = simulation.object("prints");
   const std::vector<double> ring = prints.numbers("ring_offset_mm", 2), sheet = prints.numbers("table_offset_mm", 2);
   truth.platform_from_ring = lying_at(ring[0], ring[1], prints.number("ring_turn_deg", -180, 180));
   truth.world_from_table_sheet = lying_at(sheet[0], sheet[1], prints.number("table_turn_deg", -180, 180));
   prints.finish();
+  truth.room_leak = simulation.number("room_leak", 0, 1);
   truth.room_radiance = simulation.vector3("room_radiance");
   result.spectralon_droop = simulation.number("spectralon_droop_percent", 0, 30) / 100;
   truth.placement_mm = simulation.number("placement_mm", 0, 20);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -78,6 +79,31 @@ TEST(SensorFile, AFileThatIsNoRawPictureGivesOneLineThatNamesIt) {
   std::vector<std::byte> text(5000, std::byte{'a'});
   EXPECT_NE(error_of(text).find("shot.arw"), std::string::npos);
   EXPECT_NE(error_of(std::vector<std::byte>(5000, std::byte{0})).find("shot.arw"), std::string::npos);
+}
+
+// The camera's compressed file of the same size: two entries of the mosaic's directory say so.
+TEST(SensorFile, ACompressedFileIsRefusedWithTheMenuToChange) {
+  std::vector<std::byte> bytes = rig::encode_raw(frame());
+  const auto set_entry = [&](std::uint16_t tag, std::uint16_t type, std::uint32_t from, std::uint32_t to) {
+    const auto number = [&](std::uint64_t value, int count) {
+      std::vector<std::byte> out;
+      for (int i = 0; i < count; ++i) out.push_back(static_cast<std::byte>(value >> (8 * i)));
+      return out;
+    };
+    std::vector<std::byte> entry = number(tag, 2);
+    for (const auto& part : {number(type, 2), number(1, 4), number(from, 4)})
+      entry.insert(entry.end(), part.begin(), part.end());
+    const auto found = std::search(bytes.begin(), bytes.end(), entry.begin(), entry.end());
+    ASSERT_NE(found, bytes.end()) << "tag " << tag;
+    const std::vector<std::byte> value = number(to, 4);
+    std::copy(value.begin(), value.end(), found + 8);
+  };
+  set_entry(259, 3, 1, 32767);
+  set_entry(279, 4, 120 * 80 * 2, 120 * 80);
+  const std::string error = error_of(bytes);
+  EXPECT_NE(error.find("shot.arw"), std::string::npos) << error;
+  EXPECT_NE(error.find("compressed"), std::string::npos) << error;
+  EXPECT_NE(error.find("Uncompressed"), std::string::npos) << error;
 }
 
 }  // namespace

@@ -48,6 +48,7 @@ void Workflow::SetUpTestSuite() {
   station::write_json_file(path("hasty_rig.json"), rig);
   json calibration = station::read_json_file(path("calibration/calibration.json"));
   coarsen(calibration["lens"], calibration["lens"]);
+  calibration.erase("sensor");  // of the fine sensor
   std::filesystem::create_directory(path("hasty_calibration"));
   station::write_json_file(path("hasty_calibration/calibration.json"), calibration);
 }

@@ -56,6 +56,42 @@ TEST_F(Workflow, CalibrationFindsTheBenchAsItIs) {
   }
 }
 
+// The documented rig's sensor: bad pixels, dust, a bent response and shutter errors, all mild.
+TEST_F(Workflow, CalibrationFindsTheSensorAsItIs) {
+  station::RigCalibration found = station::read_calibration(path("calibration"));
+  ASSERT_TRUE(found.sensor);
+  station::load_sensor_maps(path("calibration"), *found.sensor);
+  const rig::BenchTruth truth = station::read_rig(path("rig.json")).simulation->truth;
+  const calibration::SensorResponse& response = found.sensor->response;
+  EXPECT_NEAR(response.gain_dn_per_e / (15871 / truth.sensor.full_well_e), 1, 0.01);
+  EXPECT_NEAR(response.read_noise_e / truth.sensor.read_noise_e, 1, 0.03);
+  EXPECT_NEAR(response.nonlinearity, truth.sensor.defects.nonlinearity, 0.002);
+  ASSERT_EQ(response.shutter.size(), 12U);
+  const auto factor = [&](double nominal_s) {
+    return rig::shutter_factor(truth.sensor.defects, nominal_s, truth.seed);
+  };
+  double reference = 0;  // the time that is true by definition
+  for (const calibration::ShutterTime& time : response.shutter)
+    if (time.sigma_s == 0) reference = factor(time.nominal_s);
+  for (const calibration::ShutterTime& time : response.shutter)
+    EXPECT_NEAR(time.true_s / time.nominal_s, factor(time.nominal_s) / reference, 2e-3) << time.nominal_s;
+  const rig::DefectMaps defects =
+      rig::defect_maps(truth.sensor.defects, {truth.lens.width_px, truth.lens.height_px}, truth.seed);
+  const cv::Mat1b truly_bad(cv::Mat1b(defects.dark_current_e_s > 0) | cv::Mat1b(defects.read_noise_factor > 1) |
+                            cv::Mat1b(defects.sensitivity < 0.5));
+  EXPECT_GT(cv::countNonZero(response.maps.bad & truly_bad), 0.95 * cv::countNonZero(truly_bad));
+  EXPECT_LT(cv::countNonZero(response.maps.bad & ~truly_bad), 24);  // 1e-4 of the pixels
+  rig::SensorDefects dust_alone{.dust_spots = truth.sensor.defects.dust_spots,
+                                .dust_depth = truth.sensor.defects.dust_depth,
+                                .dust_radius_px = truth.sensor.defects.dust_radius_px};
+  const cv::Mat1f dust = rig::defect_maps(dust_alone, response.maps.flat.size(), truth.seed).sensitivity;
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(response.maps.flat / dust, mean, deviation);
+  EXPECT_NEAR(mean[0], 1, 0.002);
+  EXPECT_LT(deviation[0], 0.005);  // these pictures are drawn with few samples a pixel
+  for (const calibration::Gate& gate : found.sensor->gates) EXPECT_TRUE(gate.passed) << gate.name;
+}
+
 TEST_F(Workflow, CalibrationIsSolvedAgainFromItsPicturesAlone) {
   const json before = station::read_json_file(path("calibration/calibration.json")).flatten();
   expect_success(run_threadstation(
