@@ -110,8 +110,11 @@ double squared_error(const Intrinsics& intrinsics, const Corners& corners,
 }  // namespace
 
 std::optional<PoseFit> fit_pose(const Lens& lens, const TagLayout& layout, const TagObservation& seen) {
-  const Corners corners = match_corners(layout, seen);
-  if (corners.empty()) return std::nullopt;
+  return fit_pose(lens, match_corners(layout, seen));
+}
+
+std::optional<PoseFit> fit_pose(const Lens& lens, const Corners& corners) {
+  if (corners.size() < 4) return std::nullopt;
   const Intrinsics intrinsics = intrinsics_of(lens);
   PoseFit best;
   double best_cost = std::numeric_limits<double>::infinity();

@@ -6,6 +6,8 @@
 
 #include "calibration/pose.h"
 #include "station/calibrate/light_patches.h"
+#include "station/documents/gate_list.h"
+#include "station/documents/lens_file.h"
 #include "station/views.h"
 
 namespace station {
@@ -29,6 +31,11 @@ std::vector<Loaded> load(const std::filesystem::path& folder, const std::vector<
     loaded.push_back(std::move(entry));
   }
   return loaded;
+}
+
+// From the camera to the middle of what stands on the platform, by tape; the board is held near it too.
+double working_distance_mm(const RigFile& rig) {
+  return (Eigen::Vector3d(0, 0, rig.platform_height_mm + 34) - rig.world_from_camera_by_tape.translation()).norm();
 }
 
 calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& lens,
@@ -68,7 +75,12 @@ RigCalibration solve_calibration(const RigFile& rig, const std::filesystem::path
   result.rig_name = rig.name;
   result.spectralon_albedo = rig.spectralon.albedo;
   result.linear_srgb_from_camera = rig.linear_srgb_from_camera;
-  result.lens = calibration::fit_lens(lens_views, rig.board, size, rig.focal_length_guess_px);
+  const double distance_mm = working_distance_mm(rig);
+  result.lens = calibration::fit_lens(lens_views, rig.board, size, rig.focal_length_guess_px,
+                                      {.working_distance_mm = distance_mm, .taped_distance_mm = distance_mm});
+  if (const std::string failed = failed_gates(result.lens.gates); !failed.empty())
+    throw std::runtime_error("the lens calibration is not good enough: " + failed +
+                             "; take its pictures again with calibrate --only camera");
   result.platform = calibration::fit_platform(result.lens.lens, rig.board, turning, flat_views,
                                               rig.platform_height_mm + rig.board_thickness_mm);
   result.light = solve_light(rig, result.lens.lens, result.platform.world_from_camera, loaded);
@@ -82,24 +94,21 @@ RigCalibration solve_calibration(const RigFile& rig, const std::filesystem::path
 }
 
 std::string describe(const RigCalibration& calibration) {
-  const calibration::Lens& lens = calibration.lens.lens;
   const Eigen::Vector3d camera = calibration.platform.world_from_camera.translation();
   const auto sigma_mm = [&](std::size_t i) {
     return std::sqrt(calibration.light.position_covariances.at(i).trace());
   };
   char text[900];
   std::snprintf(text, sizeof text,
-                "lens      f %.1f / %.1f px, centre %.1f / %.1f px, %d corners, rms %.3f px\n"
                 "platform  camera at %.1f, %.1f, %.1f mm; angle scale %.5f; angles rms %.4f deg; rms %.3f px\n"
                 "light     front %.1f, %.1f, %.1f mm (+-%.1f), back %.1f, %.1f, %.1f mm (+-%.1f), rms %.2f %%\n",
-                lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, calibration.lens.corners_used,
-                calibration.lens.rms_px, camera.x(), camera.y(), camera.z(), calibration.platform.scale,
+                camera.x(), camera.y(), camera.z(), calibration.platform.scale,
                 calibration.platform.angle_rms_rad * kDegPerRad, calibration.platform.rms_px,
                 calibration.light.positions[0].x(), calibration.light.positions[0].y(),
                 calibration.light.positions[0].z(), sigma_mm(0), calibration.light.positions[1].x(),
                 calibration.light.positions[1].y(), calibration.light.positions[1].z(), sigma_mm(1),
                 100 * calibration.light.relative_rms);
-  return text;
+  return describe(calibration.lens) + text;
 }
 
 }  // namespace station

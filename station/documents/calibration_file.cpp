@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "station/documents/lens_file.h"
 #include "station/documents/reader.h"
 
 namespace station {
@@ -9,68 +10,6 @@ namespace {
 
 using nlohmann::json;
 constexpr double kRadPerDeg = M_PI / 180.0;
-
-json matrix_json(const Eigen::MatrixXd& matrix) {
-  json rows = json::array();
-  for (Eigen::Index r = 0; r < matrix.rows(); ++r) {
-    json row = json::array();
-    for (Eigen::Index c = 0; c < matrix.cols(); ++c) row.push_back(matrix(r, c));
-    rows.push_back(row);
-  }
-  return rows;
-}
-
-Eigen::MatrixXd read_matrix(ObjectReader& reader, const std::string& key, Eigen::Index size) {
-  const json& rows = reader.raw(key);
-  Eigen::MatrixXd matrix(size, size);
-  const std::string expected =
-      "expected a " + std::to_string(size) + " x " + std::to_string(size) + " matrix of numbers";
-  if (!rows.is_array() || rows.size() != static_cast<std::size_t>(size)) reader.refuse(key, expected);
-  for (Eigen::Index r = 0; r < size; ++r) {
-    const json& row = rows[static_cast<std::size_t>(r)];
-    if (!row.is_array() || row.size() != static_cast<std::size_t>(size)) reader.refuse(key, expected);
-    for (Eigen::Index c = 0; c < size; ++c) {
-      const json& entry = row[static_cast<std::size_t>(c)];
-      if (!entry.is_number()) reader.refuse(key, expected);
-      matrix(r, c) = entry.get<double>();
-    }
-  }
-  return matrix;
-}
-
-json lens_json(const calibration::LensFit& fit) {
-  const calibration::Lens& lens = fit.lens;
-  return {{"width_px", lens.width_px},
-          {"height_px", lens.height_px},
-          {"focal_length_px", {lens.fx_px, lens.fy_px}},
-          {"principal_point_px", {lens.cx_px, lens.cy_px}},
-          {"distortion", lens.distortion},
-          {"rms_px", fit.rms_px},
-          {"view_rms_px", fit.view_rms_px},
-          {"corners_used", fit.corners_used},
-          {"converged", fit.converged},
-          {"covariance", matrix_json(fit.covariance)}};
-}
-
-calibration::LensFit parse_lens(ObjectReader reader) {
-  calibration::LensFit fit;
-  fit.lens.width_px = reader.integer("width_px", 1, 100000);
-  fit.lens.height_px = reader.integer("height_px", 1, 100000);
-  const auto focal = reader.numbers("focal_length_px", 2), centre = reader.numbers("principal_point_px", 2);
-  const auto distortion = reader.numbers("distortion", 5);
-  fit.lens.fx_px = focal[0];
-  fit.lens.fy_px = focal[1];
-  fit.lens.cx_px = centre[0];
-  fit.lens.cy_px = centre[1];
-  std::copy(distortion.begin(), distortion.end(), fit.lens.distortion.begin());
-  fit.rms_px = reader.number("rms_px", 0, 1e6);
-  fit.view_rms_px = reader.numbers("view_rms_px");
-  fit.corners_used = reader.integer("corners_used", 0, 1 << 30);
-  fit.converged = reader.flag("converged");
-  fit.covariance = read_matrix(reader, "covariance", 9);
-  reader.finish();
-  return fit;
-}
 
 json platform_json(const calibration::PlatformFit& fit) {
   json angles = json::array();
@@ -94,7 +33,7 @@ calibration::PlatformFit parse_platform(ObjectReader reader) {
   fit.angle_rms_rad = reader.number("angle_rms_deg", 0, 360) * kRadPerDeg;
   fit.rms_px = reader.number("rms_px", 0, 1e6);
   fit.converged = reader.flag("converged");
-  fit.axis_covariance = read_matrix(reader, "axis_covariance", 4);
+  fit.axis_covariance = read_matrix(reader, "axis_covariance", 4, 4);
   reader.finish();
   return fit;
 }
@@ -115,10 +54,10 @@ json light_json(const calibration::LightFit& fit, double albedo) {
 calibration::LightFit parse_light(ObjectReader reader, double& albedo) {
   calibration::LightFit fit;
   fit.positions = {reader.vector3("front_position_mm"), reader.vector3("back_position_mm")};
-  fit.position_covariances = {read_matrix(reader, "front_position_covariance", 3),
-                              read_matrix(reader, "back_position_covariance", 3)};
+  fit.position_covariances = {read_matrix(reader, "front_position_covariance", 3, 3),
+                              read_matrix(reader, "back_position_covariance", 3, 3)};
   fit.intensity = reader.vector3("intensity_mm2");
-  fit.intensity_covariance = read_matrix(reader, "intensity_covariance", 3);
+  fit.intensity_covariance = read_matrix(reader, "intensity_covariance", 3, 3);
   const auto vignetting = reader.numbers("vignetting", 2);
   fit.vignetting.v0 = vignetting[0];
   fit.vignetting.v1 = vignetting[1];
@@ -152,7 +91,7 @@ RigCalibration parse_calibration(const json& document, const std::string& source
   calibration.software = reader.text("software");
   const auto colour = reader.numbers("linear_srgb_from_camera", 9);
   std::copy(colour.begin(), colour.end(), calibration.linear_srgb_from_camera.begin());
-  calibration.lens = parse_lens(reader.object("lens"));
+  calibration.lens = parse_lens_fit(reader.object("lens"));
   calibration.platform = parse_platform(reader.object("platform"));
   calibration.light = parse_light(reader.object("light"), calibration.spectralon_albedo);
   const json& hashes = reader.raw("picture_sha256");

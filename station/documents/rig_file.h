@@ -10,6 +10,7 @@
 
 #include "calibration/tags.h"
 #include "rig/simulated_bench.h"
+#include "station/documents/board_file.h"
 
 namespace station {
 
@@ -32,6 +33,7 @@ struct RigFile {
   std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major; for display only
   double focal_length_guess_px = 0;                                          // from the lens's engraving
   Eigen::Isometry3d world_from_camera_by_tape = Eigen::Isometry3d::Identity();  // OpenCV axes; roughly
+  TagBoardGrid board_grid;                                                      // as drawn
   calibration::TagLayout board;
   double board_thickness_mm = 0;
   double platform_height_mm = 0, platform_radius_mm = 0;
