@@ -233,10 +233,12 @@ std::vector<TargetSheet> target_sheets(const RigFile& rig) {
     outer = std::max(outer, std::hypot(radius + half, half));
   }
   sheets.back().circles_mm = {inner, outer};
-  sheets.push_back({.file = "table",
-                    .title = "Tags on the table",
-                    .advice = "Tape the whole sheet to the table behind the platform, its top away from the camera.",
-                    .tags = drawn(rig.table_tags, bar, y, -x)});
+  sheets.push_back(
+      {.file = "table",
+       .title = "Tags on the table",
+       .advice =
+           "Tape it behind the platform, top away from the camera; blacken the middle, it lies behind the threads.",
+       .tags = drawn(rig.table_tags, bar, y, -x)});
   sheets.push_back({.file = "spectralon",
                     .title = "Surround of the Spectralon target",
                     .advice = "Cut along both squares; glue it on the matt black plate around the white square.",
