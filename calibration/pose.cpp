@@ -129,10 +129,14 @@ double tag_error(const Lens& lens, const TagLayout& layout, const TagDetection& 
   return std::sqrt(squares / 4.0);
 }
 
-Solution best_of(const Lens& lens, const TagLayout& layout, const TagObservation& seen) {
-  const Corners corners = match_corners(layout, seen);
-  std::vector<Seen> all;
-  for (const Corner& corner : corners) all.push_back({Isometry3d::Identity(), corner});
+std::vector<Seen> seen_by_camera(const Corners& corners) {
+  std::vector<Seen> seen;
+  for (const Corner& corner : corners) seen.push_back({Isometry3d::Identity(), corner});
+  return seen;
+}
+
+Solution best_of(const Lens& lens, const Corners& corners) {
+  const std::vector<Seen> all = seen_by_camera(corners);
   Solution best;
   for (const Isometry3d& seed : seeds(lens, corners)) {
     Solution candidate{.parent_from_object = seed};
@@ -141,6 +145,10 @@ Solution best_of(const Lens& lens, const TagLayout& layout, const TagObservation
     if (in_front && candidate.cost < best.cost) best = candidate;
   }
   return best;
+}
+
+Solution best_of(const Lens& lens, const TagLayout& layout, const TagObservation& seen) {
+  return best_of(lens, match_corners(layout, seen));
 }
 
 constexpr double kOdd_px = 2.0;
@@ -221,13 +229,18 @@ void finish(const Lens& lens, const std::vector<Seen>& corners, Solution solutio
 std::optional<PoseFit> fit_pose(const Lens& lens, const TagLayout& layout, const TagObservation& seen) {
   const Sorted tags = sorted(lens, layout, seen);
   if (tags.agreed.empty()) return std::nullopt;
-  const Solution solution = best_of(lens, layout, tags.agreed);
+  std::optional<PoseFit> fit = fit_pose(lens, match_corners(layout, tags.agreed));
+  if (fit) fit->odd_tags = tags.odd;
+  return fit;
+}
+
+std::optional<PoseFit> fit_pose(const Lens& lens, const Corners& corners) {
+  if (corners.size() < 4) return std::nullopt;
+  const Solution solution = best_of(lens, corners);
   if (solution.cost == std::numeric_limits<double>::infinity())
     return std::nullopt;  // corners that no camera could see so
-  std::vector<Seen> corners;
-  for (const Corner& corner : match_corners(layout, tags.agreed)) corners.push_back({Isometry3d::Identity(), corner});
-  PoseFit fit{.odd_tags = tags.odd};
-  finish(lens, corners, solution, fit, fit.camera_from_object);
+  PoseFit fit;
+  finish(lens, seen_by_camera(corners), solution, fit, fit.camera_from_object);
   return fit;
 }
 

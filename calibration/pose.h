@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "calibration/correspondences.h"
 #include "calibration/lens.h"
 #include "calibration/tags.h"
 
@@ -12,8 +13,8 @@ namespace calibration {
 
 struct PoseFit {
   Eigen::Isometry3d camera_from_object = Eigen::Isometry3d::Identity();
-  double rms_px = 0.0;  // per axis, over the tags used
-  int tags_used = 0;
+  double rms_px = 0.0;        // per axis, over the tags used
+  int tags_used = 0;          // corners / 4
   std::vector<int> odd_tags;  // left out: more than 2 px (and 6 sigma) from where the other tags want them
   // Of a small rotation (rad) about the camera's axes through the object's origin, then of that origin's position
   // (mm, camera frame), for the corner noise that the residuals show (degrees of freedom taken out).
@@ -26,6 +27,9 @@ struct PoseFit {
 // found by consensus, as long as three or more tags agree. std::nullopt when no tag of the layout was seen. Throws
 // std::runtime_error on corners that are not finite numbers.
 std::optional<PoseFit> fit_pose(const Lens& lens, const TagLayout& layout, const TagObservation& seen);
+
+// The same for corners that are matched already; std::nullopt for fewer than four.
+std::optional<PoseFit> fit_pose(const Lens& lens, const std::vector<Corner>& corners);
 
 // One picture of an object that keeps its place on something that moves in a known way (the platform).
 struct Sighting {

@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
   station::add_invert_command(app);
   station::add_report_command(app);
   station::add_scatter_command(app);
+  station::add_target_command(app);
   station::add_weave_command(app);
   station::add_render_command(app);
   try {

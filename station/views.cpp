@@ -22,7 +22,7 @@ calibration::Lens lens_of(const rig::TrueLens& lens) {
   return {lens.width_px, lens.height_px, lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, lens.distortion};
 }
 
-calibration::TagObservation tags_in(const calibration::SensorPicture& picture) {
+cv::Mat1f linear_grey(const calibration::SensorPicture& picture) {
   const cv::Mat3f radiance = calibration::develop(picture, {}).radiance;
   cv::Mat1f grey(radiance.size());
   for (int row = 0; row < grey.rows; ++row)
@@ -30,7 +30,11 @@ calibration::TagObservation tags_in(const calibration::SensorPicture& picture) {
       const cv::Vec3f& pixel = radiance(row, column);
       grey(row, column) = std::max(0.F, (pixel[0] + pixel[1] + pixel[2]) / 3.F);
     }
-  return calibration::detect_tags(grey);
+  return grey;
+}
+
+calibration::TagObservation tags_in(const calibration::SensorPicture& picture) {
+  return calibration::detect_tags(linear_grey(picture));
 }
 
 }  // namespace station

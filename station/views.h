@@ -18,6 +18,9 @@ renderer::Camera camera_of(const calibration::Lens& lens, const Eigen::Isometry3
 // The simulated bench's lens in the words of calibration.
 calibration::Lens lens_of(const rig::TrueLens& lens);
 
+// Grey of a raw picture: mean of the demosaiced colours, linear, distortion left in, nothing below zero.
+cv::Mat1f linear_grey(const calibration::SensorPicture& picture);
+
 // Tags in a raw picture (linear grey of the demosaiced picture, distortion left in).
 calibration::TagObservation tags_in(const calibration::SensorPicture& picture);
 

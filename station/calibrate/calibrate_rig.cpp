@@ -1,5 +1,6 @@
 #include "station/calibrate/calibrate_rig.h"
 
+#include "station/documents/lens_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
 #include "station/interrupt.h"
@@ -47,6 +48,7 @@ RigCalibration calibrate_rig(const CalibrateRequest& request) {
   calibration.software = software_version();
   if (calibration.sensor) write_sensor_maps(request.out, *calibration.sensor);
   write_json_file(request.out / "calibration.json", to_json(calibration));
+  write_cameramodel_beside(calibration.lens, request.out / "calibration.json");
   progress.finish("done");
   return calibration;
 }

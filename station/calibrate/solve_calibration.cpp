@@ -9,6 +9,7 @@
 #include "station/calibrate/lamps.h"
 #include "station/calibrate/light_patches.h"
 #include "station/calibrate/solve_response.h"
+#include "station/documents/lens_file.h"
 #include "station/views.h"
 
 namespace station {
@@ -55,6 +56,11 @@ CameraSetup camera_of_pictures(const RigFile& rig, const std::vector<Loaded>& lo
           .f_number = first.f_number};
 }
 
+// From the camera to the middle of what stands on the platform, by tape; the board is held near it too.
+double working_distance_mm(const RigFile& rig) {
+  return (Eigen::Vector3d(0, 0, rig.platform_height_mm + 34) - rig.world_from_camera_by_tape.translation()).norm();
+}
+
 calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& lens,
                                   const Eigen::Isometry3d& world_from_camera, const std::vector<Loaded>& loaded,
                                   const calibration::SensorResponse* response) {
@@ -96,7 +102,9 @@ RigCalibration solve_calibration(const RigFile& rig, const std::filesystem::path
   result.rig_name = rig.name;
   result.spectralon_albedo = rig.spectralon.albedo;
   result.linear_srgb_from_camera = rig.linear_srgb_from_camera;
-  result.lens = calibration::fit_lens(lens_views, rig.board, size, rig.focal_length_guess_px);
+  const double distance_mm = working_distance_mm(rig);
+  result.lens = calibration::fit_lens(lens_views, rig.board, size, rig.focal_length_guess_px,
+                                      {.working_distance_mm = distance_mm, .taped_distance_mm = distance_mm});
   result.platform =
       calibration::fit_platform(result.lens.lens, {.ring = rig.platform_ring, .table = rig.table_tags}, turning);
   result.still_tags = calibration::still_tags(rig.table_tags, still_views);
@@ -116,17 +124,14 @@ RigCalibration solve_calibration(const RigFile& rig, const std::filesystem::path
 }
 
 std::string describe(const RigCalibration& calibration) {
-  const calibration::Lens& lens = calibration.lens.lens;
   const Eigen::Vector3d camera = calibration.platform.world_from_camera.translation();
   const calibration::LightFit& light = calibration.light;
   char text[1200];
   std::snprintf(text, sizeof text,
-                "lens      f %.1f / %.1f px, centre %.1f / %.1f px, %d corners, rms %.3f px\n"
                 "platform  camera at %.1f, %.1f, %.1f mm; angle scale %.5f; angles rms %.4f deg; rms %.3f px\n",
-                lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, calibration.lens.corners_used,
-                calibration.lens.rms_px, camera.x(), camera.y(), camera.z(), calibration.platform.scale,
+                camera.x(), camera.y(), camera.z(), calibration.platform.scale,
                 calibration.platform.angle_rms_rad * kDegPerRad, calibration.platform.rms_px);
-  std::string lines = text;
+  std::string lines = describe(calibration.lens) + text;
   for (std::size_t i = 0; i < light.positions.size(); ++i) {
     const Eigen::Vector3d& at = light.positions[i];
     std::snprintf(text, sizeof text,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "station/documents/gate_list.h"
+#include "station/documents/lens_file.h"
 #include "station/documents/reader.h"
 
 namespace station {
@@ -11,34 +12,6 @@ namespace {
 
 using nlohmann::json;
 constexpr double kRadPerDeg = M_PI / 180.0;
-
-json matrix_json(const Eigen::MatrixXd& matrix) {
-  json rows = json::array();
-  for (Eigen::Index r = 0; r < matrix.rows(); ++r) {
-    json row = json::array();
-    for (Eigen::Index c = 0; c < matrix.cols(); ++c) row.push_back(matrix(r, c));
-    rows.push_back(row);
-  }
-  return rows;
-}
-
-Eigen::MatrixXd read_matrix(ObjectReader& reader, const std::string& key, Eigen::Index size) {
-  const json& rows = reader.raw(key);
-  Eigen::MatrixXd matrix(size, size);
-  const std::string expected =
-      "expected a " + std::to_string(size) + " x " + std::to_string(size) + " matrix of numbers";
-  if (!rows.is_array() || rows.size() != static_cast<std::size_t>(size)) reader.refuse(key, expected);
-  for (Eigen::Index r = 0; r < size; ++r) {
-    const json& row = rows[static_cast<std::size_t>(r)];
-    if (!row.is_array() || row.size() != static_cast<std::size_t>(size)) reader.refuse(key, expected);
-    for (Eigen::Index c = 0; c < size; ++c) {
-      const json& entry = row[static_cast<std::size_t>(c)];
-      if (!entry.is_number()) reader.refuse(key, expected);
-      matrix(r, c) = entry.get<double>();
-    }
-  }
-  return matrix;
-}
 
 json camera_json(const CameraSetup& camera) {
   return {{"model", camera.model},
@@ -56,40 +29,6 @@ CameraSetup parse_camera(ObjectReader reader) {
                      .f_number = reader.number("f_number", 0.5, 100)};
   reader.finish();
   return camera;
-}
-
-json lens_json(const calibration::LensFit& fit) {
-  const calibration::Lens& lens = fit.lens;
-  return {{"width_px", lens.width_px},
-          {"height_px", lens.height_px},
-          {"focal_length_px", {lens.fx_px, lens.fy_px}},
-          {"principal_point_px", {lens.cx_px, lens.cy_px}},
-          {"distortion", lens.distortion},
-          {"rms_px", fit.rms_px},
-          {"view_rms_px", fit.view_rms_px},
-          {"corners_used", fit.corners_used},
-          {"converged", fit.converged},
-          {"covariance", matrix_json(fit.covariance)}};
-}
-
-calibration::LensFit parse_lens(ObjectReader reader) {
-  calibration::LensFit fit;
-  fit.lens.width_px = reader.integer("width_px", 1, 100000);
-  fit.lens.height_px = reader.integer("height_px", 1, 100000);
-  const auto focal = reader.numbers("focal_length_px", 2), centre = reader.numbers("principal_point_px", 2);
-  const auto distortion = reader.numbers("distortion", 5);
-  fit.lens.fx_px = focal[0];
-  fit.lens.fy_px = focal[1];
-  fit.lens.cx_px = centre[0];
-  fit.lens.cy_px = centre[1];
-  std::copy(distortion.begin(), distortion.end(), fit.lens.distortion.begin());
-  fit.rms_px = reader.number("rms_px", 0, 1e6);
-  fit.view_rms_px = reader.numbers("view_rms_px");
-  fit.corners_used = reader.integer("corners_used", 0, 1 << 30);
-  fit.converged = reader.flag("converged");
-  fit.covariance = read_matrix(reader, "covariance", 9);
-  reader.finish();
-  return fit;
 }
 
 json degrees_json(const std::vector<double>& angles_rad) {
@@ -142,7 +81,7 @@ json platform_json(const calibration::PlatformFit& fit, const calibration::Still
           {"view_rms_px", fit.view_rms_px},
           {"axis_to_table_normal_deg", fit.axis_to_table_normal_rad / kRadPerDeg},
           {"table_tags_px", still_tags_json(still)},
-          {"gates", gates_json(fit.gates)},
+          {"gates", to_json(fit.gates)},
           {"angle_scale", fit.scale},
           {"angle_offset_deg", fit.offset_rad / kRadPerDeg},
           {"angle_rms_deg", fit.angle_rms_rad / kRadPerDeg},
@@ -161,13 +100,13 @@ calibration::PlatformFit parse_platform(ObjectReader reader, calibration::StillT
   fit.view_rms_px = reader.numbers("view_rms_px");
   fit.axis_to_table_normal_rad = reader.number("axis_to_table_normal_deg", 0, 180) * kRadPerDeg;
   still = read_still_tags(reader, "table_tags_px");
-  fit.gates = parse_gates(reader);
+  fit.gates = parse_gates(reader, "gates");
   fit.scale = reader.number("angle_scale", 0.1, 10);
   fit.offset_rad = reader.number("angle_offset_deg", -360, 360) * kRadPerDeg;
   fit.angle_rms_rad = reader.number("angle_rms_deg", 0, 360) * kRadPerDeg;
   fit.rms_px = reader.number("rms_px", 0, 1e6);
   fit.converged = reader.flag("converged");
-  fit.axis_covariance = read_matrix(reader, "axis_covariance", 4);
+  fit.axis_covariance = read_matrix(reader, "axis_covariance", 4, 4);
   reader.finish();
   return fit;
 }
@@ -181,7 +120,7 @@ json place_json(const calibration::LightFit& fit, std::size_t place) {
 
 void parse_place(ObjectReader reader, calibration::LightFit& fit) {
   fit.positions.push_back(reader.vector3("position_mm"));
-  fit.position_covariances.emplace_back(read_matrix(reader, "position_covariance", 3));
+  fit.position_covariances.emplace_back(read_matrix(reader, "position_covariance", 3, 3));
   fit.beam_axes.push_back(reader.vector3("beam_axis").normalized());
   fit.aim_irradiance_sigma.push_back(reader.number("aim_irradiance_sigma", 0, 1e6));
   reader.finish();
@@ -210,7 +149,7 @@ json light_json(const calibration::LightFit& fit, double albedo) {
           {"relative_rms", fit.relative_rms},
           {"patches_used", fit.patches_used},
           {"held_out", held_out},
-          {"gates", gates_json(fit.gates)},
+          {"gates", to_json(fit.gates)},
           {"converged", fit.converged}};
 }
 
@@ -219,13 +158,13 @@ calibration::LightFit parse_light(ObjectReader reader, double& albedo) {
   parse_place(reader.object("front"), fit);
   parse_place(reader.object("back"), fit);
   fit.intensity = reader.vector3("intensity_mm2");
-  fit.intensity_covariance = read_matrix(reader, "intensity_covariance", 3);
+  fit.intensity_covariance = read_matrix(reader, "intensity_covariance", 3, 3);
   fit.beam_exponent = reader.number("beam_exponent", -10, 1000);
   fit.beam_exponent_sigma = reader.number("beam_exponent_sigma", 0, 1e6);
   const auto vignetting = reader.numbers("vignetting", 2);
   fit.vignetting.v0 = vignetting[0];
   fit.vignetting.v1 = vignetting[1];
-  fit.vignetting_covariance = read_matrix(reader, "vignetting_covariance", 2);
+  fit.vignetting_covariance = read_matrix(reader, "vignetting_covariance", 2, 2);
   albedo = reader.number("spectralon_albedo", 0.5, 1);
   const auto droop = reader.numbers("spectralon_droop", 2), droop_sigma = reader.numbers("spectralon_droop_sigma", 2);
   fit.droop = {droop[0], droop[1]};
@@ -242,7 +181,7 @@ calibration::LightFit parse_light(ObjectReader reader, double& albedo) {
     entry.finish();
     fit.held_out.push_back(held);
   }
-  fit.gates = parse_gates(reader);
+  fit.gates = parse_gates(reader, "gates");
   fit.converged = reader.flag("converged");
   reader.finish();
   return fit;
@@ -251,7 +190,8 @@ calibration::LightFit parse_light(ObjectReader reader, double& albedo) {
 }  // namespace
 
 std::vector<calibration::Gate> all_gates(const RigCalibration& calibration) {
-  std::vector<calibration::Gate> gates = calibration.platform.gates;
+  std::vector<calibration::Gate> gates = calibration.lens.gates;
+  gates.insert(gates.end(), calibration.platform.gates.begin(), calibration.platform.gates.end());
   gates.insert(gates.end(), calibration.light.gates.begin(), calibration.light.gates.end());
   if (calibration.sensor)
     gates.insert(gates.end(), calibration.sensor->gates.begin(), calibration.sensor->gates.end());
@@ -283,7 +223,7 @@ RigCalibration parse_calibration(const json& document, const std::string& source
   calibration.camera = parse_camera(reader.object("camera"));
   const auto colour = reader.numbers("linear_srgb_from_camera", 9);
   std::copy(colour.begin(), colour.end(), calibration.linear_srgb_from_camera.begin());
-  calibration.lens = parse_lens(reader.object("lens"));
+  calibration.lens = parse_lens_fit(reader.object("lens"));
   calibration.platform = parse_platform(reader.object("platform"), calibration.still_tags);
   calibration.light = parse_light(reader.object("light"), calibration.spectralon_albedo);
   if (reader.has("sensor")) calibration.sensor = parse_sensor_section(reader.object("sensor"));

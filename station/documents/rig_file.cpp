@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "calibration/targets.h"
+#include "station/documents/board_file.h"
 #include "station/documents/reader.h"
 
 namespace station {
@@ -26,16 +27,6 @@ Eigen::Isometry3d lying_at(double x_mm, double y_mm, double turn_deg) {
   Eigen::Isometry3d pose(Eigen::Translation3d(x_mm, y_mm, 0));
   pose.rotate(Eigen::AngleAxisd(turn_deg * kRadPerDeg, Eigen::Vector3d::UnitZ()));
   return pose;
-}
-
-calibration::TagLayout parse_board(ObjectReader board, double& thickness_mm) {
-  const int rows = board.integer("rows", 1, 100), columns = board.integer("columns", 1, 100);
-  const double tag_mm = board.number("tag_mm", 0.5, 500);
-  const double pitch_mm = board.number("pitch_mm", tag_mm * 1.25, 1000);
-  const int first_id = board.integer("first_id", 0, 586 - rows * columns + 1);
-  thickness_mm = board.number("thickness_mm", 0, 100);
-  board.finish();
-  return calibration::make_tag_board("board", rows, columns, tag_mm, pitch_mm, first_id);
 }
 
 calibration::TagLayout corner_tags(ObjectReader tags, const std::string& name, const Eigen::Vector3d& right,
@@ -201,7 +192,11 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
   ObjectReader camera = reader.object("camera_by_tape");
   rig.world_from_camera_by_tape = looking_at(camera.vector3("position_mm"), camera.vector3("aim_mm"));
   camera.finish();
-  rig.board = parse_board(reader.object("board"), rig.board_thickness_mm);
+  ObjectReader board = reader.object("board");
+  rig.board_grid = parse_tag_board(board);
+  rig.board = rig.board_grid.layout();
+  rig.board_thickness_mm = board.number("thickness_mm", 0, 100);
+  board.finish();
   ObjectReader platform = reader.object("platform");
   rig.platform_height_mm = platform.number("height_mm", 0, 1000);
   rig.platform_radius_mm = platform.number("radius_mm", 1, 2000);

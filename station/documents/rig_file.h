@@ -10,6 +10,7 @@
 
 #include "calibration/tags.h"
 #include "rig/simulated_bench.h"
+#include "station/documents/board_file.h"
 
 namespace station {
 
@@ -35,6 +36,7 @@ struct RigFile {
   double calibration_valid_days = 0;
   double focal_length_guess_px = 0;                                             // from the lens's engraving
   Eigen::Isometry3d world_from_camera_by_tape = Eigen::Isometry3d::Identity();  // OpenCV axes; roughly
+  TagBoardGrid board_grid;                                                      // as drawn
   calibration::TagLayout board;
   double board_thickness_mm = 0;
   double platform_height_mm = 0, platform_radius_mm = 0;

@@ -46,7 +46,7 @@ json to_json(const SensorSection& sensor) {
           {"lamp_drift_sigma_per_min", sensor.lamp_drift_sigma_per_min},
           {"maps_sha256", sensor.maps_sha256},
           {"bad_pixels_sha256", sensor.bad_pixels_sha256},
-          {"gates", gates_json(sensor.gates)}};
+          {"gates", to_json(sensor.gates)}};
 }
 
 SensorSection parse_sensor_section(ObjectReader reader) {
@@ -81,7 +81,7 @@ SensorSection parse_sensor_section(ObjectReader reader) {
   sensor.lamp_drift_sigma_per_min = reader.number("lamp_drift_sigma_per_min", 0, kMost);
   sensor.maps_sha256 = reader.text("maps_sha256");
   sensor.bad_pixels_sha256 = reader.text("bad_pixels_sha256");
-  sensor.gates = parse_gates(reader);
+  sensor.gates = parse_gates(reader, "gates");
   reader.finish();
   return sensor;
 }

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <opencv2/calib3d.hpp>
 
 #include "calibration/pose.h"
@@ -186,6 +188,111 @@ TEST(Lens, ViewsThatCannotDetermineALensAreRefusedInOneLine) {
   broken[2][0].corners_px[3].y() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(error_of(broken).find("finite"), std::string::npos);
   EXPECT_THROW(fit_lens(good, synthetic::board(), kSize, 0.0), std::runtime_error);
+}
+
+// Faults of boards and pictures, each with the one line that it gets.
+
+std::vector<TagObservation> with_ids(std::vector<TagObservation> views, const std::map<int, int>& exchanged) {
+  for (TagObservation& view : views)
+    for (TagDetection& tag : view)
+      if (const auto found = exchanged.find(tag.id); found != exchanged.end()) tag.id = found->second;
+  return views;
+}
+
+TEST(Lens, ExchangedTagsAreRefusedByName) {
+  std::mt19937 random(5);
+  const std::string message = error_of(with_ids(handheld_views(10, 0.1, random), {{2, 9}, {9, 2}}));
+  EXPECT_NE(message.find("tags 2, 9"), std::string::npos) << message;
+  EXPECT_NE(message.find("exchanged"), std::string::npos) << message;
+}
+
+TEST(Lens, AMirroredBoardIsRefused) {
+  std::mt19937 random(6);
+  auto views = handheld_views(10, 0.1, random);
+  for (TagObservation& view : views)
+    for (TagDetection& tag : view)
+      for (Eigen::Vector2d& corner : tag.corners_px) corner.x() = kSize.width - 1 - corner.x();
+  EXPECT_NE(error_of(views).find("mirrored"), std::string::npos) << error_of(views);
+}
+
+TEST(Lens, ABoardWhoseIdsRunAnotherWayIsRefused) {
+  std::mt19937 random(7);
+  std::map<int, int> along_columns;  // counted down the columns instead of along the rows
+  for (int id = 0; id < 12; ++id) along_columns[id] = (id % 4) * 3 + id / 4;
+  const std::string message = error_of(with_ids(handheld_views(10, 0.1, random), along_columns));
+  EXPECT_NE(message.find("board"), std::string::npos) << message;
+  EXPECT_NE(message.find("check"), std::string::npos) << message;
+}
+
+TEST(Lens, ABoardTurnedUpsideDownGivesTheSameLens) {
+  std::mt19937 random(8);
+  const auto poses = synthetic::handheld_poses(12, random);
+  std::vector<TagObservation> upright, turned;
+  for (const Eigen::Isometry3d& pose : poses) {
+    upright.push_back(synthetic::observe(synthetic::narrow_lens(), synthetic::board(), pose, 0.0, random));
+    turned.push_back(synthetic::observe(synthetic::narrow_lens(), synthetic::board(),
+                                        pose * Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()), 0.0, random));
+  }
+  const LensFit a = fit_lens(upright, synthetic::board(), kSize, 2400);
+  const LensFit b = fit_lens(turned, synthetic::board(), kSize, 2400);
+  EXPECT_NEAR(a.lens.fx_px, b.lens.fx_px, 1e-3);
+  EXPECT_NEAR(a.lens.cx_px, b.lens.cx_px, 1e-3);
+}
+
+TEST(Lens, SizesWrongByTenChangeOnlyTheDistanceWhichTheTapeMeasureShows) {
+  std::mt19937 random(9);
+  const auto views = handheld_views(12, 0.1, random);
+  const LensFit right = fit_lens(views, synthetic::board(), kSize, 2400, {.taped_distance_mm = 600});
+  EXPECT_TRUE(all_passed(right.gates));
+  const LensFit wrong =
+      fit_lens(views, make_tag_board("test board", 3, 4, 200.0, 300.0, 0), kSize, 2400, {.taped_distance_mm = 600});
+  EXPECT_NEAR(wrong.lens.fx_px, right.lens.fx_px, 0.01);
+  int failed = 0;
+  for (const Gate& gate : wrong.gates) {
+    if (gate.passed) continue;
+    ++failed;
+    EXPECT_NE(gate.name.find("tape measure"), std::string::npos) << gate.name;
+    EXPECT_NEAR(gate.value, 10.0, 2.0);
+  }
+  EXPECT_EQ(failed, 1);
+}
+
+// A shift of the principal point or another focal length alone would do no harm in a picture so narrow: poses take it.
+TEST(Lens, AnotherLensInEverySecondViewIsShownByTheHalves) {
+  std::mt19937 random(10);
+  auto views = handheld_views(20, 0.05, random);
+  Lens other = synthetic::narrow_lens();
+  other.distortion = {2.0, 0.6, 0.0, 0.0, 0.0};
+  const auto later = handheld_views(20, 0.05, random, other);
+  for (std::size_t v = 1; v < views.size(); v += 2) views[v] = later[v];
+  const LensFit fit = fit_lens(views, synthetic::board(), kSize, 2400);
+  ASSERT_TRUE(fit.halves.has_value());
+  const auto halves = std::find_if(fit.gates.begin(), fit.gates.end(),
+                                   [](const Gate& gate) { return gate.name.starts_with("half of the pictures"); });
+  ASSERT_NE(halves, fit.gates.end());
+  EXPECT_FALSE(halves->passed) << halves->value;
+  EXPECT_TRUE(all_passed(fit_lens(handheld_views(20, 0.05, random), synthetic::board(), kSize, 2400).gates));
+}
+
+TEST(Lens, ABoardWithoutACommonLatticeIsRefused) {
+  TagLayout crooked = synthetic::board();
+  crooked.tags[5].object_from_tag.rotate(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ()));
+  EXPECT_THROW(lattice_of(crooked), std::runtime_error);
+  const TagLattice regular = lattice_of(synthetic::board());  // tags of 20 mm, gaps of 10 mm
+  EXPECT_NEAR(regular.lattice.spacing_mm, 10.0, 1e-12);
+  EXPECT_EQ(regular.lattice.columns, 12);
+  EXPECT_EQ(regular.lattice.rows, 9);
+}
+
+TEST(Lens, TheFocalLengthIsGuessedFromPerspectiveToAFactorOfTwo) {
+  std::mt19937 random(12);
+  const TagLattice tags = lattice_of(synthetic::board());
+  std::vector<LatticeView> views;
+  for (const TagObservation& view : handheld_views(10, 0.1, random))
+    views.push_back(on_lattice(tags, synthetic::board(), view));
+  const double guess = guess_focal_px(views, tags.lattice, kSize);
+  EXPECT_GT(guess, 1200);
+  EXPECT_LT(guess, 4800);
 }
 
 TEST(Lens, UndistortedPointsAreThoseOfAPinholeWithTheSameMatrix) {

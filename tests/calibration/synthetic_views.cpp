@@ -76,6 +76,22 @@ TagObservation observe(const Lens& lens, const TagLayout& layout, const Eigen::I
   return seen;
 }
 
+LatticeView observe_lattice(const Lens& lens, const Lattice& lattice, const Eigen::Vector2d& bow_mm,
+                            const Eigen::Isometry3d& camera_from_lattice) {
+  LatticeView seen;
+  for (int row = 0; row < lattice.rows; ++row) {
+    for (int column = 0; column < lattice.columns; ++column) {
+      const double u = 2.0 * column / (lattice.columns - 1) - 1.0, v = 2.0 * row / (lattice.rows - 1) - 1.0;
+      Eigen::Vector3d point = lattice.point(column, row);
+      point.z() = bow_mm.x() * (1.0 - u * u) + bow_mm.y() * (1.0 - v * v);
+      const Eigen::Vector2d pixel = project(lens, camera_from_lattice * point);
+      if (pixel.minCoeff() > 2 && pixel.x() < lens.width_px - 3 && pixel.y() < lens.height_px - 3)
+        seen.push_back({column, row, pixel});
+    }
+  }
+  return seen;
+}
+
 std::vector<Eigen::Isometry3d> handheld_poses(int count, std::mt19937& random) {
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   std::vector<Eigen::Isometry3d> poses;

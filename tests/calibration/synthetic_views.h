@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "calibration/lattice.h"
 #include "calibration/lens.h"
 #include "calibration/tags.h"
 
@@ -29,6 +30,11 @@ Eigen::Isometry3d facing(double distance_mm, double yaw_rad, double pitch_rad, d
 // The tags that lie wholly in the picture, each corner with Gaussian noise of `sigma_px` per axis.
 TagObservation observe(const Lens& lens, const TagLayout& layout, const Eigen::Isometry3d& camera_from_object,
                        double sigma_px, std::mt19937& random);
+
+// The corners of a bent lattice that lie in the picture, exactly. `bow_mm`: how far its middle stands out along columns
+// and along rows.
+LatticeView observe_lattice(const Lens& lens, const Lattice& lattice, const Eigen::Vector2d& bow_mm,
+                            const Eigen::Isometry3d& camera_from_lattice);
 
 // Handheld views of the board: distances 450-750 mm, tilts to +-40 degrees, all over the picture.
 std::vector<Eigen::Isometry3d> handheld_poses(int count, std::mt19937& random);

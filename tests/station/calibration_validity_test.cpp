@@ -98,7 +98,7 @@ TEST(CalibrationValidity, AnOldCalibrationIsRefusedAndADateThatIsNoneToo) {
 TEST(CalibrationValidity, AFailedGateIsRefusedWithItsReasonUnlessItIsAccepted) {
   Case c = matching();
   c.calibration.platform.gates.push_back(calibration::at_most("corners, px", 0.9, 0.5, "press the prints flat"));
-  EXPECT_THAT(refusal(c), HasSubstr("corners, px is 0.9, the limit is 0.5 (press the prints flat)"));
+  EXPECT_THAT(refusal(c), HasSubstr("corners, px: 0.9, limit 0.5 (press the prints flat)"));
   EXPECT_EQ(refusal(c, "2026-11-21T08:00:00Z", true), "");
 }
 

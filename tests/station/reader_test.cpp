@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "station/documents/board_file.h"
 #include "station/documents/rig_file.h"
 #include "station/documents/spool.h"
 #include "tests/station/refusal.h"
@@ -35,6 +36,23 @@ TEST(Documents, EveryRigAndSpoolInFixturesIsRead) {
     ++read;
   }
   EXPECT_GE(read, 6);
+}
+
+TEST(Documents, EveryBoardInFixturesIsRead) {
+  int read = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(FIXTURES_DIR) + "/boards")) {
+    if (entry.path().extension() != ".json") continue;
+    EXPECT_NO_THROW(read_board(entry.path())) << entry.path();
+    ++read;
+  }
+  EXPECT_GE(read, 2);
+}
+
+TEST(Documents, TwoTargetsOfARigMayNotShareAnId) {
+  json rig = good_rig();
+  rig["platform"]["ring"]["first_id"] = 5;
+  const std::string message = refusal([&] { parse_rig(rig, "r"); });
+  EXPECT_NE(message.find("tag 5"), std::string::npos) << message;
 }
 
 TEST(Documents, AnUnknownKeyIsNamedWithItsPath) {
