@@ -210,8 +210,9 @@ LensModel determinable_model(const ModelledLens& lens) {
 }
 
 // From the regularised solution, which is stable, on to the one without, which is unbiased. 600 x 400 px, f 2400 px, 15
-// views at 0.1 px, k2 of 0.6 / 3 / -17: projections are off by 0.04 / 0.05 / 0.26 px rms with regularisation, and
-// 0.05 / 0.03 / 0.06 px without; its pull also makes the covariance of the coefficients meaningless.
+// views at 0.1 px, k2 of 0.6 / 3 / -17: projections in the inner picture are off by 0.022 / 0.024 / 0.045 px rms with
+// regularisation and by 0.023 / 0.023 / 0.021 px without (tests/calibration/lens_accuracy_test.cpp). Its pull also
+// makes the covariance of the coefficients meaningless.
 void let_go_of_regularisation(LensBundle& bundle, BundleUncertainty& uncertainty, LensFit& fit) {
   uncertainty = linearise(bundle, {});
   fit.regularised = true;

@@ -113,6 +113,22 @@ TEST(Tags, BlackSquaresKeepTheirSizeWhenThePictureIsBlurred) {
   EXPECT_LT(std::abs(outwards), 0.05);  // 0.05 px of 113 px is 0.04 % of the distance
 }
 
+TEST(Tags, TagsOfHundredsOfPixelsAreFoundInLargePictures) {
+  Lens lens = synthetic::narrow_lens();
+  for (double* length : {&lens.fx_px, &lens.fy_px, &lens.cx_px, &lens.cy_px}) *length *= 4.0;
+  lens.width_px *= 4;
+  lens.height_px *= 4;
+  const TagLayout layout = make_tag_board("large", 1, 2, 40.0, 60.0, 0);  // 640 px, cells of 80 px
+  const Eigen::Isometry3d pose = facing(600, 0.2, 0.1, 0.3);
+  const TagObservation seen = detect_tags(synthetic::picture(lens, layout, pose, 2));
+  std::mt19937 random(7);
+  const TagObservation expected = synthetic::observe(lens, layout, pose, 0.0, random);
+  ASSERT_EQ(seen.size(), 2U);
+  for (std::size_t t = 0; t < 2; ++t)
+    for (std::size_t c = 0; c < 4; ++c)
+      EXPECT_LT((seen[t].corners_px[c] - expected[t].corners_px[c]).norm(), 0.2);  // four rays a pixel place an edge no better
+}
+
 TEST(Tags, TheScaleOfThePictureDoesNotMatter) {
   const cv::Mat1f grey = synthetic::picture(synthetic::narrow_lens(), synthetic::board(), facing(600, 0, 0, 0), 2);
   const TagObservation one = detect_tags(grey), small = detect_tags(cv::Mat1f(grey * 1e-3));
