@@ -19,12 +19,14 @@ constexpr int kMaxTestPictures = 6;
 
 void write_list(const std::filesystem::path& folder, const std::vector<CalibrationPicture>& pictures) {
   nlohmann::json list = nlohmann::json::array();
-  for (const CalibrationPicture& p : pictures)
+  for (const CalibrationPicture& p : pictures) {
     list.push_back({{"id", p.id},
                     {"role", to_text(p.role)},
                     {"file", p.file},
                     {"sha256", p.sha256},
                     {"reading_deg", p.reading_rad * kDegPerRad}});
+    if (p.lamp_output) list.back()["lamp_output"] = *p.lamp_output;
+  }
   write_json_file(folder / "pictures.json",
                   {{"format", "threadstation/calibration_pictures"}, {"version", 1}, {"pictures", list}});
 }
@@ -41,6 +43,7 @@ std::vector<CalibrationPicture> read_list(const std::filesystem::path& folder) {
     p.file = entry.text("file");
     p.sha256 = entry.text("sha256");
     p.reading_rad = entry.number("reading_deg", -360, 360) / kDegPerRad;
+    if (entry.has("lamp_output")) p.lamp_output = entry.number("lamp_output", 0.01, 100);
     entry.finish();
     pictures.push_back(p);
   }

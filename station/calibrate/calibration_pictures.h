@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct CalibrationPicture {
   std::string file;  // relative to the folder
   std::string sha256;
   double reading_rad = 0.0;  // of the turntable
+  // The lamp's output over its nominal one, as a reference patch in the picture tells it; none where it was not read.
+  std::optional<double> lamp_output = std::nullopt;
 };
 
 using StepProgress = std::function<void(int done, int total, const std::string& label)>;

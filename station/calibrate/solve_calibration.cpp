@@ -47,7 +47,7 @@ calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& l
     const auto cells = panel_patches(entry.raw, lens, world_from_camera, pose->camera_from_object, rig.spectralon,
                                      front ? 0 : 1, static_cast<int>(pictures.size()));
     patches.insert(patches.end(), cells.begin(), cells.end());
-    pictures.push_back({.name = entry.picture.id});
+    pictures.push_back({.name = entry.picture.id, .output = entry.picture.lamp_output});
   }
   return calibration::fit_light(patches, lamp_guesses(rig), light_options(rig, {lens.width_px, lens.height_px}),
                                 pictures);

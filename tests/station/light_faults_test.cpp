@@ -122,5 +122,18 @@ TEST_F(LightFaults, ATapeThatIsTenCentimetresWrongDoesNotMatter) {
   EXPECT_LT((found.light.positions[0] - right.light.positions[0]).norm(), 1);
 }
 
+TEST_F(LightFaults, ALampThatDimsIsCorrectedByTheReadingOfAReferencePatch) {
+  const std::string folder = copy("dimmed");
+  take_again(folder, {"front_light-04"}, [](rig::BenchState& state) {
+    if (state.lamp) state.lamp->intensity *= 0.95;
+  });
+  expect_one_line(solve(folder), "front_light-04: off in brightness");
+  json list = station::read_json_file(folder + "/pictures.json");
+  for (json& entry : list["pictures"])
+    if (entry["role"] == "front_light") entry["lamp_output"] = entry["id"] == "front_light-04" ? 0.95 : 1.0;
+  station::write_json_file(folder + "/pictures.json", list);
+  expect_success(solve(folder));
+}
+
 }  // namespace
 }  // namespace station_test
