@@ -1,13 +1,13 @@
 #include "calibration/light.h"
 
-#include <ceres/ceres.h>
-
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
 
 #include "calibration/light_model.h"
+#include "calibration/light_solver.h"
 
 namespace calibration {
 namespace {
@@ -31,61 +31,6 @@ std::string text(const char* format, double value) {
 
 [[noreturn]] void refuse(const std::string& found, const std::string& what_to_do) {
   throw std::runtime_error("light calibration: " + found + ": " + what_to_do);
-}
-
-// Intensities are of the order of 1e6 beside positions of 1e2 and a droop of 1e-1; the fit sees logarithms of factors
-// of their first guess.
-struct Unknowns {
-  std::vector<Vector3d> positions;
-  std::vector<Vector2d> beams;
-  Eigen::Vector4d lamp = {0, 0, 0, 1};  // log intensity over the seed (RGB), mu
-  Vector2d droop{0.08, 0.0};            // published shape, incidence alone
-  double table = 0.03;                  // albedo
-  Vector2d vignetting = Vector2d::Zero();
-  std::vector<double> log_outputs;  // per picture
-};
-
-struct PatchResidual {
-  LightPatch patch;
-  BeamFrame frame;
-  Vector3d seed_intensity;
-  double albedo, r2;
-  double bounce;  // table_bounce
-
-  template <typename T>
-  void predict(const T* position, const T* beam, const T* lamp, const T* droop, const T* table, const T* vignetting,
-               const T* log_output, T* radiance) const {
-    using std::exp;
-    const T unit = unit_radiance<T>(patch, position, frame.direction(beam), lamp[3], droop, albedo);
-    const T scale = exp(*log_output) * vignetting_gain(r2, vignetting) * (unit + *table * (albedo / M_PI * bounce));
-    for (int c = 0; c < 3; ++c) radiance[c] = scale * exp(lamp[c]) * seed_intensity[c];
-  }
-
-  template <typename T>
-  bool operator()(const T* position, const T* beam, const T* lamp, const T* droop, const T* table,
-                  const T* vignetting, const T* log_output, T* residual) const {
-    predict(position, beam, lamp, droop, table, vignetting, log_output, residual);
-    for (int c = 0; c < 3; ++c) residual[c] = (residual[c] - patch.radiance[c]) / patch.sigma[c];
-    return true;
-  }
-};
-
-// What is known beforehand of N numbers.
-template <int N>
-struct Prior {
-  Eigen::Matrix<double, N, 1> mean, sigma;
-
-  template <typename T>
-  bool operator()(const T* x, T* residual) const {
-    for (int i = 0; i < N; ++i) residual[i] = (x[i] - mean[i]) / sigma[i];
-    return true;
-  }
-};
-
-template <int N>
-void add_prior(ceres::Problem& problem, double* x, const Eigen::Matrix<double, N, 1>& mean,
-               const Eigen::Matrix<double, N, 1>& sigma, ceres::LossFunction* loss = nullptr) {
-  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Prior<N>, N, N>(new Prior<N>{mean, sigma}), loss, x);
 }
 
 void check(const std::vector<LightPatch>& patches, const std::vector<LightGuess>& guesses,
@@ -174,149 +119,6 @@ void require_enough(const std::vector<LightPatch>& used, const std::vector<Light
   }
 }
 
-// Fits to all pictures, or to all but one.
-class LightSolver {
- public:
-  LightSolver(const std::vector<LightPatch>& patches, const std::vector<LightGuess>& guesses,
-              const LightOptions& options, const std::vector<LightPicture>& pictures)
-      : patches_(patches), guesses_(guesses), options_(options), pictures_(pictures) {
-    for (const LightPatch& patch : patches_)
-      bounces_.push_back(table_bounce(patch, guesses_[static_cast<std::size_t>(patch.light)], options_.table_mm));
-    seed_intensity();
-  }
-
-  Unknowns first_guess() const {
-    Unknowns start;
-    for (const LightGuess& guess : guesses_) {
-      start.positions.push_back(guess.position);
-      start.beams.push_back(Vector2d::Zero());
-    }
-    for (const LightPicture& picture : pictures_)
-      start.log_outputs.push_back(picture.output ? std::log(*picture.output) : 0.0);
-    return start;
-  }
-
-  // `without`: index of a picture to leave out, or -1.
-  bool solve(Unknowns& x, int without = -1) const {
-    ceres::Problem problem;
-    pose_problem(problem, x, without);
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-    options.max_num_iterations = 200;
-    options.function_tolerance = 1e-11;
-    options.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
-    return summary.termination_type == ceres::CONVERGENCE;
-  }
-
-  // Of a position, for the scatter of patches and the drift and tilts that are expected, without the tape.
-  std::optional<Eigen::Matrix3d> position_covariance(Unknowns x, std::size_t light) const {
-    ceres::Problem problem;
-    pose_problem(problem, x, -1);
-    ceres::Covariance::Options options;
-    options.algorithm_type = ceres::DENSE_SVD;
-    ceres::Covariance covariance(options);
-    const double* block = x.positions[light].data();
-    if (!covariance.Compute(std::vector<const double*>{block}, &problem)) return std::nullopt;
-    Eigen::Matrix<double, 3, 3, Eigen::RowMajor> out;
-    covariance.GetCovarianceBlock(block, block, out.data());
-    return Eigen::Matrix3d(out);
-  }
-
-  // Predicted radiance of each patch for each channel over the measured one, less 1; an empty list of a picture is one
-  // without a usable patch.
-  std::vector<Vector3d> relative_errors(const Unknowns& x, int picture) const {
-    std::vector<Vector3d> errors;
-    for (std::size_t number = 0; number < patches_.size(); ++number) {
-      const LightPatch& patch = patches_[number];
-      if (patch.picture != picture) continue;
-      const auto light = static_cast<std::size_t>(patch.light);
-      Vector3d radiance;
-      residual(number).predict(x.positions[light].data(), x.beams[light].data(), x.lamp.data(), x.droop.data(),
-                               &x.table, x.vignetting.data(), &x.log_outputs[static_cast<std::size_t>(picture)],
-                               radiance.data());
-      errors.push_back((radiance.array() / patch.radiance.array() - 1.0).matrix());
-    }
-    return errors;
-  }
-
-  const std::vector<LightPatch>& patches() const { return patches_; }
-  const Vector3d& seed() const { return seed_; }
-  BeamFrame frame(std::size_t light) const { return BeamFrame(guesses_[light]); }
-
- private:
-  PatchResidual residual(std::size_t number) const {
-    const LightPatch& patch = patches_[number];
-    return {patch,           frame(static_cast<std::size_t>(patch.light)),     seed_,
-            options_.albedo, radius_squared(patch.pixel, options_.image_size), bounces_[number]};
-  }
-
-  void pose_problem(ceres::Problem& problem, Unknowns& x, int without) const {
-    std::vector<double> steepness(pictures_.size(), 0.0);  // tangent of the angle of incidence: what a tilt changes
-    for (std::size_t number = 0; number < patches_.size(); ++number) {
-      const LightPatch& patch = patches_[number];
-      if (patch.picture == without) continue;
-      const auto light = static_cast<std::size_t>(patch.light), picture = static_cast<std::size_t>(patch.picture);
-      const double cosine = (guesses_[light].position - patch.point).normalized().dot(patch.normal);
-      steepness[picture] = std::max(steepness[picture], std::sqrt(1.0 - cosine * cosine) / std::max(cosine, 0.05));
-      problem.AddResidualBlock(
-          new ceres::AutoDiffCostFunction<PatchResidual, 3, 3, 2, 4, 2, 1, 2, 1>(new PatchResidual(residual(number))),
-          new ceres::HuberLoss(4.0), x.positions[light].data(), x.beams[light].data(), x.lamp.data(), x.droop.data(),
-          &x.table, x.vignetting.data(), &x.log_outputs[picture]);
-    }
-    add_priors(problem, x, steepness);
-  }
-
-  void add_priors(ceres::Problem& problem, Unknowns& x, const std::vector<double>& steepness) const {
-    for (std::size_t i = 0; i < pictures_.size(); ++i) {
-      if (!problem.HasParameterBlock(&x.log_outputs[i])) continue;
-      const LightPicture& picture = pictures_[i];
-      const double output = picture.output ? std::log(*picture.output) : 0.0;
-      const double sigma =
-          std::hypot(picture.output ? picture.output_sigma : options_.drift, options_.pose_sigma_rad * steepness[i]);
-      add_prior<1>(problem, &x.log_outputs[i], Eigen::Matrix<double, 1, 1>(output),
-                   Eigen::Matrix<double, 1, 1>(sigma), new ceres::HuberLoss(3.0));
-    }
-    for (std::size_t i = 0; i < guesses_.size(); ++i) {
-      if (!problem.HasParameterBlock(x.positions[i].data())) continue;
-      // A tape that was read wrong by decimetres must not pull.
-      add_prior<3>(problem, x.positions[i].data(), guesses_[i].position,
-                   Vector3d::Constant(guesses_[i].position_sigma_mm), new ceres::HuberLoss(3.0));
-      add_prior<2>(problem, x.beams[i].data(), Vector2d::Zero(), Vector2d::Constant(guesses_[i].aim_sigma_rad));
-    }
-    // A flashlight without optics of its own has mu between 0 and 2; panels droop by 0 to 16 %.
-    add_prior<4>(problem, x.lamp.data(), {0, 0, 0, 1}, {100, 100, 100, 1});
-    add_prior<1>(problem, &x.table, Eigen::Matrix<double, 1, 1>(0.03), Eigen::Matrix<double, 1, 1>(0.03));
-    add_prior<2>(problem, x.droop.data(), {0.08, 0.0}, {0.1, options_.published_droop_only ? 1e-6 : 0.05});
-    // Lenses darken by up to about half towards the corners.
-    add_prior<2>(problem, x.vignetting.data(), Vector2d::Zero(), Vector2d::Constant(0.5));
-  }
-
-  // Least squares of the intensity with everything else as guessed.
-  void seed_intensity() {
-    seed_.setOnes();
-    const Unknowns start = first_guess();
-    Eigen::Array3d cross = Eigen::Array3d::Zero(), square = cross;
-    for (const LightPatch& patch : patches_) {
-      const auto light = static_cast<std::size_t>(patch.light);
-      const double unit = unit_radiance<double>(patch, start.positions[light].data(), frame(light).axis,
-                                                start.lamp[3], start.droop.data(), options_.albedo);
-      const Eigen::Array3d weight = patch.sigma.array().square().inverse();
-      cross += weight * unit * patch.radiance.array();
-      square += weight * unit * unit;
-    }
-    seed_ = cross / square;
-  }
-
-  const std::vector<LightPatch>& patches_;
-  const std::vector<LightGuess>& guesses_;
-  const LightOptions& options_;
-  const std::vector<LightPicture>& pictures_;
-  std::vector<double> bounces_;  // one per patch
-  Vector3d seed_;
-};
-
 // Everything that the covariances are of, in one vector: positions, log intensity, mu, droop, vignetting, log
 // irradiance at the aims.
 struct Summary {
@@ -344,6 +146,24 @@ struct Summary {
   }
 };
 
+[[noreturn]] void refuse_dark(const std::string& picture, const std::string& how) {
+  refuse(picture + " is dark" + how, "switch the lamp on, see that nothing shades the panel, and take it again");
+}
+
+// A picture that faces its light but stays within the noise.
+void refuse_unlit_pictures(const std::vector<LightPatch>& patches, const std::vector<LightPatch>& used,
+                           const std::vector<LightGuess>& guesses, const std::vector<LightPicture>& pictures) {
+  std::vector<int> facing(pictures.size(), 0), bright(pictures.size(), 0);
+  for (const LightPatch& patch : patches) {
+    const Vector3d to_light = guesses[static_cast<std::size_t>(patch.light)].position - patch.point;
+    facing[static_cast<std::size_t>(patch.picture)] +=
+        to_light.normalized().dot(patch.normal.normalized()) > std::sin(15.0 * M_PI / 180.0);
+  }
+  for (const LightPatch& patch : used) ++bright[static_cast<std::size_t>(patch.picture)];
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    if (2 * bright[i] < facing[i]) refuse_dark(pictures[i].name, "");
+}
+
 void refuse_dark_pictures(const LightSolver& solver, const Unknowns& start,
                           const std::vector<LightPicture>& pictures) {
   std::vector<double> brightness;  // measured over expected
@@ -361,9 +181,8 @@ void refuse_dark_pictures(const LightSolver& solver, const Unknowns& start,
   const double median = sorted[sorted.size() / 2];
   for (std::size_t i = 0; i < brightness.size(); ++i)
     if (brightness[i] < kDarkLimit * median)
-      refuse(pictures[index[i]].name + " is dark beside the others (" +
-                 text("%.0f %%", 100 * brightness[i] / median) + " of what is expected)",
-             "switch the lamp on, see that nothing shades the panel, and take it again");
+      refuse_dark(pictures[index[i]].name,
+                  " beside the others (" + text("%.0f %%", 100 * brightness[i] / median) + " of what is expected)");
 }
 
 // The direction in which the pictures leave a light undetermined, in words, and the pose that is missing.
@@ -423,8 +242,48 @@ Eigen::MatrixXd leave_each_out(const LightSolver& solver, const Summary& summary
   return covariance;
 }
 
+// One gate over all pictures: the largest value, and the names of those beyond the limit.
+class PictureGate {
+ public:
+  PictureGate(const char* name, double limit_percent) : gate_(at_most(name, 0.0, limit_percent, "")) {}
+
+  void add(const std::string& picture, double relative) {
+    gate_.value = std::max(gate_.value, 100 * relative);
+    if (!(100 * relative <= gate_.limit)) names_ += (names_.empty() ? "" : ", ") + picture;
+  }
+  Gate result(const std::string& what, const std::string& what_to_do) const {
+    return at_most(gate_.name, gate_.value, gate_.limit,
+                   (names_.empty() ? "the worst picture" : names_) + ": " + what + " by up to " +
+                       text("%.1f %%", gate_.value) + "; " + what_to_do);
+  }
+
+ private:
+  Gate gate_;
+  std::string names_;
+};
+
+void add_picture_gates(const LightSolver& solver, const Unknowns& x, const std::vector<LightPicture>& pictures,
+                       LightFit& fit) {
+  PictureGate output("lamp output in one picture, off by %", 100 * kOutputLimit),
+      residual("panel patches of one picture, rms error %", 100 * kResidualLimit);
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const auto errors = solver.relative_errors(x, static_cast<int>(i));
+    if (errors.empty()) continue;
+    output.add(pictures[i].name, std::abs(std::exp(x.log_outputs[i]) / pictures[i].output.value_or(1.0) - 1.0));
+    double sum = 0.0;
+    for (const Vector3d& error : errors) sum += error.squaredNorm() / 3.0;
+    residual.add(pictures[i].name, std::sqrt(sum / static_cast<double>(errors.size())));
+  }
+  fit.gates.push_back(
+      output.result("off in brightness",
+                    "switch the room light off, let the lamp warm up and leave it where it is, take them again"));
+  fit.gates.push_back(residual.result("not like a panel under one lamp",
+                                      "look for a shadow, a stain, room light or a moved lamp, take them again"));
+}
+
 void add_gates(const LightSolver& solver, const Unknowns& x, const std::vector<LightGuess>& guesses,
                const std::vector<LightPicture>& pictures, LightFit& fit) {
+  add_picture_gates(solver, x, pictures, fit);
   for (std::size_t light = 0; light < guesses.size(); ++light) {
     const double error = held_out_error(fit, static_cast<int>(light));
     fit.gates.push_back(at_most(
@@ -436,30 +295,6 @@ void add_gates(const LightSolver& solver, const Unknowns& x, const std::vector<L
                                 "the " + guesses[light].name + " is found " + text("%.0f mm", off) +
                                     " from where the tape put it: measure again, or look for a second light"));
   }
-  Gate worst_output = at_most("lamp output in one picture, off by %", 0, 100 * kOutputLimit, "no picture was used"),
-       worst_residual =
-           at_most("panel patches of one picture, rms error %", 0, 100 * kResidualLimit, "no picture was used");
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    const auto errors = solver.relative_errors(x, static_cast<int>(i));
-    if (errors.empty()) continue;
-    const double expected = pictures[i].output.value_or(1.0);
-    const double off = 100 * std::abs(std::exp(x.log_outputs[i]) / expected - 1.0);
-    if (off > worst_output.value)
-      worst_output =
-          at_most(worst_output.name, off, worst_output.limit,
-                  pictures[i].name + " is " + text("%.1f %%", off) +
-                      " off in brightness: room light, a moved lamp or a lamp that is not warm; take it again");
-    double sum = 0.0;
-    for (const Vector3d& error : errors) sum += error.squaredNorm() / 3.0;
-    const double rms = 100 * std::sqrt(sum / static_cast<double>(errors.size()));
-    if (rms > worst_residual.value)
-      worst_residual =
-          at_most(worst_residual.name, rms, worst_residual.limit,
-                  pictures[i].name + " does not look like a panel under one lamp (" + text("%.1f %%", rms) +
-                      " rms): a shadow, room light, a stain or a moved lamp; take it again");
-  }
-  fit.gates.push_back(worst_output);
-  fit.gates.push_back(worst_residual);
 }
 
 void take_covariances(const Summary& summary, const Eigen::MatrixXd& covariance, LightFit& fit) {
@@ -502,7 +337,7 @@ LightFit fit_light(const std::vector<LightPatch>& patches, const std::vector<Lig
   check(patches, guesses, options, pictures.size());
   const std::vector<LightPatch> used = usable(patches, guesses);
   require_enough(used, guesses);
-
+  refuse_unlit_pictures(patches, used, guesses, pictures);
   const LightSolver solver(used, guesses, options, pictures);
   Unknowns x = solver.first_guess();
   refuse_dark_pictures(solver, x, pictures);

@@ -19,7 +19,7 @@ constexpr int kMaxTestPictures = 6;
 
 void write_list(const std::filesystem::path& folder, const std::vector<CalibrationPicture>& pictures) {
   nlohmann::json list = nlohmann::json::array();
-  for (const CalibrationPicture& p : pictures)
+  for (const CalibrationPicture& p : pictures) {
     list.push_back({{"id", p.id},
                     {"role", to_text(p.role)},
                     {"file", p.file},
@@ -28,6 +28,8 @@ void write_list(const std::filesystem::path& folder, const std::vector<Calibrati
                     {"exposure_s", p.exposure_s},
                     {"exposure_of", p.exposure_of},
                     {"utc", p.utc}});
+    if (p.lamp_output) list.back()["lamp_output"] = *p.lamp_output;
+  }
   write_json_file(folder / "pictures.json",
                   {{"format", "threadstation/calibration_pictures"}, {"version", 1}, {"pictures", list}});
 }
@@ -47,6 +49,7 @@ std::vector<CalibrationPicture> read_list(const std::filesystem::path& folder) {
     p.exposure_s = entry.number("exposure_s", 1e-9, 1e6);
     p.exposure_of = entry.text("exposure_of");
     p.utc = entry.text("utc");
+    if (entry.has("lamp_output")) p.lamp_output = entry.number("lamp_output", 0.01, 100);
     entry.finish();
     pictures.push_back(p);
   }

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct CalibrationPicture {
   double exposure_s = 0.0;   // as the camera read it back
   std::string exposure_of;   // as CalibrationStep; pictures of one series name the same
   std::string utc;           // when the exposure began
+  // The lamp's output over its nominal one, as a reference patch in the picture tells it; none where it was not read.
+  std::optional<double> lamp_output = std::nullopt;
 };
 
 using StepProgress = std::function<void(int done, int total, const std::string& label)>;

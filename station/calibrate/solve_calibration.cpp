@@ -70,11 +70,14 @@ calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& l
     const bool front = entry.picture.role == CalibrationRole::front_light;
     if (!front && entry.picture.role != CalibrationRole::back_light) continue;
     const auto pose = calibration::fit_pose(lens, rig.spectralon.tags, entry.tags);
-    if (!pose) continue;  // a panel without a seen tag says nothing; the fit refuses when too few are left
+    if (!pose)
+      throw std::runtime_error(entry.picture.id +
+                               " is dark or does not show the panel: none of its tags was found; switch the lamp on, "
+                               "hold the panel into the picture and take it again with calibrate --only light");
     const auto cells = panel_patches(entry.raw, lens, world_from_camera, pose->camera_from_object, rig.spectralon,
                                      front ? 0 : 1, static_cast<int>(pictures.size()), response);
     patches.insert(patches.end(), cells.begin(), cells.end());
-    pictures.push_back({.name = entry.picture.id});
+    pictures.push_back({.name = entry.picture.id, .output = entry.picture.lamp_output});
   }
   return calibration::fit_light(patches, lamp_guesses(rig), light_options(rig, {lens.width_px, lens.height_px}),
                                 pictures);

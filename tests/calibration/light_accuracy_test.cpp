@@ -94,7 +94,7 @@ constexpr double kPatchReading = 0.001;  // how well a reference patch in the pi
 
 // The plan of the guided calibration (station/calibrate), with a reference patch.
 TEST(LightAccuracy, PlannedPosesAndAReferencePatchGiveLampAndIrradianceAsAsked) {
-  const auto a = accuracy("as planned, patch to 0.1 %", 100, 1000, 12, 12, {.monitored = kPatchReading});
+  const auto a = accuracy("as planned, patch to 0.1 %", 100, 1000, 16, 12, {.monitored = kPatchReading});
   // asked of the front lamp: 2.5 mm rms, 5 mm at worst, 0.5 %; of the back lamp: 5 mm, 1 %; pictures held out: 0.5 %
   EXPECT_LT(a[0].rms_mm, 2.5);
   EXPECT_LT(a[0].worst_mm, 5);
@@ -112,7 +112,7 @@ TEST(LightAccuracy, PlannedPosesAndAReferencePatchGiveLampAndIrradianceAsAsked) 
 }
 
 TEST(LightAccuracy, WithoutAReferencePatchPositionsHoldButPicturesHeldOutShowTheDrift) {
-  const auto a = accuracy("as planned, no patch", 100, 1000, 12, 12, {});
+  const auto a = accuracy("as planned, no patch", 100, 1000, 16, 12, {});
   EXPECT_LT(a[0].rms_mm, 2.5);
   EXPECT_LT(a[0].irradiance_rms, 0.005);
   EXPECT_LT(a[1].rms_mm, 5);

@@ -127,6 +127,8 @@ TEST_P(LightPathsTest, LightThatScattersManyTimesIsNotLostWherePathsEndByChance)
 
 TEST_P(LightPathsTest, ABlockMeansAllItsPixels) {
   view_.light.position *= 0.12;  // so near that the sheet is lit unevenly
+  view_.light.beam_axis = (Eigen::Vector3d(0, 15, 10) - view_.light.position).normalized();  // and by a narrow beam
+  view_.light.beam_exponent = 5;
   const std::vector<Block> whole = mask_blocks(view_.mask, std::max(view_.mask.rows, view_.mask.cols));
   ASSERT_EQ(whole.size(), 1U);
   expect_agreement(trace_light_paths(rays_, view_, whole, known_thread(), 16 * kPaths, 7), known_thread(),
