@@ -22,6 +22,13 @@ calibration::Lens lens_of(const rig::TrueLens& lens) {
   return {lens.width_px, lens.height_px, lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, lens.distortion};
 }
 
+inversion::NearLight lamp_in_holder(const RigCalibration& calibration, double radius_mm, bool behind,
+                                    const Eigen::Isometry3d& holder_from_world) {
+  return {.position = holder_from_world * calibration.light.positions.at(behind ? 1 : 0),
+          .intensity = calibration.light.intensity,
+          .radius_mm = radius_mm};
+}
+
 calibration::TagObservation tags_in(const calibration::SensorPicture& picture) {
   const cv::Mat3f radiance = calibration::develop(picture, {}).radiance;
   cv::Mat1f grey(radiance.size());

@@ -6,8 +6,10 @@
 #include "calibration/lens.h"
 #include "calibration/sensor_file.h"
 #include "calibration/tags.h"
+#include "inversion/view.h"
 #include "renderer/camera.h"
 #include "rig/simulated_bench.h"
+#include "station/documents/calibration_file.h"
 
 namespace station {
 
@@ -17,6 +19,10 @@ renderer::Camera camera_of(const calibration::Lens& lens, const Eigen::Isometry3
 
 // The simulated bench's lens in the words of calibration.
 calibration::Lens lens_of(const rig::TrueLens& lens);
+
+// The calibrated lamp in front or behind, as the fit of the threads sees it.
+inversion::NearLight lamp_in_holder(const RigCalibration& calibration, double radius_mm, bool behind,
+                                    const Eigen::Isometry3d& holder_from_world);
 
 // Tags in a raw picture (linear grey of the demosaiced picture, distortion left in).
 calibration::TagObservation tags_in(const calibration::SensorPicture& picture);

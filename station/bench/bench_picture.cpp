@@ -57,6 +57,9 @@ struct Painter {
         if (fibers.segments.empty()) fibers = spool_fibers(*spool);
         scene.curves.push_back(fibers);
         scene.meshes = holder_meshes(spool->wrapping, rig.holder_tags);
+        if (rig.reference_patch)
+          for (renderer::TriangleMesh& chip : reference_patch_meshes(*rig.reference_patch, spool->wrapping))
+            scene.meshes.push_back(std::move(chip));
         break;
     }
     for (renderer::TriangleMesh& mesh : table_and_platform(rig.platform_height_mm, rig.platform_radius_mm)) {

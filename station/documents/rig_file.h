@@ -10,6 +10,7 @@
 
 #include "calibration/tags.h"
 #include "rig/simulated_bench.h"
+#include "station/reference_patch.h"
 
 namespace station {
 
@@ -36,11 +37,13 @@ struct RigFile {
   double board_thickness_mm = 0;
   double platform_height_mm = 0, platform_radius_mm = 0;
   calibration::TagLayout holder_tags;
+  std::optional<ReferencePatch> reference_patch;
   SpectralonPanel spectralon;
   Eigen::Vector3d front_lamp_mm, back_lamp_mm;  // by tape, world frame
   double lamp_radius_mm = 0;                    // of its bright face
   std::vector<double> reflection_angles_deg, transmission_angles_deg;
-  double target_level = 0.6;  // of full scale that the brightest thread pixels should reach
+  double target_level = 0.6;          // of full scale that the brightest thread pixels should reach
+  std::vector<double> bracket_stops;  // of the further exposures of each view, from the metered one
   std::optional<SimulatedRig> simulation;
 };
 
