@@ -1,11 +1,12 @@
 #include "station/capture_session.h"
 
+#include <cmath>
 #include <fstream>
-#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "station/bench_reading.h"
 #include "station/calibration_validity.h"
+#include "station/capture_checks.h"
 #include "station/documents/calibration_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
@@ -17,33 +18,14 @@
 namespace station {
 namespace {
 
-// Where the holder should stand: upright on the platform, its front over the axis; turned a quarter for vertical threads.
-Eigen::Isometry3d nominal_holder_pose(const RigFile& rig, const inversion::WrappedSpool& spool,
-                                      rig::Mounting mounting) {
-  const bool vertical = mounting == rig::Mounting::vertical;
-  const double half_height_mm = (vertical ? spool.frame_width_mm : spool.frame_height_mm) / 2;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translation().z() = rig.platform_height_mm + half_height_mm;
-  if (vertical) pose.rotate(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX()));
-  return pose;
-}
-
-// 255 over the holder's window, where the exposure is measured; raw pixels.
-cv::Mat1b window_region(const RigFile& rig, const Spool& spool, const RigCalibration& calibration,
-                        const PlanStep& step) {
-  const Eigen::Isometry3d world_from_holder = Eigen::AngleAxisd(step.platform_angle_rad, Eigen::Vector3d::UnitZ()) *
-                                              nominal_holder_pose(rig, spool.wrapping, step.mounting);
-  const renderer::Camera camera =
-      camera_of(calibration.lens.lens, world_from_holder.inverse() * calibration.platform.world_from_camera, false);
-  cv::Mat1b region(camera.height, camera.width, static_cast<unsigned char>(0));
-  std::vector<cv::Point> outline;
-  for (const auto& [y, z] : {std::pair{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}) {
-    const Eigen::Vector2d pixel =
-        renderer::project(camera, {0, y * spool.wrapping.window_width_mm, z * spool.wrapping.window_height_mm});
-    outline.emplace_back(cvRound(pixel.x()), cvRound(pixel.y()));
+// Only times whose true length is known, a stop apart; beyond them the wanted one.
+double nearest_measured_s(const calibration::SensorResponse& response, double wanted_s) {
+  double nearest_s = wanted_s, least_stops = 0.6;
+  for (const calibration::ShutterTime& time : response.shutter) {
+    const double stops = std::abs(std::log2(time.nominal_s / wanted_s));
+    if (stops < least_stops) nearest_s = time.nominal_s, least_stops = stops;
   }
-  cv::fillConvexPoly(region, outline, cv::Scalar(255));
-  return region;
+  return nearest_s;
 }
 
 // Views are metered on the threads; pose pictures on the whole frame, for the tags.
@@ -52,14 +34,20 @@ ChooseExposure exposure_chooser(const RigFile& rig, const Spool& spool, const Ri
     const calibration::SensorPicture picture =
         calibration::read_sensor_bytes(test.bytes, "test picture of " + step.id);
     require_same_camera(calibration, picture, "test picture of " + step.id);
-    const cv::Mat1b region = step.kind == StepKind::view ? window_region(rig, spool, calibration, step) : cv::Mat1b();
+    const cv::Mat1b region = step.kind == StepKind::view ? window_region(rig, spool.wrapping, calibration,
+                                                                         step.mounting, step.platform_angle_rad)
+                                                         : cv::Mat1b();
     const auto next = next_exposure_s(picture, region, {.level = rig.target_level});
-    if (next) return {.exposure_s = *next};
+    const double wanted_s = next.value_or(picture.exposure_s);
+    if (calibration.sensor && step.kind == StepKind::view) {
+      const double measured_s = nearest_measured_s(calibration.sensor->response, wanted_s);
+      return {.exposure_s = measured_s, .done = std::abs(std::log2(measured_s / picture.exposure_s)) < 0.1};
+    }
     // While the holder can still be put right; the reading was checked by the runner.
-    if (step.kind == StepKind::pose)
+    if (!next && step.kind == StepKind::pose)
       require_calibrated_bench(calibration, read_bench(calibration, rig, tags_in(picture)), step.platform_angle_rad,
                                "step " + step.id);
-    return {.exposure_s = picture.exposure_s, .done = true};
+    return {.exposure_s = wanted_s, .done = !next};
   };
 }
 
@@ -78,6 +66,7 @@ RunOutcome run(SessionFolder& session, RigDevices& devices, const SessionFile& a
   RunOptions options;
   options.settings.exposure_s = 0.125;
   options.choose_exposure = exposure_chooser(asked.rig, asked.spool, calibration);
+  options.inspect = make_inspection(session, asked, calibration);
   options.nominal_holder_pose = [&](rig::Mounting mounting) {
     return nominal_holder_pose(asked.rig, asked.spool.wrapping, mounting);
   };
@@ -124,8 +113,9 @@ RunOutcome capture_session(const CaptureRequest& request) {
   if (is_session(request.out))
     throw std::runtime_error(request.out.string() +
                              " is a session already; choose another folder, or go on with capture --resume");
-  const Plan plan = make_capture_plan(
-      {.reflection_angles_deg = rig.reflection_angles_deg, .transmission_angles_deg = rig.transmission_angles_deg});
+  const Plan plan = make_capture_plan({.reflection_angles_deg = rig.reflection_angles_deg,
+                                       .transmission_angles_deg = rig.transmission_angles_deg,
+                                       .bracket_stops = rig.bracket_stops});
   RigDevices devices = open_rig(rig, spool, request.unattended);
   require_valid(calibration, rig, devices.clock->utc(), request.accept_calibration);
   require_same_sensor(*devices.camera, calibration.lens.lens);

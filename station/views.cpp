@@ -22,6 +22,17 @@ calibration::Lens lens_of(const rig::TrueLens& lens) {
   return {lens.width_px, lens.height_px, lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, lens.distortion};
 }
 
+inversion::NearLight lamp_in_holder(const RigCalibration& calibration, double radius_mm, bool behind,
+                                    const Eigen::Isometry3d& holder_from_world) {
+  const calibration::LightFit& lamp = calibration.light;
+  const std::size_t place = behind ? 1 : 0;
+  return {.position = holder_from_world * lamp.positions.at(place),
+          .intensity = lamp.intensity,
+          .radius_mm = radius_mm,
+          .beam_axis = holder_from_world.linear() * lamp.beam_axes.at(place),
+          .beam_exponent = lamp.beam_exponent};
+}
+
 cv::Mat1f linear_grey(const calibration::SensorPicture& picture) {
   const cv::Mat3f radiance = calibration::develop(picture, {}).radiance;
   cv::Mat1f grey(radiance.size());

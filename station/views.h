@@ -6,8 +6,10 @@
 #include "calibration/lens.h"
 #include "calibration/sensor_file.h"
 #include "calibration/tags.h"
+#include "inversion/view.h"
 #include "renderer/camera.h"
 #include "rig/simulated_bench.h"
+#include "station/documents/calibration_file.h"
 
 namespace station {
 
@@ -20,6 +22,9 @@ calibration::Lens lens_of(const rig::TrueLens& lens);
 
 // Grey of a raw picture: mean of the demosaiced colours, linear, distortion left in, nothing below zero.
 cv::Mat1f linear_grey(const calibration::SensorPicture& picture);
+// The calibrated lamp in front or behind, as the fit of the threads sees it.
+inversion::NearLight lamp_in_holder(const RigCalibration& calibration, double radius_mm, bool behind,
+                                    const Eigen::Isometry3d& holder_from_world);
 
 // Tags in a raw picture (linear grey of the demosaiced picture, distortion left in).
 calibration::TagObservation tags_in(const calibration::SensorPicture& picture);

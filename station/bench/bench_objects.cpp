@@ -106,6 +106,17 @@ std::vector<renderer::TriangleMesh> holder_meshes(const inversion::WrappedSpool&
   return meshes;
 }
 
+std::vector<renderer::TriangleMesh> reference_patch_meshes(const ReferencePatch& patch,
+                                                           const inversion::WrappedSpool& spool) {
+  std::vector<renderer::TriangleMesh> meshes;
+  for (const rig::Mounting mounting : {rig::Mounting::horizontal, rig::Mounting::vertical}) {
+    const Eigen::Isometry3d lifted =
+        holder_from_patch(patch, spool, mounting) * Eigen::Translation3d(0, 0, kPaperLift_mm);
+    meshes.push_back(rectangle(lifted, patch.edge_mm, patch.edge_mm, plain(static_cast<float>(patch.albedo))));
+  }
+  return meshes;
+}
+
 void transform(renderer::TriangleMesh& mesh, const Eigen::Isometry3d& to_from_mesh) {
   for (Eigen::Vector3f& vertex : mesh.vertices) vertex = (to_from_mesh * vertex.cast<double>()).cast<float>();
 }

@@ -23,6 +23,10 @@ std::vector<renderer::TriangleMesh> spectralon_meshes(const SpectralonPanel& pan
 std::vector<renderer::TriangleMesh> holder_meshes(const inversion::WrappedSpool& spool,
                                                   const calibration::TagLayout& tags);
 
+// Both chips, holder frame.
+std::vector<renderer::TriangleMesh> reference_patch_meshes(const ReferencePatch& patch,
+                                                           const inversion::WrappedSpool& spool);
+
 void transform(renderer::TriangleMesh& mesh, const Eigen::Isometry3d& to_from_mesh);
 
 }  // namespace station

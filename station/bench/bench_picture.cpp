@@ -68,6 +68,9 @@ struct Painter {
         if (fibers.segments.empty()) fibers = spool_fibers(*spool);
         scene.curves.push_back(fibers);
         scene.meshes = holder_meshes(spool->wrapping, rig.holder_tags);
+        if (rig.reference_patch)
+          for (renderer::TriangleMesh& chip : reference_patch_meshes(*rig.reference_patch, spool->wrapping))
+            scene.meshes.push_back(std::move(chip));
         break;
     }
     const rig::BenchTruth& truth = rig.simulation->truth;

@@ -22,7 +22,7 @@ rig::ExposureSettings settings_from_json(const json& document) {
 }
 
 StepKind kind_from_record(const std::string& name) {
-  for (const StepKind kind : {StepKind::pose, StepKind::view, StepKind::dark}) {
+  for (const StepKind kind : {StepKind::pose, StepKind::view, StepKind::exposure, StepKind::dark}) {
     if (name == kind_name(kind)) {
       return kind;
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include "station/capture/file_name.h"
@@ -29,8 +30,21 @@ void add_poses(Plan& plan, const std::string& name, rig::Mounting mounting) {
                           .exposure_of = {}});
 }
 
+std::string short_number(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+// "bracket-reflection-horizontal-1-minus-2".
+std::string exposure_id(const std::string& view, double stops) {
+  std::string number = short_number(std::abs(stops));
+  std::replace(number.begin(), number.end(), '.', '_');
+  return "bracket-" + view + (stops < 0 ? "-minus-" : "-plus-") + number;
+}
+
 void add_views(Plan& plan, const std::string& name, rig::Mounting mounting, rig::Lamp lamp,
-               const std::vector<double>& angles_deg) {
+               const std::vector<double>& angles_deg, const std::vector<double>& bracket_stops) {
   for (std::size_t i = 0; i < angles_deg.size(); ++i) {
     plan.steps.push_back({.id = name + "-" + std::to_string(i + 1),
                           .kind = StepKind::view,
@@ -39,6 +53,15 @@ void add_views(Plan& plan, const std::string& name, rig::Mounting mounting, rig:
                           .room_light = false,
                           .platform_angle_rad = angles_deg[i] * kRadiansPerDegree,
                           .exposure_of = {}});
+    const PlanStep view = plan.steps.back();
+    for (const double stops : bracket_stops) {
+      PlanStep exposure = view;
+      exposure.id = exposure_id(view.id, stops);
+      exposure.kind = StepKind::exposure;
+      exposure.exposure_of = view.id;
+      exposure.stops = stops;
+      plan.steps.push_back(exposure);
+    }
   }
 }
 
@@ -78,7 +101,8 @@ std::optional<std::string> angle_problem(const PlanStep& step, double largest_an
 }
 
 std::optional<std::string> light_problem(const PlanStep& step) {
-  if (step.kind == StepKind::view && (step.lamp == rig::Lamp::off || step.room_light)) {
+  const bool lit = step.kind == StepKind::view || step.kind == StepKind::exposure;
+  if (lit && (step.lamp == rig::Lamp::off || step.room_light)) {
     return "a view needs the lamp on and the room light off";
   }
   if (step.kind == StepKind::dark && (step.lamp != rig::Lamp::off || step.room_light)) {
@@ -99,11 +123,16 @@ std::optional<std::string> order_problem(const PlanStep& step, const std::map<st
   if (step.kind == StepKind::view && !posed.contains(step.mounting)) {
     return "a pose picture with its mounting has to come before it";
   }
-  if (step.kind != StepKind::dark && !step.exposure_of.empty()) {
-    return "only a dark repeats the exposure of another step";
+  const bool repeats = step.kind == StepKind::dark || step.kind == StepKind::exposure;
+  if (!repeats && !step.exposure_of.empty()) {
+    return "only a dark and a bracket's exposure repeat the exposure of another step";
+  }
+  if (step.kind == StepKind::exposure ? !(std::abs(step.stops) >= 0.3 && std::abs(step.stops) <= 10)
+                                      : step.stops != 0) {
+    return "a bracket's exposure, and nothing else, is 0.3 to 10 stops from its view's";
   }
   const auto view = earlier.find(step.exposure_of);
-  if (step.kind == StepKind::dark && (view == earlier.end() || view->second != StepKind::view)) {
+  if (repeats && (view == earlier.end() || view->second != StepKind::view)) {
     return "exposure_of '" + step.exposure_of + "' names no view before it";
   }
   return std::nullopt;
@@ -140,10 +169,13 @@ Plan make_capture_plan(const PlanRequest& request) {
   require_count("transmission", request.transmission_angles_deg.size(), kTransmissions);
   Plan plan;
   add_poses(plan, "pose-horizontal", Mounting::horizontal);
-  add_views(plan, "reflection-horizontal", Mounting::horizontal, Lamp::front, request.reflection_angles_deg);
-  add_views(plan, "transmission", Mounting::horizontal, Lamp::back, request.transmission_angles_deg);
+  add_views(plan, "reflection-horizontal", Mounting::horizontal, Lamp::front, request.reflection_angles_deg,
+            request.bracket_stops);
+  add_views(plan, "transmission", Mounting::horizontal, Lamp::back, request.transmission_angles_deg,
+            request.bracket_stops);
   add_poses(plan, "pose-vertical", Mounting::vertical);
-  add_views(plan, "reflection-vertical", Mounting::vertical, Lamp::front, request.reflection_angles_deg);
+  add_views(plan, "reflection-vertical", Mounting::vertical, Lamp::front, request.reflection_angles_deg,
+            request.bracket_stops);
   add_darks(plan);
   if (const std::optional<std::string> problem = check_plan(plan)) {
     throw std::runtime_error(*problem);
@@ -183,7 +215,8 @@ std::optional<std::string> check_plan(const Plan& plan, double largest_angle_rad
 double estimated_duration_s(const Plan& plan, const StepDurations& durations) {
   double total_s = 0;
   for (std::size_t i = 0; i < plan.steps.size(); ++i) {
-    total_s += plan.steps[i].kind == StepKind::dark ? durations.dark_s : durations.picture_s;
+    const bool metered = plan.steps[i].kind == StepKind::pose || plan.steps[i].kind == StepKind::view;
+    total_s += metered ? durations.picture_s : durations.dark_s;
     if (i == 0 || needs_a_hand(plan.steps[i - 1], plan.steps[i])) {
       total_s += durations.arrange_s;
     }

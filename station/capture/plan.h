@@ -14,8 +14,8 @@
 namespace station {
 
 // pose: under the room light, for the tags on the holder. view: one of the 17. dark: no light at all, with the
-// exposure of the view that it belongs to.
-enum class StepKind { pose, view, dark };
+// exposure of the view that it belongs to. exposure: the picture of a view once more, so many stops longer, for its bracket.
+enum class StepKind { pose, view, exposure, dark };
 
 struct PlanStep {
   std::string id;  // also the name of the picture's file
@@ -24,7 +24,8 @@ struct PlanStep {
   rig::Lamp lamp = rig::Lamp::off;
   bool room_light = false;
   double platform_angle_rad = 0.0;
-  std::string exposure_of;  // dark only: the view whose camera settings it repeats
+  std::string exposure_of;  // dark and exposure only: the view whose camera settings it repeats
+  double stops = 0.0;       // exposure only: from the view's
 
   bool operator==(const PlanStep&) const = default;
 };
@@ -43,9 +44,11 @@ const PlanStep* find_step(const Plan& plan, const std::string& id);  // nullptr:
 struct PlanRequest {
   std::vector<double> reflection_angles_deg = {-50, -30, -10, 10, 30, 50};  // 6, for each mounting
   std::vector<double> transmission_angles_deg = {-40, -20, 0, 20, 40};      // 5, threads horizontal
+  std::vector<double> bracket_stops{};  // of the further exposures of each view; empty: one exposure
 };
 
-// Horizontal: 2 poses, 6 reflections, 5 transmissions; vertical: 2 poses, 6 reflections; then a dark for each view.
+// Horizontal: 2 poses, 6 reflections, 5 transmissions; vertical: 2 poses, 6 reflections; after each view its further
+// exposures; then a dark for each view.
 // Errors: std::runtime_error when the angles are not 6 and 5, or check_plan finds something.
 Plan make_capture_plan(const PlanRequest& request);
 

@@ -14,7 +14,12 @@ constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 constexpr double kWidestAngleDeg = 1e6;  // check_plan knows the limits of a platform
 
 StepKind kind_from_name(const std::string& name) {
-  return name == "pose" ? StepKind::pose : name == "dark" ? StepKind::dark : StepKind::view;
+  for (const StepKind kind : {StepKind::pose, StepKind::exposure, StepKind::dark}) {
+    if (name == kind_name(kind)) {
+      return kind;
+    }
+  }
+  return StepKind::view;
 }
 
 json step_to_json(const PlanStep& step) {
@@ -24,8 +29,11 @@ json step_to_json(const PlanStep& step) {
                    {"lamp", lamp_name(step.lamp)},
                    {"room_light", step.room_light},
                    {"platform_angle_deg", file_degrees(step.platform_angle_rad)}};
-  if (step.kind == StepKind::dark) {
+  if (step.kind == StepKind::dark || step.kind == StepKind::exposure) {
     document["exposure_of"] = step.exposure_of;
+  }
+  if (step.kind == StepKind::exposure) {
+    document["stops"] = step.stops;
   }
   return document;
 }
@@ -33,14 +41,17 @@ json step_to_json(const PlanStep& step) {
 PlanStep read_step(ObjectReader& reader) {
   PlanStep step;
   step.id = reader.text("id");
-  step.kind = kind_from_name(reader.choice("kind", {"pose", "view", "dark"}));
+  step.kind = kind_from_name(reader.choice("kind", {"pose", "view", "exposure", "dark"}));
   step.mounting = mounting_from_name(reader.choice("mounting", {"horizontal", "vertical"}));
   step.lamp = lamp_from_name(reader.choice("lamp", {"off", "front", "back"}));
   step.room_light = reader.flag("room_light");
   step.platform_angle_rad =
       reader.number("platform_angle_deg", -kWidestAngleDeg, kWidestAngleDeg) / kDegreesPerRadian;
-  if (step.kind == StepKind::dark) {
+  if (step.kind == StepKind::dark || step.kind == StepKind::exposure) {
     step.exposure_of = reader.text("exposure_of");
+  }
+  if (step.kind == StepKind::exposure) {
+    step.stops = reader.number("stops", -10, 10);
   }
   reader.finish();
   return step;
@@ -78,7 +89,17 @@ std::string mounting_name(rig::Mounting mounting) {
 }
 
 std::string kind_name(StepKind kind) {
-  return kind == StepKind::pose ? "pose" : kind == StepKind::view ? "view" : "dark";
+  switch (kind) {
+    case StepKind::pose:
+      return "pose";
+    case StepKind::view:
+      return "view";
+    case StepKind::exposure:
+      return "exposure";
+    case StepKind::dark:
+      break;
+  }
+  return "dark";
 }
 
 rig::Lamp lamp_from_name(const std::string& name) {

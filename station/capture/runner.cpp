@@ -124,11 +124,17 @@ class CaptureRun {
 
   bool is_done(const PlanStep& step) const {
     const auto found = taken_.find(step.id);
-    if (found == taken_.end() || step.kind != StepKind::dark) {
+    if (found == taken_.end() || step.exposure_of.empty()) {
       return found != taken_.end();
     }
-    const auto view = taken_.find(step.exposure_of);
-    return view != taken_.end() && same_settings(found->second.asked, view->second.asked);
+    return taken_.contains(step.exposure_of) && same_settings(found->second.asked, repeated_settings(step));
+  }
+
+  // Of a dark or of a bracket's exposure: its view's, so many stops longer.
+  rig::ExposureSettings repeated_settings(const PlanStep& step) const {
+    rig::ExposureSettings settings = taken_.at(step.exposure_of).asked;
+    settings.exposure_s *= std::exp2(step.stops);
+    return settings;
   }
 
   void prepare_devices() {
@@ -152,7 +158,7 @@ class CaptureRun {
     if (step.kind != StepKind::dark) {
       return false;
     }
-    const rig::ExposureSettings& wanted = taken_.at(step.exposure_of).asked;
+    const rig::ExposureSettings wanted = repeated_settings(step);
     for (const auto& [id, picture] : taken_) {
       if (id != step.id && picture.kind == StepKind::dark && picture.same_as.empty() &&
           same_settings(picture.asked, wanted)) {
@@ -177,6 +183,9 @@ class CaptureRun {
     poll();
     const rig::Picture delivered = devices_.camera.capture();
     check(step, picture.asked, delivered);
+    if (options_.inspect) {
+      options_.inspect(step, delivered, picture.read_angle_rad);
+    }
     const std::string name = step.id + "." + delivered.extension;
     picture.file = "raw/" + name;
     picture.bytes = delivered.bytes.size();
@@ -198,7 +207,7 @@ class CaptureRun {
     return picture;
   }
 
-  // A dark whose view was taken again at another exposure.
+  // A dark or a bracket's exposure whose view was taken again at another exposure.
   void remove_stale(const PlanStep& step) {
     const auto found = taken_.find(step.id);
     if (found != taken_.end() && found->second.same_as.empty()) {
@@ -239,8 +248,15 @@ class CaptureRun {
   }
 
   rig::ExposureSettings exposure_for(const PlanStep& step) {
-    if (step.kind == StepKind::dark) {
-      return taken_.at(step.exposure_of).asked;
+    if (!step.exposure_of.empty()) {
+      const rig::ExposureSettings settings = repeated_settings(step);
+      const double offered_s = rig::nearest_shutter_s(devices_.camera.shutter_times_s(), settings.exposure_s);
+      if (std::abs(std::log2(offered_s / settings.exposure_s)) > 1.0 / 6) {
+        throw std::runtime_error("'" + step.id + "' needs an exposure of " + std::to_string(settings.exposure_s) +
+                                 " s, the camera's nearest is " + std::to_string(offered_s) +
+                                 " s; move the lamp or change the rig file's bracket_stops");
+      }
+      return settings;
     }
     if (!options_.choose_exposure) {
       return options_.settings;

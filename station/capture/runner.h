@@ -42,6 +42,8 @@ struct RunOptions {
   rig::ExposureSettings settings;  // ISO and f-number of every picture; the exposure time where metering begins
   ChooseExposure choose_exposure;  // empty: no metering, every picture at `settings`
   int most_test_pictures = 8;      // for one picture
+  // Looks at a picture before it is kept and throws std::runtime_error when it does not serve; may be empty.
+  std::function<void(const PlanStep&, const rig::Picture&, double platform_reading_rad)> inspect;
   std::function<Eigen::Isometry3d(rig::Mounting)> nominal_holder_pose;  // platform_from_holder, required
   std::function<void(const Progress&)> progress;                        // may be empty
   std::function<bool()> should_stop;                          // asked between and within steps; may be empty

@@ -63,12 +63,7 @@ DevelopedView place_view(const PlanStep& step, const PictureRecord& picture, con
   view.id = step.id;
   view.transmission = is_transmission(step);
   view.camera = camera_of(calibration.lens.lens, holder_from_world * calibration.platform.world_from_camera, true);
-  const std::size_t place = view.transmission ? 1 : 0;
-  view.light.position = holder_from_world * calibration.light.positions.at(place);
-  view.light.beam_axis = holder_from_world.linear() * calibration.light.beam_axes.at(place);
-  view.light.beam_exponent = calibration.light.beam_exponent;
-  view.light.intensity = calibration.light.intensity;
-  view.light.radius_mm = lamp_radius_mm;
+  view.light = lamp_in_holder(calibration, lamp_radius_mm, view.transmission, holder_from_world);
   return developed;
 }
 
@@ -92,13 +87,28 @@ calibration::DevelopOptions develop_options(const RigCalibration& calibration, c
   return options;
 }
 
-void develop_view(const std::filesystem::path& session, const Pictures& pictures,
+// The view's picture, then its further exposures; they are merged by measured times, so only with a calibrated sensor.
+std::vector<calibration::SensorPicture> read_bracket(const std::filesystem::path& session, const Plan& plan,
+                                                     const Pictures& pictures, const std::string& view,
+                                                     const calibration::SensorPicture& metered,
+                                                     const RigCalibration& calibration) {
+  std::vector<calibration::SensorPicture> bracket{metered};
+  if (!calibration.sensor) return bracket;
+  for (const PlanStep& step : plan.steps)
+    if (step.kind == StepKind::exposure && step.exposure_of == view)
+      bracket.push_back(read_picture(session, picture_of(pictures, step.id)));
+  return bracket;
+}
+
+void develop_view(const std::filesystem::path& session, const Plan& plan, const Pictures& pictures,
                   const calibration::SensorPicture& raw, const RigCalibration& calibration,
                   const inversion::WrappedSpool& spool, DevelopedView& developed) {
   inversion::View& view = developed.view;
+  const std::vector<calibration::SensorPicture> bracket =
+      read_bracket(session, plan, pictures, view.id, raw, calibration);
   const calibration::SensorPicture dark = read_picture(session, picture_of(pictures, "dark-" + view.id));
-  const calibration::Developed picture = calibration::develop(raw, develop_options(calibration, dark, view.id));
-  developed.exposure_s = raw.exposure_s;
+  const calibration::Developed picture = calibration::develop(bracket, develop_options(calibration, dark, view.id));
+  developed.exposure_s = bracket.front().exposure_s;
   view.image = picture.radiance;
   view.mask = inversion::thread_mask(spool, view.camera, view.light, kMaskSamples);
   developed.masked_pixels = cv::countNonZero(view.mask);
@@ -167,7 +177,7 @@ DevelopedViews develop_session(const std::filesystem::path& session, ProgressSty
     require_calibrated_bench(calibration, bench, record.read_angle_rad, "view " + step.id);
     developed.views.push_back(
         place_view(step, record, bench, mounted.at(step.mounting), calibration, asked.rig.lamp_radius_mm));
-    develop_view(session, pictures, raw, calibration, asked.spool.wrapping, developed.views.back());
+    develop_view(session, asked.plan, pictures, raw, calibration, asked.spool.wrapping, developed.views.back());
   }
   developed.sheet_width_mm = measured_width_mm(developed, asked.spool.wrapping);
   if (developed.sheet_width_mm) require_expected_width(*developed.sheet_width_mm, asked.spool);

@@ -169,6 +169,11 @@ void parse_capture(ObjectReader capture, RigFile& rig) {
   rig.reflection_angles_deg = capture.numbers("reflection_angles_deg");
   rig.transmission_angles_deg = capture.numbers("transmission_angles_deg");
   rig.target_level = capture.number("target_level", 0.05, 0.9);
+  rig.bracket_stops = capture.numbers("bracket_stops");
+  if (rig.bracket_stops.size() > 4) capture.refuse("bracket_stops", "at most 4 further exposures");
+  for (const double stops : rig.bracket_stops)
+    if (!(std::abs(stops) >= 0.3 && std::abs(stops) <= 10))
+      capture.refuse("bracket_stops", "found " + std::to_string(stops) + ", expected stops of 0.3 to 10 either way");
   capture.finish();
 }
 
@@ -206,6 +211,12 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
   rig.lamp_tags = corner_tags(reader.object("lamp_tags"), "lamp", Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
   rig.holder_tags =
       corner_tags(reader.object("holder_tags"), "holder", Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
+  if (reader.has("reference_patch")) {
+    ObjectReader patch = reader.object("reference_patch");
+    rig.reference_patch =
+        ReferencePatch{.edge_mm = patch.number("edge_mm", 1, 100), .albedo = patch.number("albedo", 0.01, 1)};
+    patch.finish();
+  }
   ObjectReader panel = reader.object("spectralon");
   rig.spectralon.albedo = panel.number("albedo", 0.5, 1);
   rig.spectralon.white_mm = panel.number("white_mm", 1, 1000);

@@ -11,6 +11,7 @@
 #include "calibration/tags.h"
 #include "rig/simulated_bench.h"
 #include "station/documents/board_file.h"
+#include "station/reference_patch.h"
 
 namespace station {
 
@@ -45,12 +46,14 @@ struct RigFile {
   calibration::TagLayout table_tags;     // world frame, roughly; relative positions as printed
   calibration::TagLayout lamp_tags;      // lamp frame: origin at the bright face, +z along the beam
   calibration::TagLayout holder_tags;
+  std::optional<ReferencePatch> reference_patch;
   SpectralonPanel spectralon;
   Eigen::Vector3d front_lamp_mm, back_lamp_mm;  // by tape, world frame
   Eigen::Vector3d lamp_aim_mm;                  // what both are pointed at
   double lamp_radius_mm = 0;                    // of its bright face
   std::vector<double> reflection_angles_deg, transmission_angles_deg;
-  double target_level = 0.6;  // of full scale that the brightest thread pixels should reach
+  double target_level = 0.6;          // of full scale that the brightest thread pixels should reach
+  std::vector<double> bracket_stops;  // of the further exposures of each view, from the metered one
   std::optional<SimulatedRig> simulation;
 };
 

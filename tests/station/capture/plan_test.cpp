@@ -44,6 +44,33 @@ TEST(Plan, HasTwelveReflectionsFiveTransmissionsAndADarkForEach) {
   }
 }
 
+TEST(Plan, ABracketsExposuresFollowTheirViewUnderTheSameLight) {
+  const Plan plan = make_capture_plan({.bracket_stops = {-2, 1.5}});
+  EXPECT_EQ(view_count(plan), 17U);
+  EXPECT_EQ(count(plan, [](const PlanStep& step) { return step.kind == StepKind::exposure; }), 34);
+  EXPECT_EQ(count(plan, [](const PlanStep& step) { return step.kind == StepKind::dark; }), 17);
+  for (std::size_t i = 0; i < plan.steps.size(); ++i) {
+    const PlanStep& view = plan.steps[i];
+    if (view.kind != StepKind::view) {
+      continue;
+    }
+    for (const std::size_t next : {i + 1, i + 2}) {
+      PlanStep exposure = plan.steps.at(next);
+      EXPECT_EQ(exposure.exposure_of, view.id);
+      EXPECT_EQ(exposure.stops, next == i + 1 ? -2 : 1.5);
+      exposure.id = view.id;
+      exposure.kind = view.kind;
+      exposure.exposure_of = {};
+      exposure.stops = 0;
+      EXPECT_EQ(exposure, view);
+    }
+  }
+  EXPECT_NE(find_step(plan, "bracket-transmission-2-plus-1_5"), nullptr);
+  EXPECT_EQ(plan_from_json(plan_to_json(plan), "plan"), plan);
+  EXPECT_THROW(make_capture_plan({.bracket_stops = {0}}), std::runtime_error);
+  EXPECT_THROW(make_capture_plan({.bracket_stops = {-2, -2}}), std::runtime_error);  // one id twice
+}
+
 TEST(Plan, TurnsTheHolderOnceAndMovesTheLampTwice) {
   const Plan plan = make_capture_plan({});
   int turned = 0, moved = 0;

@@ -1,0 +1,84 @@
+#include "station/reference_patch.h"
+
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace station {
+namespace {
+
+constexpr double kUsedFraction = 0.7;     // of the chip's edge: away from its border, which blurs into the frame
+constexpr double kBesideThreads_mm = 20;  // the upright edge carries the threads' turns in its middle
+constexpr int kFewestPixels = 30;
+
+}  // namespace
+
+Eigen::Isometry3d holder_from_patch(const ReferencePatch& patch, const inversion::WrappedSpool& spool,
+                                    rig::Mounting mounting) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  const double back = -patch.edge_mm / 2;
+  if (mounting == rig::Mounting::horizontal) {
+    pose.translation() = Eigen::Vector3d(back, 0, spool.frame_height_mm / 2);
+  } else {
+    pose.linear() = Eigen::AngleAxisd(-M_PI / 2, Eigen::Vector3d::UnitX()).toRotationMatrix();  // +z becomes +y
+    pose.translation() = Eigen::Vector3d(back, spool.frame_width_mm / 2, kBesideThreads_mm);
+  }
+  return pose;
+}
+
+std::optional<PatchReading> read_patch(const cv::Mat3f& radiance, const cv::Mat1b& saturated,
+                                       const renderer::Camera& camera, const ReferencePatch& patch,
+                                       const inversion::WrappedSpool& spool, rig::Mounting mounting,
+                                       const inversion::NearLight& light) {
+  const Eigen::Isometry3d pose = holder_from_patch(patch, spool, mounting);
+  const double half = kUsedFraction * patch.edge_mm / 2;
+  std::vector<cv::Point2f> outline;
+  const cv::Rect frame(0, 0, radiance.cols, radiance.rows);
+  for (const auto& [x, y] : {std::pair{-half, -half}, {half, -half}, {half, half}, {-half, half}}) {
+    const Eigen::Vector2d pixel = renderer::project(camera, pose * Eigen::Vector3d(x, y, 0));
+    outline.emplace_back(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
+    if (!frame.contains(cv::Point(cvRound(pixel.x()), cvRound(pixel.y())))) return std::nullopt;
+  }
+  const Eigen::Vector3d to_light = light.position - pose.translation();
+  const double cosine = to_light.normalized().dot(pose.linear().col(2));
+  if (!(cosine > 0.1)) return std::nullopt;
+  const double along_beam = std::max(0.0, -to_light.normalized().dot(light.beam_axis));
+  const double beam = light.beam_exponent == 0.0 ? 1.0 : std::pow(along_beam, light.beam_exponent);
+  const double expected = patch.albedo / M_PI * light.intensity.sum() * beam * cosine / to_light.squaredNorm();
+  const cv::Rect box = cv::boundingRect(outline) & frame;
+  double sum = 0, squares = 0;
+  int count = 0;
+  for (int row = box.y; row < box.y + box.height; ++row)
+    for (int column = box.x; column < box.x + box.width; ++column) {
+      const cv::Point2f here(static_cast<float>(column), static_cast<float>(row));
+      if (cv::pointPolygonTest(outline, here, false) < 0) continue;
+      if (saturated(row, column)) return std::nullopt;
+      const cv::Vec3f& pixel = radiance(row, column);
+      const double value =
+          static_cast<double>(pixel[0]) + static_cast<double>(pixel[1]) + static_cast<double>(pixel[2]);
+      sum += value;
+      squares += value * value;
+      ++count;
+    }
+  if (count < kFewestPixels) return std::nullopt;
+  const double mean = sum / count;
+  return PatchReading{.strength = mean / expected,
+                      .sigma = std::sqrt(std::max(0.0, squares / count - mean * mean) / count) / expected};
+}
+
+std::vector<double> lamp_strengths(const std::vector<PatchView>& views) {
+  std::array<double, 2> at_strength_one{};  // readings in front and behind; 0: none yet
+  std::vector<double> strengths;
+  double last = 1;
+  for (const PatchView& view : views) {
+    if (view.reading) {
+      double& one = at_strength_one.at(view.behind ? 1 : 0);
+      if (one == 0) one = view.reading->strength / last;
+      last = view.reading->strength / one;
+    }
+    strengths.push_back(last);
+  }
+  return strengths;
+}
+
+}  // namespace station
