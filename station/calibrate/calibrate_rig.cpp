@@ -4,6 +4,7 @@
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
 #include "station/interrupt.h"
+#include "station/report/calibration_report.h"
 #include "station/rig_devices.h"
 
 namespace station {
@@ -49,6 +50,7 @@ RigCalibration calibrate_rig(const CalibrateRequest& request) {
   if (calibration.sensor) write_sensor_maps(request.out, *calibration.sensor);
   write_json_file(request.out / "calibration.json", to_json(calibration));
   write_cameramodel_beside(calibration.lens, request.out / "calibration.json");
+  write_calibration_page(request.out, calibration);
   progress.finish("done");
   return calibration;
 }

@@ -3,6 +3,7 @@
 
 #include "station/calibrate/calibrate_camera.h"
 #include "station/calibrate/calibrate_rig.h"
+#include "station/calibrate/error_budget.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
 #include "station/documents/gate_list.h"
@@ -64,8 +65,8 @@ void run(Arguments& arguments) {
   if (arguments.output.json)
     std::cout << to_json(calibration).dump() << "\n";
   else if (!arguments.output.quiet)
-    std::cout << describe(calibration) << "calibration: " << (arguments.request.out / "calibration.json").string()
-              << "\n";
+    std::cout << describe(calibration) << describe_budget(calibration)
+              << "calibration: " << (arguments.request.out / "calibration.json").string() << "\n";
   const std::string failed = failed_gates(all_gates(calibration));
   if (!failed.empty()) throw std::runtime_error("the calibration is written but not good enough: " + failed);
 }

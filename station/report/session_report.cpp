@@ -9,6 +9,7 @@
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
 #include "station/documents/views_file.h"
+#include "station/report/calibration_report.h"
 #include "station/report/contact_sheet.h"
 #include "station/report/display.h"
 #include "station/report/html.h"
@@ -52,38 +53,6 @@ std::string view_tiles(const DevelopedViews& developed, bool transmission) {
          " views</h2>\n<div class=\"sheet\">\n" + tiles + "</div>\n";
 }
 
-std::string position_text(const Eigen::Vector3d& position, const Eigen::Matrix3d& covariance) {
-  std::string text;
-  for (int i = 0; i < 3; ++i)
-    text += (i ? ", " : "") + number_text(position[i], 1) + " ± " + number_text(std::sqrt(covariance(i, i)), 1);
-  return text + " mm";
-}
-
-std::string calibration_table(const RigCalibration& calibration) {
-  const calibration::Lens& lens = calibration.lens.lens;
-  const calibration::PlatformFit& platform = calibration.platform;
-  const calibration::LightFit& light = calibration.light;
-  const Eigen::Vector3d camera = platform.world_from_camera.translation();
-  return fact_table(
-      {{"made", calibration.utc + " on " + calibration.rig_name},
-       {"lens", "f " + number_text(lens.fx_px, 1) + " / " + number_text(lens.fy_px, 1) + " px, rms " +
-                    number_text(calibration.lens.rms_px, 3) + " px over " +
-                    std::to_string(calibration.lens.corners_used) + " corners"},
-       {"camera in the world", numbers_text({camera.x(), camera.y(), camera.z()}, 1) + " mm"},
-       {"platform", "angles " + number_text(platform.angle_rms_rad * kDegPerRad, 4) + "° rms about " +
-                        number_text(platform.scale, 5) + " × the reading; rms " + number_text(platform.rms_px, 3) +
-                        " px"},
-       {"lamp in front", position_text(light.positions[0], light.position_covariances[0])},
-       {"lamp behind", position_text(light.positions[1], light.position_covariances[1])},
-       {"lamp intensity (R, G, B)",
-        numbers_text({light.intensity[0], light.intensity[1], light.intensity[2]}, 0) + " (radiance unit × mm²)"},
-       {"lamp's beam", "cos^" + number_text(light.beam_exponent, 2) + " of the angle from its axis"},
-       {"Spectralon", "patches " + number_text(100 * light.relative_rms, 2) + " % rms, pictures held out " +
-                          number_text(100 * calibration::held_out_error(light, 0), 2) + " % (in front) and " +
-                          number_text(100 * calibration::held_out_error(light, 1), 2) + " % (behind), droop " +
-                          number_text(100 * light.droop.sum(), 1) + " %"}});
-}
-
 }  // namespace
 
 std::filesystem::path write_session_report(const std::filesystem::path& session) {
@@ -99,7 +68,7 @@ std::filesystem::path write_session_report(const std::filesystem::path& session)
                                  {"software", asked.software}});
   body += cloth_section(session, developed) + thread_section(session, developed);
   body += view_tiles(developed, false) + view_tiles(developed, true);
-  body += "<h2>Calibration</h2>\n" + calibration_table(calibration);
+  body += "<h2>Calibration</h2>\n" + calibration_section(calibration);
   renderer::write_png(session / "result" / "contact_sheet.png", contact_sheet(developed));
   if (const cv::Mat3b overview = overview_picture(session, developed); !overview.empty())
     renderer::write_png(session / "result" / "overview.png", overview);
