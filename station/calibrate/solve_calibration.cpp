@@ -78,9 +78,7 @@ RigCalibration solve_calibration(const RigFile& rig, const std::filesystem::path
   const double distance_mm = working_distance_mm(rig);
   result.lens = calibration::fit_lens(lens_views, rig.board, size, rig.focal_length_guess_px,
                                       {.working_distance_mm = distance_mm, .taped_distance_mm = distance_mm});
-  if (const std::string failed = failed_gates(result.lens.gates); !failed.empty())
-    throw std::runtime_error("the lens calibration is not good enough: " + failed +
-                             "; take its pictures again with calibrate --only camera");
+  refuse_failed_gates(result.lens.gates, "the lens calibration");
   result.platform = calibration::fit_platform(result.lens.lens, rig.board, turning, flat_views,
                                               rig.platform_height_mm + rig.board_thickness_mm);
   result.light = solve_light(rig, result.lens.lens, result.platform.world_from_camera, loaded);
