@@ -32,6 +32,12 @@ struct Mounted {
   double reading_rad;
 };
 
+struct LastView {
+  rig::Lamp lamp;
+  rig::Mounting mounting;
+  double strength;
+};
+
 class Inspection {
  public:
   Inspection(const SessionFolder& session, const SessionFile& asked, const RigCalibration& calibration)
@@ -84,11 +90,11 @@ class Inspection {
       throw std::runtime_error(found + "; switch the room light off and see that only the lamp shines, then resume");
     if (strength < 1 - limits.largest_change)
       throw std::runtime_error(found + "; cool or replace the lamp and calibrate again");
-    const auto last = last_strength_.find(step.lamp);
-    if (last != last_strength_.end() && std::abs(strength / last->second - 1) > limits.largest_jump)
-      throw std::runtime_error(found + ", " + percent(last->second) +
-                               " in the picture before; let the lamp settle, then resume");
-    last_strength_[step.lamp] = strength;
+    const bool comparable = last_ && last_->lamp == step.lamp && last_->mounting == step.mounting;
+    if (comparable && std::abs(strength / last_->strength - 1) > limits.largest_jump)
+      throw std::runtime_error(found + ", " + percent(last_->strength) +
+                               " in the view before; let the lamp settle, then resume");
+    last_ = LastView{step.lamp, step.mounting, strength};
   }
 
   std::optional<PatchReading> patch_reading(const PlanStep& step, const calibration::SensorPicture& raw,
@@ -129,7 +135,7 @@ class Inspection {
   const SessionFile& asked_;
   RigCalibration calibration_;
   std::map<rig::Mounting, std::optional<Mounted>> mounted_;
-  std::map<rig::Lamp, double> last_strength_;  // of this run's views
+  std::optional<LastView> last_;  // of this run
 };
 
 }  // namespace

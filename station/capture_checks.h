@@ -16,7 +16,7 @@ namespace station {
 //   views  over-exposed (5 % of the window saturated) or dark (the brightest threads below 2 % of the range);
 //          the reference patch says that the lamp is off or covered (below half of its light), that other light shines or the
 //          lamp has changed (more than 10 % from the calibration), or that it jumped (more than 2 % since this run's last view
-//          under the same lamp; after a resume the first view is accepted: the person has seen to it)
+//          under the same lamp and mounting; after a resume the first view is accepted: the person has seen to it)
 //   darks  brighter than the calibration's dark level by 0.1 % of the range
 // Without a rig's reference patch, or before its mounting's pose picture shows two tags, the patch is not looked at.
 using InspectPicture = std::function<void(const PlanStep&, const rig::Picture&, double platform_reading_rad)>;

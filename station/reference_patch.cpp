@@ -11,6 +11,21 @@ constexpr double kUsedFraction = 0.7;     // of the chip's edge: away from its b
 constexpr double kBesideThreads_mm = 20;  // the upright edge carries the threads' turns in its middle
 constexpr int kFewestPixels = 30;
 
+// The factor of the place that views[first] is the first to be lit from. The mean of its series is taken to stand half-way
+// between the views before and after it, under the lamp's other place; without one after it, its first to be as the last.
+double reading_at_strength_one(const std::vector<PatchView>& views, std::size_t first, double before,
+                               double other_at_strength_one) {
+  double sum = 0;
+  int count = 0;
+  std::size_t i = first;
+  for (; i < views.size() && views[i].behind == views[first].behind; ++i)
+    if (views[i].reading) sum += views[i].reading->strength, ++count;
+  while (i < views.size() && !views[i].reading) ++i;
+  if (other_at_strength_one == 0 || i == views.size()) return views[first].reading->strength / before;
+  const double after = views[i].reading->strength / other_at_strength_one;
+  return sum / count / (0.5 * (before + after));
+}
+
 }  // namespace
 
 Eigen::Isometry3d holder_from_patch(const ReferencePatch& patch, const inversion::WrappedSpool& spool,
@@ -70,10 +85,11 @@ std::vector<double> lamp_strengths(const std::vector<PatchView>& views) {
   std::array<double, 2> at_strength_one{};  // readings in front and behind; 0: none yet
   std::vector<double> strengths;
   double last = 1;
-  for (const PatchView& view : views) {
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const PatchView& view = views[i];
     if (view.reading) {
       double& one = at_strength_one.at(view.behind ? 1 : 0);
-      if (one == 0) one = view.reading->strength / last;
+      if (one == 0) one = reading_at_strength_one(views, i, last, at_strength_one.at(view.behind ? 0 : 1));
       last = view.reading->strength / one;
     }
     strengths.push_back(last);

@@ -37,8 +37,9 @@ std::optional<PatchReading> read_patch(const cv::Mat3f& radiance, const cv::Mat1
                                        const inversion::NearLight& light);
 
 // Strength of the lamp in a series of views relative to the first (1), from their readings. Readings under the lamp in front
-// and behind have factors of their own (position and surface are not known as well as a reading repeats); when the lamp has
-// been moved it is taken to shine as before. Views without a reading get their predecessor's strength.
+// and behind have factors of their own (position and surface are not known as well as a reading repeats): a series behind
+// stands, in the mean, half-way between what is read in front before and after it. Views without a reading get their
+// predecessor's strength.
 struct PatchView {
   bool behind = false;
   std::optional<PatchReading> reading;

@@ -28,10 +28,10 @@ void run_camera(CameraArguments& arguments) {
     std::cout << to_json(lens).dump() << "\n";
   else if (!arguments.output.quiet)
     std::cout << describe(lens.fit) << "lens: " << arguments.request.out.string() << "\n";
-  if (!lens.fit.converged)
-    throw std::runtime_error("the fit of " + arguments.request.out.string() +
-                             " did not converge; take more pictures");
-  refuse_failed_gates(lens.fit.gates, "the lens of " + arguments.request.out.string());
+  const std::string failed = failed_gates(lens.fit.gates);
+  if (!failed.empty() || !lens.fit.converged)
+    throw std::runtime_error("this lens is not to be used (" + arguments.request.out.string() + " shows why): " +
+                             (lens.fit.converged ? failed : "the fit did not converge; take more pictures"));
 }
 
 void add_camera_command(CLI::App& calibrate) {

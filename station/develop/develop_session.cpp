@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "calibration/develop.h"
+#include "calibration/lamp_stability.h"
 #include "calibration/sensor_maps.h"
 #include "renderer/image_file.h"
 #include "station/bench_reading.h"
@@ -100,15 +101,49 @@ std::vector<calibration::SensorPicture> read_bracket(const std::filesystem::path
   return bracket;
 }
 
-void develop_view(const std::filesystem::path& session, const Plan& plan, const Pictures& pictures,
+// `patches`: readings of the views before this one, in the order of their pictures; this one's is added.
+void read_lamp(const RigFile& rig, const inversion::WrappedSpool& spool, const calibration::Developed& picture,
+               const DevelopedView& developed, std::vector<PatchView>& patches) {
+  if (!rig.reference_patch) return;
+  const inversion::View& view = developed.view;
+  patches.push_back({.behind = view.transmission,
+                     .reading = read_patch(picture.radiance, picture.saturated, view.camera, *rig.reference_patch,
+                                           spool, developed.mounting, view.light)});
+}
+
+// Divides every view by the lamp's strength in it.
+void take_out_lamp_changes(const std::vector<PatchView>& patches, std::vector<DevelopedView>& views) {
+  const std::vector<double> strengths = lamp_strengths(patches);
+  const calibration::Gate change = calibration::lamp_gates(strengths).back();
+  if (!change.passed) throw std::runtime_error("the session's views do not belong together: " + change.reason);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    views[i].lamp_strength = strengths.at(i);
+    views[i].view.image /= strengths.at(i);
+  }
+}
+
+void write_view(const std::filesystem::path& session, const DevelopedView& developed) {
+  renderer::write_exr(
+      session / developed.image_file, developed.view.image,
+      {{"threadstation/content",
+        "linear camera RGB, radiance unit (full scale per second); dark subtracted, "
+        "exposures merged and divided by their times and the lamp's strength, flat-fielded, distortion "
+        "removed"},
+       {"threadstation/view", developed.view.id}});
+  renderer::write_png(session / developed.mask_file, developed.view.mask);
+}
+
+// Everything but writing it and the lamp's strength, which all views say together.
+void develop_view(const std::filesystem::path& session, const SessionFile& asked, const Pictures& pictures,
                   const calibration::SensorPicture& raw, const RigCalibration& calibration,
-                  const inversion::WrappedSpool& spool, DevelopedView& developed) {
+                  std::vector<PatchView>& patches, DevelopedView& developed) {
   inversion::View& view = developed.view;
-  const std::vector<calibration::SensorPicture> bracket =
-      read_bracket(session, plan, pictures, view.id, raw, calibration);
+  const inversion::WrappedSpool& spool = asked.spool.wrapping;
+  const auto bracket = read_bracket(session, asked.plan, pictures, view.id, raw, calibration);
   const calibration::SensorPicture dark = read_picture(session, picture_of(pictures, "dark-" + view.id));
   const calibration::Developed picture = calibration::develop(bracket, develop_options(calibration, dark, view.id));
   developed.exposure_s = bracket.front().exposure_s;
+  read_lamp(asked.rig, spool, picture, developed, patches);
   view.image = picture.radiance;
   view.mask = inversion::thread_mask(spool, view.camera, view.light, kMaskSamples);
   developed.masked_pixels = cv::countNonZero(view.mask);
@@ -117,12 +152,6 @@ void develop_view(const std::filesystem::path& session, const Plan& plan, const 
                              ": no thread is where the calibration expects them; calibrate the rig again");
   developed.saturated_fraction =
       static_cast<double>(cv::countNonZero(picture.saturated & view.mask)) / developed.masked_pixels;
-  renderer::write_exr(session / developed.image_file, view.image,
-                      {{"threadstation/content",
-                        "linear camera RGB, radiance unit (full scale per second); dark subtracted, "
-                        "exposure divided, flat-fielded, distortion removed"},
-                       {"threadstation/view", view.id}});
-  renderer::write_png(session / developed.mask_file, view.mask);
 }
 
 // Median over the reflections that show both edges.
@@ -167,6 +196,7 @@ DevelopedViews develop_session(const std::filesystem::path& session, ProgressSty
   ProgressDisplay progress("develop", progress_style);
   DevelopedViews developed;
   developed.linear_srgb_from_camera = calibration.linear_srgb_from_camera;
+  std::vector<PatchView> patches;
   const auto total = static_cast<int>(view_count(asked.plan));
   for (const PlanStep& step : asked.plan.steps) {
     if (step.kind != StepKind::view) continue;
@@ -177,8 +207,10 @@ DevelopedViews develop_session(const std::filesystem::path& session, ProgressSty
     require_calibrated_bench(calibration, bench, record.read_angle_rad, "view " + step.id);
     developed.views.push_back(
         place_view(step, record, bench, mounted.at(step.mounting), calibration, asked.rig.lamp_radius_mm));
-    develop_view(session, asked.plan, pictures, raw, calibration, asked.spool.wrapping, developed.views.back());
+    develop_view(session, asked, pictures, raw, calibration, patches, developed.views.back());
   }
+  if (!patches.empty()) take_out_lamp_changes(patches, developed.views);
+  for (const DevelopedView& view : developed.views) write_view(session, view);
   developed.sheet_width_mm = measured_width_mm(developed, asked.spool.wrapping);
   if (developed.sheet_width_mm) require_expected_width(*developed.sheet_width_mm, asked.spool);
   write_json_file(session / "linear" / "views.json", to_json(developed));
@@ -196,7 +228,7 @@ std::string describe(const DevelopedViews& developed) {
             (view.angle_measured ? " deg (tags), exposure " : " deg (turntable), exposure ") +
             number_text(view.exposure_s, 4) + " s, " + std::to_string(view.masked_pixels) +
             " masked pixels, saturated " + number_text(100 * view.saturated_fraction, 2) + " %, holder tags " +
-            number_text(view.pose_rms_px, 3) + " px\n";
+            number_text(view.pose_rms_px, 3) + " px, lamp " + number_text(100 * view.lamp_strength, 2) + " %\n";
   if (developed.sheet_width_mm)
     text += "sheet of threads: " + number_text(*developed.sheet_width_mm, 2) + " mm wide\n";
   return text;

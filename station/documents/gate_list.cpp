@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <stdexcept>
 
 namespace station {
 namespace {
@@ -12,7 +11,7 @@ constexpr double kLargest = 1e99;  // JSON has no infinity
 
 }  // namespace
 
-nlohmann::json gates_json(const std::vector<calibration::Gate>& gates) {
+nlohmann::json to_json(const std::vector<calibration::Gate>& gates) {
   nlohmann::json list = nlohmann::json::array();
   for (const calibration::Gate& gate : gates)
     list.push_back({{"name", gate.name},
@@ -23,9 +22,9 @@ nlohmann::json gates_json(const std::vector<calibration::Gate>& gates) {
   return list;
 }
 
-std::vector<calibration::Gate> parse_gates(ObjectReader& reader) {
+std::vector<calibration::Gate> parse_gates(ObjectReader& reader, const std::string& key) {
   std::vector<calibration::Gate> gates;
-  for (ObjectReader& entry : reader.objects("gates")) {
+  for (ObjectReader& entry : reader.objects(key)) {
     calibration::Gate gate;
     gate.name = entry.text("name");
     gate.value = entry.number("value", -kLargest, kLargest);
@@ -38,15 +37,15 @@ std::vector<calibration::Gate> parse_gates(ObjectReader& reader) {
   return gates;
 }
 
-void refuse_failed_gates(const std::vector<calibration::Gate>& gates, const std::string& what) {
-  std::string reasons;
+std::string failed_gates(const std::vector<calibration::Gate>& gates) {
+  std::string text;
   for (const calibration::Gate& gate : gates) {
     if (gate.passed) continue;
     char numbers[80];
-    std::snprintf(numbers, sizeof numbers, " is %.3g, limit %.3g: ", gate.value, gate.limit);
-    reasons += (reasons.empty() ? "" : "; ") + gate.name + numbers + gate.reason;
+    std::snprintf(numbers, sizeof numbers, ": %.3g, limit %.3g", gate.value, gate.limit);
+    text += (text.empty() ? "" : "; ") + gate.name + numbers + " (" + gate.reason + ")";
   }
-  if (!reasons.empty()) throw std::runtime_error(what + " is not good enough: " + reasons);
+  return text;
 }
 
 }  // namespace station

@@ -1,4 +1,4 @@
-// Gates of a calibration in a document: a list of {"name", "value", "limit", "passed", "reason"}.
+// Acceptance checks in documents and in text.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,10 +10,10 @@
 
 namespace station {
 
-nlohmann::json gates_json(const std::vector<calibration::Gate>& gates);
-std::vector<calibration::Gate> parse_gates(ObjectReader& reader);  // its key "gates"
+nlohmann::json to_json(const std::vector<calibration::Gate>& gates);
+std::vector<calibration::Gate> parse_gates(ObjectReader& reader, const std::string& key);
 
-// Throws std::runtime_error with the reasons of those that did not pass: "<what> is not good enough: ...".
-void refuse_failed_gates(const std::vector<calibration::Gate>& gates, const std::string& what);
+// "rms of the corners used, px: 0.7, limit 0.5 (corners are ...); ..." for those that are not kept; empty when all are.
+std::string failed_gates(const std::vector<calibration::Gate>& gates);
 
 }  // namespace station

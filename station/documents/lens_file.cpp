@@ -128,7 +128,7 @@ json lens_json(const calibration::LensFit& fit) {
       {"regularisation", difference_json(fit.regularisation)},
       {"regularisation_sigmas", fit.regularisation_sigmas},
       {"opencv8", difference_json(fit.opencv8)},
-      {"gates", gates_json(fit.gates)},
+      {"gates", to_json(fit.gates)},
       {"views", views_json(fit)}};
   if (fit.halves) document["halves"] = difference_json(*fit.halves);
   return document;
@@ -166,7 +166,7 @@ calibration::LensFit parse_lens_fit(ObjectReader reader) {
   fit.regularisation_sigmas = reader.number("regularisation_sigmas", 0, 1e99);
   fit.opencv8 = parse_difference(reader.object("opencv8"));
   if (reader.has("halves")) fit.halves = parse_difference(reader.object("halves"));
-  fit.gates = parse_gates(reader);
+  fit.gates = parse_gates(reader, "gates");
   parse_views(reader, fit);
   reader.finish();
   return fit;

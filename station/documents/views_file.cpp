@@ -25,6 +25,7 @@ json view_json(const DevelopedView& developed) {
           {"masked_pixels", developed.masked_pixels},
           {"saturated_fraction", developed.saturated_fraction},
           {"pose_rms_px", developed.pose_rms_px},
+          {"lamp_strength", developed.lamp_strength},
           {"camera",
            {{"width_px", camera.width},
             {"height_px", camera.height},
@@ -55,6 +56,7 @@ DevelopedView parse_view(ObjectReader reader) {
   developed.masked_pixels = reader.integer("masked_pixels", 0, 1 << 30);
   developed.saturated_fraction = reader.number("saturated_fraction", 0, 1);
   developed.pose_rms_px = reader.number("pose_rms_px", 0, 1e6);
+  developed.lamp_strength = reader.number("lamp_strength", 1e-6, 1e6);
   ObjectReader camera = reader.object("camera");
   view.camera.width = camera.integer("width_px", 1, 100000);
   view.camera.height = camera.integer("height_px", 1, 100000);

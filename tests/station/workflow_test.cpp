@@ -9,7 +9,10 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <fstream>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <set>
@@ -130,6 +133,78 @@ TEST_F(Workflow, SessionHasEveryFileUpToMasksAndEachStageRunsAgainAlone) {
   EXPECT_EQ(run_shell("cd '" + session.string() + "' && sha256sum linear/* masks/*").out, first)
       << "developing again gives the same files";
   expect_success(run_threadstation({"verify", session}));
+}
+
+// Rows 41 and 42 of the station's faults: each is corrected, or refused with a line that says what to do.
+TEST_F(Workflow, ALampThatFailsOrOtherLightIsNoticedBeforeThePictureIsKept) {
+  const auto captured_with = [&](const std::string& name, const std::function<void(json&)>& fault) {
+    json rig = station::read_json_file(path("rig.json"));
+    fault(rig["simulation"]);
+    station::write_json_file(path(name + ".json"), rig);
+    return run_threadstation(capture_arguments(path(name), name + ".json"));
+  };
+  expect_one_line(captured_with("room_light", [](json& bench) { bench["room_leak"] = 1; }),
+                  "switch the room light off");
+  expect_one_line(captured_with("lamp_off", [](json& bench) { bench["lamp"]["changes"]["jump"] = -1; }),
+                  "switch the lamp on");
+  expect_one_line(captured_with("lamp_fell",
+                                [](json& bench) {
+                                  bench["lamp"]["changes"]["jump"] = -0.04;
+                                  bench["lamp"]["changes"]["jump_at_s"] = 8;
+                                }),
+                  "let the lamp settle");
+  // More than ten percent over the session's 22 simulated seconds.
+  expect_one_line(captured_with("lamp_fades", [](json& bench) { bench["lamp"]["changes"]["drift_per_s"] = -0.0065; }),
+                  "replace the lamp");
+  expect_one_line(captured_with("too_bright",
+                                [](json& bench) {
+                                  for (json& value : bench["lamp"]["intensity_mm2"])
+                                    value = value.get<double>() * 1e5;
+                                }),
+                  "over-exposed");
+  EXPECT_FALSE(fs::exists(path("lamp_off") + "/raw/reflection-horizontal-1.arw"))
+      << "what does not serve is not kept";
+  // Each run goes on where the one before it paused, and accepts the lamp as it finds it; here it falls again each time.
+  EXPECT_TRUE(fs::exists(path("lamp_fell") + "/raw/reflection-horizontal-1.arw"));
+  int runs = 0;
+  while (++runs < 17 &&
+         run_threadstation({"capture", "--resume", "--out", path("lamp_fell"), "--quiet"}).status != 0) {
+  }
+  EXPECT_LT(runs, 17);
+  expect_success(run_threadstation({"verify", path("lamp_fell")}));
+}
+
+TEST_F(Workflow, ALampThatDriftsByTwoPercentIsDividedOut) {
+  json rig = station::read_json_file(path("rig.json"));
+  const double drift_per_s = -0.001;
+  rig["simulation"]["lamp"]["changes"]["drift_per_s"] = drift_per_s;
+  station::write_json_file(path("drifting.json"), rig);
+  const std::string session = path("drifting");
+  expect_success(run_threadstation(capture_arguments(session, "drifting.json")));
+  expect_success(run_threadstation({"develop", session, "--quiet"}));
+  std::map<std::string, double> at_s;  // of each picture, in the order of the simulated clock
+  std::ifstream journal(session + "/journal.jsonl");
+  for (std::string line; std::getline(journal, line);) {
+    const json record = json::parse(line);
+    if (record["event"] != "picture") continue;
+    const std::string utc = record["data"]["exposure_utc"];
+    at_s[record["data"]["step"]] = 60 * std::stod(utc.substr(14, 2)) + std::stod(utc.substr(17, 6)) +
+                                   record["data"]["camera_asked"]["exposure_s"].get<double>() / 2;
+  }
+  double worst = 0, total = 0;
+  const station::DevelopedViews developed = station::read_views(session);
+  const double first_s = at_s.at(developed.views.front().view.id);
+  for (const station::DevelopedView& view : developed.views) {
+    const double since_s = std::fmod(at_s.at(view.view.id) - first_s + 3600, 3600);
+    const double truth = 1 + drift_per_s * since_s;  // the first view is a second or two after the clock's start
+    std::printf("%s: %.1f s, strength %.4f, true %.4f\n", view.view.id.c_str(), since_s, view.lamp_strength, truth);
+    worst = std::max(worst, std::abs(view.lamp_strength / truth - 1));
+    total = std::max(total, 1 - truth);
+  }
+  std::printf("lamp fell by %.2f %%; divided out to %.3f %%\n", 100 * total, 100 * worst);
+  EXPECT_GT(total, 0.015);
+  // Chips drawn with 4 samples a pixel scatter by 0.2 %, and the first of them is the reference.
+  EXPECT_LT(worst, 0.006);
 }
 
 TEST_F(Workflow, MasksLieOnTheThreads) {

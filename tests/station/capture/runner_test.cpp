@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "station/capture/verify.h"
 #include "tests/station/capture/fakes.h"
 
@@ -229,6 +231,39 @@ TEST_F(RunnerTest, WhatWasDiscardedCountsAsNotTakenUntilItIsTakenAgain) {
   EXPECT_FALSE(pictures_of(path).contains("transmission-1"));
   expect_resume_completes(small_plan());
   EXPECT_EQ(count_events(path, "discarded"), 1U);
+}
+
+TEST_F(RunnerTest, ABracketsExposureIsItsViewsTimeSoManyStopsLongerAndIsTakenAgainWithIt) {
+  const Plan plan = make_capture_plan({.bracket_stops = {-2}});
+  fake.run(path, plan);
+  fs::remove(path / "raw/reflection-horizontal-1.arw");
+  FakeStation dimmer;
+  dimmer.camera.radiance = [] { return 0.05; };
+  EXPECT_EQ(dimmer.run(path, plan), RunOutcome::complete);
+  const auto pictures = pictures_of(path);
+  for (const PlanStep& step : plan.steps) {
+    if (step.kind == StepKind::exposure) {
+      const double ratio = pictures.at(step.id).asked.exposure_s / pictures.at(step.exposure_of).asked.exposure_s;
+      EXPECT_NEAR(std::log2(ratio), -2, 1.0 / 6) << step.id;
+    }
+  }
+  EXPECT_NE(pictures.at("reflection-horizontal-1").asked.exposure_s,
+            pictures.at("reflection-horizontal-2").asked.exposure_s)
+      << "the view was metered anew";
+  EXPECT_TRUE(verify_session(path).sound());
+}
+
+TEST_F(RunnerTest, APictureThatDoesNotServeIsNotKeptAndTakenAgainByResume) {
+  fake.options.inspect = [](const PlanStep& step, const rig::Picture&, double) {
+    if (step.id == "transmission-1") {
+      throw std::runtime_error("the lamp is off");
+    }
+  };
+  EXPECT_THROW(fake.run(path, small_plan()), std::runtime_error);
+  EXPECT_EQ(last_outcome(), "failed");
+  EXPECT_FALSE(fs::exists(path / "raw/transmission-1.arw"));
+  EXPECT_FALSE(pictures_of(path).contains("transmission-1"));
+  expect_resume_completes(small_plan());
 }
 
 TEST_F(RunnerTest, AViewTakenAgainAtAnotherExposureGetsItsOwnDark) {
