@@ -11,7 +11,7 @@
 namespace station {
 namespace {
 
-std::chrono::sys_seconds parsed(const std::string& utc) {
+std::chrono::sys_time<std::chrono::microseconds> parsed(const std::string& utc) {
   std::tm parts{};
   std::istringstream text(utc);
   text >> std::get_time(&parts, "%Y-%m-%dT%H:%M:%S");
@@ -22,8 +22,10 @@ std::chrono::sys_seconds parsed(const std::string& utc) {
     throw std::runtime_error("\"" + utc +
                              "\" is no date like 2026-11-21T10:20:30Z; the calibration file was edited, "
                              "calibrate again");
+  double fraction_s = 0.0;
+  if (text.peek() == '.') text >> fraction_s;
   return std::chrono::sys_days(date) + std::chrono::hours(parts.tm_hour) + std::chrono::minutes(parts.tm_min) +
-         std::chrono::seconds(parts.tm_sec);
+         std::chrono::seconds(parts.tm_sec) + std::chrono::microseconds(std::llround(1e6 * fraction_s));
 }
 
 [[noreturn]] void refuse(const std::string& part, const std::string& calibrated, const std::string& found) {

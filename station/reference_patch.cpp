@@ -11,19 +11,26 @@ constexpr double kUsedFraction = 0.7;     // of the chip's edge: away from its b
 constexpr double kBesideThreads_mm = 20;  // the upright edge carries the threads' turns in its middle
 constexpr int kFewestPixels = 30;
 
-// The factor of the place that views[first] is the first to be lit from. The mean of its series is taken to stand half-way
-// between the views before and after it, under the lamp's other place; without one after it, its first to be as the last.
-double reading_at_strength_one(const std::vector<PatchView>& views, std::size_t first, double before,
+// The factor of the place that views[first] is the first to be lit from. The mean of its series is taken to stand on the
+// straight line in time between the views before and after it, under the lamp's other place; without one after it, its
+// first to be as the one before.
+double reading_at_strength_one(const std::vector<PatchView>& views, std::size_t first, double before, double before_s,
                                double other_at_strength_one) {
-  double sum = 0;
+  double sum = 0, sum_s = 0;
   int count = 0;
   std::size_t i = first;
-  for (; i < views.size() && views[i].behind == views[first].behind; ++i)
-    if (views[i].reading) sum += views[i].reading->strength, ++count;
+  for (; i < views.size() && views[i].behind == views[first].behind; ++i) {
+    if (!views[i].reading) continue;
+    sum += views[i].reading->strength;
+    sum_s += views[i].time_s;
+    ++count;
+  }
   while (i < views.size() && !views[i].reading) ++i;
-  if (other_at_strength_one == 0 || i == views.size()) return views[first].reading->strength / before;
+  if (other_at_strength_one == 0 || i == views.size() || !(views[i].time_s > before_s))
+    return views[first].reading->strength / before;
   const double after = views[i].reading->strength / other_at_strength_one;
-  return sum / count / (0.5 * (before + after));
+  const double part = (sum_s / count - before_s) / (views[i].time_s - before_s);
+  return sum / count / (before + part * (after - before));
 }
 
 }  // namespace
@@ -84,13 +91,14 @@ std::optional<PatchReading> read_patch(const cv::Mat3f& radiance, const cv::Mat1
 std::vector<double> lamp_strengths(const std::vector<PatchView>& views) {
   std::array<double, 2> at_strength_one{};  // readings in front and behind; 0: none yet
   std::vector<double> strengths;
-  double last = 1;
+  double last = 1, last_s = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
     const PatchView& view = views[i];
     if (view.reading) {
       double& one = at_strength_one.at(view.behind ? 1 : 0);
-      if (one == 0) one = reading_at_strength_one(views, i, last, at_strength_one.at(view.behind ? 0 : 1));
+      if (one == 0) one = reading_at_strength_one(views, i, last, last_s, at_strength_one.at(view.behind ? 0 : 1));
       last = view.reading->strength / one;
+      last_s = view.time_s;
     }
     strengths.push_back(last);
   }

@@ -38,10 +38,11 @@ std::optional<PatchReading> read_patch(const cv::Mat3f& radiance, const cv::Mat1
 
 // Strength of the lamp in a series of views relative to the first (1), from their readings. Readings under the lamp in front
 // and behind have factors of their own (position and surface are not known as well as a reading repeats): a series behind
-// stands, in the mean, half-way between what is read in front before and after it. Views without a reading get their
+// stands, in the mean, on the straight line in time between what is read in front before and after it. Views without a reading get their
 // predecessor's strength.
 struct PatchView {
   bool behind = false;
+  double time_s = 0.0;  // of the picture, from any beginning
   std::optional<PatchReading> reading;
 };
 std::vector<double> lamp_strengths(const std::vector<PatchView>& views);

@@ -75,14 +75,20 @@ std::vector<renderer::TriangleMesh> lying_tag_meshes(const calibration::TagLayou
   return meshes;
 }
 
-std::vector<renderer::TriangleMesh> board_meshes(const calibration::TagLayout& board) {
+std::vector<renderer::TriangleMesh> board_meshes(const calibration::TagLayout& board, double bow_mm) {
   Eigen::Vector2d extent = Eigen::Vector2d::Zero();
   for (const calibration::Tag& tag : board.tags)
     extent = extent.cwiseMax(tag.object_from_tag.translation().head<2>().cwiseAbs() +
                              Eigen::Vector2d::Constant(tag.size_mm * 0.75));
   std::vector<renderer::TriangleMesh> meshes{
       rectangle(Eigen::Isometry3d::Identity(), 2 * extent.x(), 2 * extent.y(), plain(kPaperAlbedo))};
-  add_tags(meshes, board);
+  calibration::TagLayout bent = board;
+  for (calibration::Tag& tag : bent.tags) {
+    const double u = tag.object_from_tag.translation().x() / extent.x();
+    tag.object_from_tag.translation().z() += bow_mm * (1 - u * u);
+    tag.object_from_tag.rotate(Eigen::AngleAxisd(std::atan(2 * bow_mm * u / extent.x()), Eigen::Vector3d::UnitY()));
+  }
+  add_tags(meshes, bent);
   return meshes;
 }
 

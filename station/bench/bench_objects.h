@@ -17,7 +17,8 @@ std::vector<renderer::TriangleMesh> table_and_platform(double platform_height_mm
 // beside the threads would light them by some per cent.
 std::vector<renderer::TriangleMesh> lying_tag_meshes(const calibration::TagLayout& tags);
 
-std::vector<renderer::TriangleMesh> board_meshes(const calibration::TagLayout& board);
+// `bow_mm`: how far its middle stands out, as one parabola across its width; its tags follow the slope.
+std::vector<renderer::TriangleMesh> board_meshes(const calibration::TagLayout& board, double bow_mm);
 std::vector<renderer::TriangleMesh> spectralon_meshes(const SpectralonPanel& panel,
                                                       double droop);  // calibration/spectralon.h
 std::vector<renderer::TriangleMesh> holder_meshes(const inversion::WrappedSpool& spool,

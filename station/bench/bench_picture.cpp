@@ -57,7 +57,7 @@ struct Painter {
       case rig::BenchObject::nothing:
         break;
       case rig::BenchObject::board:
-        scene.meshes = board_meshes(rig.board);
+        scene.meshes = board_meshes(rig.board, rig.simulation->board_bow_mm);
         break;
       case rig::BenchObject::spectralon:
         scene.meshes = spectralon_meshes(rig.spectralon, rig.simulation->spectralon_droop);

@@ -10,6 +10,7 @@
 #include "calibration/sensor_maps.h"
 #include "renderer/image_file.h"
 #include "station/bench_reading.h"
+#include "station/calibration_validity.h"
 #include "station/capture/manifest.h"
 #include "station/capture/picture_record.h"
 #include "station/capture/sha256.h"
@@ -103,10 +104,11 @@ std::vector<calibration::SensorPicture> read_bracket(const std::filesystem::path
 
 // `patches`: readings of the views before this one, in the order of their pictures; this one's is added.
 void read_lamp(const RigFile& rig, const inversion::WrappedSpool& spool, const calibration::Developed& picture,
-               const DevelopedView& developed, std::vector<PatchView>& patches) {
+               double time_s, const DevelopedView& developed, std::vector<PatchView>& patches) {
   if (!rig.reference_patch) return;
   const inversion::View& view = developed.view;
   patches.push_back({.behind = view.transmission,
+                     .time_s = time_s,
                      .reading = read_patch(picture.radiance, picture.saturated, view.camera, *rig.reference_patch,
                                            spool, developed.mounting, view.light)});
 }
@@ -143,7 +145,8 @@ void develop_view(const std::filesystem::path& session, const SessionFile& asked
   const calibration::SensorPicture dark = read_picture(session, picture_of(pictures, "dark-" + view.id));
   const calibration::Developed picture = calibration::develop(bracket, develop_options(calibration, dark, view.id));
   developed.exposure_s = bracket.front().exposure_s;
-  read_lamp(asked.rig, spool, picture, developed, patches);
+  const double time_s = 86400 * days_between(asked.utc, picture_of(pictures, view.id).utc);
+  read_lamp(asked.rig, spool, picture, time_s, developed, patches);
   view.image = picture.radiance;
   view.mask = inversion::thread_mask(spool, view.camera, view.light, kMaskSamples);
   developed.masked_pixels = cv::countNonZero(view.mask);

@@ -158,6 +158,7 @@ SimulatedRig parse_simulation(ObjectReader simulation) {
   prints.finish();
   truth.room_leak = simulation.number("room_leak", 0, 1);
   truth.room_radiance = simulation.vector3("room_radiance");
+  result.board_bow_mm = simulation.number("board_bow_mm", -20, 20);
   result.spectralon_droop = simulation.number("spectralon_droop_percent", 0, 30) / 100;
   truth.placement_mm = simulation.number("placement_mm", 0, 20);
   truth.placement_rad = simulation.number("placement_deg", 0, 20) * kRadPerDeg;

@@ -24,6 +24,7 @@ struct SpectralonPanel {
 
 struct SimulatedRig {
   rig::BenchTruth truth;
+  double board_bow_mm = 0;            // how far the board's middle stands out
   double spectralon_droop = 0;        // calibration/spectralon.h
   int samples_per_pixel = 32;         // of the path tracer that draws the spool
   int target_samples_per_pixel = 12;  // and of pictures without threads

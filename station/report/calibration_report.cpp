@@ -1,6 +1,7 @@
 #include "station/report/calibration_report.h"
 
 #include <cmath>
+#include <limits>
 
 #include "station/calibrate/error_budget.h"
 #include "station/documents/reader.h"
@@ -70,6 +71,7 @@ std::string budget_table(const RigCalibration& calibration) {
 // Each used corner of the board where it was seen, and a line of its error, enlarged; the field that they cover.
 PlotPanel corner_panel(const calibration::LensFit& fit) {
   constexpr double kEnlarged = 300.0;
+  const double gap = std::numeric_limits<double>::quiet_NaN();
   const double height = fit.lens.height_px;
   PlotPanel panel{.title = "lens: corners seen, errors x " + number_text(kEnlarged, 0),
                   .x_label = "column, px",
@@ -79,14 +81,14 @@ PlotPanel corner_panel(const calibration::LensFit& fit) {
                   .x_range = std::pair(0.0, static_cast<double>(fit.lens.width_px)),
                   .y_range = std::pair(0.0, height)};
   PlotLine seen{.title = "seen", .points = {}, .style = PlotStyle::points};
-  PlotLine predicted{.title = "predicted", .points = {}, .style = PlotStyle::points};
+  PlotLine errors{.title = "error", .points = {}};
   for (const calibration::CornerError& error : fit.corner_errors) {
     if (!error.used) continue;
     const Eigen::Vector2d at = error.corner.pixel, to = at + kEnlarged * error.error_px;
     seen.points.emplace_back(at.x(), height - at.y());
-    predicted.points.emplace_back(to.x(), height - to.y());
+    errors.points.insert(errors.points.end(), {{at.x(), height - at.y()}, {to.x(), height - to.y()}, {gap, gap}});
   }
-  panel.lines = {seen, predicted};
+  panel.lines = {seen, errors};
   return panel;
 }
 

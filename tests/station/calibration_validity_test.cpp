@@ -93,6 +93,7 @@ TEST(CalibrationValidity, AnOldCalibrationIsRefusedAndADateThatIsNoneToo) {
   c.calibration.utc = "yesterday";
   EXPECT_THAT(refusal(c), HasSubstr("\"yesterday\" is no date"));
   EXPECT_DOUBLE_EQ(days_between("2026-02-28T12:00:00Z", "2026-03-01T18:00:00Z"), 1.25);
+  EXPECT_DOUBLE_EQ(86400 * days_between("2026-02-28T12:00:00.250Z", "2026-02-28T12:00:02.5Z"), 2.25);
 }
 
 TEST(CalibrationValidity, AFailedGateIsRefusedWithItsReasonUnlessItIsAccepted) {

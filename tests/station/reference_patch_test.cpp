@@ -10,8 +10,8 @@ namespace {
 const inversion::WrappedSpool kSpool;
 const ReferencePatch kPatch;
 
-PatchView seen(double strength, bool behind = false) {
-  return {.behind = behind, .reading = PatchReading{.strength = strength, .sigma = 0}};
+PatchView seen(double strength, double time_s, bool behind = false) {
+  return {.behind = behind, .time_s = time_s, .reading = PatchReading{.strength = strength, .sigma = 0}};
 }
 
 // A camera at 600 mm in front of the holder and half as much above, and a lamp beside it.
@@ -71,14 +71,14 @@ TEST(ReferencePatch, ASaturatedAnUnseenOrAnUnlitChipGivesNoReading) {
 
 TEST(ReferencePatch, StrengthsAreRelativeToTheFirstViewWhateverTheChipsOwnFactors) {
   // Readings have a factor of 1.03 in front and 0.9 behind.
-  const std::vector<double> strengths = lamp_strengths({seen(1.03),
-                                                        seen(1.03 * 0.99),
-                                                        seen(1.03 * 0.98),
-                                                        seen(0.9 * 0.975, true),
-                                                        seen(0.9 * 0.965, true),
-                                                        {.behind = true, .reading = {}},
-                                                        seen(1.03 * 0.96)});
-  const std::vector<double> truth{1, 0.99, 0.98, 0.975, 0.965, 0.965, 0.96};
+  const std::vector<double> strengths = lamp_strengths({seen(1.03, 100),
+                                                        seen(1.03 * 0.99, 110),
+                                                        seen(1.03 * 0.98, 120),
+                                                        seen(0.9 * 0.975, 130, true),
+                                                        seen(0.9 * 0.965, 150, true),
+                                                        {.behind = true, .time_s = 160, .reading = {}},
+                                                        seen(1.03 * 0.94, 200)});
+  const std::vector<double> truth{1, 0.99, 0.98, 0.975, 0.965, 0.965, 0.94};
   ASSERT_EQ(strengths.size(), truth.size());
   for (std::size_t i = 0; i < truth.size(); ++i) EXPECT_NEAR(strengths[i], truth[i], 1e-12) << i;
   EXPECT_EQ(lamp_strengths({{}, {}}), (std::vector<double>{1, 1}));
