@@ -80,8 +80,9 @@ std::vector<renderer::TriangleMesh> board_meshes(const calibration::TagLayout& b
   for (const calibration::Tag& tag : board.tags)
     extent = extent.cwiseMax(tag.object_from_tag.translation().head<2>().cwiseAbs() +
                              Eigen::Vector2d::Constant(tag.size_mm * 0.75));
-  std::vector<renderer::TriangleMesh> meshes{
-      rectangle(Eigen::Isometry3d::Identity(), 2 * extent.x(), 2 * extent.y(), plain(kPaperAlbedo))};
+  // Behind every bent tag: the paper between them stays flat.
+  const Eigen::Isometry3d behind(Eigen::Translation3d(0, 0, bow_mm == 0 ? 0 : -0.5 - std::abs(bow_mm)));
+  std::vector<renderer::TriangleMesh> meshes{rectangle(behind, 2 * extent.x(), 2 * extent.y(), plain(kPaperAlbedo))};
   calibration::TagLayout bent = board;
   for (calibration::Tag& tag : bent.tags) {
     const double u = tag.object_from_tag.translation().x() / extent.x();
