@@ -1,11 +1,13 @@
 #include "station/calibrate/solve_calibration.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
 
 #include "calibration/pose.h"
+#include "station/calibrate/lamp_monitor.h"
 #include "station/calibrate/lamps.h"
 #include "station/calibrate/light_patches.h"
 #include "station/calibrate/solve_response.h"
@@ -61,11 +63,16 @@ double working_distance_mm(const RigFile& rig) {
   return (Eigen::Vector3d(0, 0, rig.platform_height_mm + 34) - rig.world_from_camera_by_tape.translation()).norm();
 }
 
+constexpr double kTagsSigma =
+    0.0015;  // of an output told by the table's tags: grey paper, light by way of other things
+
 calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& lens,
                                   const Eigen::Isometry3d& world_from_camera, const std::vector<Loaded>& loaded,
-                                  const calibration::SensorResponse* response) {
+                                  const calibration::StillTags& still, const calibration::SensorResponse* response) {
   std::vector<calibration::LightPatch> patches;
   std::vector<calibration::LightPicture> pictures;
+  std::array<std::vector<std::size_t>, 2> under;  // pictures under the lamp in front, behind
+  std::array<std::vector<std::map<int, double>>, 2> tags;
   for (const Loaded& entry : loaded) {
     const bool front = entry.picture.role == CalibrationRole::front_light;
     if (!front && entry.picture.role != CalibrationRole::back_light) continue;
@@ -77,7 +84,18 @@ calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& l
     const auto cells = panel_patches(entry.raw, lens, world_from_camera, pose->camera_from_object, rig.spectralon,
                                      front ? 0 : 1, static_cast<int>(pictures.size()), response);
     patches.insert(patches.end(), cells.begin(), cells.end());
+    under.at(front ? 0 : 1).push_back(pictures.size());
+    tags.at(front ? 0 : 1).push_back(tag_radiances(calibration::develop(entry.raw, {.response = response}), still));
     pictures.push_back({.name = entry.picture.id, .output = entry.picture.lamp_output});
+  }
+  for (const std::size_t place : {0, 1}) {
+    const std::vector<std::optional<double>> outputs = lamp_outputs(tags.at(place));
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+      calibration::LightPicture& picture = pictures.at(under.at(place).at(i));
+      if (picture.output || !outputs.at(i)) continue;
+      picture.output = outputs.at(i);
+      picture.output_sigma = kTagsSigma;
+    }
   }
   return calibration::fit_light(patches, lamp_guesses(rig), light_options(rig, {lens.width_px, lens.height_px}),
                                 pictures);
@@ -115,8 +133,8 @@ RigCalibration solve_calibration(const RigFile& rig, const std::filesystem::path
   const auto total = static_cast<int>(pictures.size());
   result.sensor = solve_response(folder, pictures,
                                  [&](const std::string& label) { progress(std::min(read++, total), total, label); });
-  result.light =
-      solve_light(rig, result.lens.lens, result.platform.world_from_camera, loaded, &result.sensor->response);
+  result.light = solve_light(rig, result.lens.lens, result.platform.world_from_camera, loaded, result.still_tags,
+                             &result.sensor->response);
   if (!result.lens.converged || !result.platform.converged || !result.light.converged)
     throw std::runtime_error(std::string("the calibration did not converge (") +
                              (result.lens.converged ? "" : "lens ") + (result.platform.converged ? "" : "platform ") +
