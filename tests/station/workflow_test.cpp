@@ -137,6 +137,37 @@ TEST_F(Workflow, SessionHasEveryFileUpToMasksAndEachStageRunsAgainAlone) {
 }
 
 // Rows 41 and 42 of the station's faults: each is corrected, or refused with a line that says what to do.
+TEST_F(Workflow, ACameraThatWasBumpedATagThatWasMovedAndAnotherLensAreNoticedBeforeAPictureIsKept) {
+  const auto captured_with = [&](const std::string& name, const std::function<void(json&)>& change) {
+    fs::copy(path("calibration"), path(name), fs::copy_options::recursive);
+    json calibration = station::read_json_file(path(name) + "/calibration.json");
+    change(calibration);
+    station::write_json_file(path(name) + "/calibration.json", calibration);
+    const std::string session = path(name) + "_session";
+    const ProgramResult result = run_threadstation(capture_arguments(session, "rig.json", "silk_red", name));
+    EXPECT_FALSE(fs::exists(session + "/raw/pose-horizontal-1.arw")) << name;
+    return result;
+  };
+  const auto move_tag = [](json& tag) {
+    for (std::size_t i = 1; i < tag.size(); i += 2) tag[i] = tag[i].get<double>() + 1.5;  // px
+  };
+  expect_one_line(captured_with("bumped",
+                                [&](json& calibration) {
+                                  for (json& tag : calibration["platform"]["table_tags_px"]) move_tag(tag);
+                                }),
+                  "bumped");
+  expect_one_line(
+      captured_with("moved", [&](json& calibration) { move_tag(calibration["platform"]["table_tags_px"][2]); }),
+      "tag 402 on the table moved");
+  expect_one_line(captured_with("other_lens", [](json& calibration) { calibration["camera"]["lens"] = "90 mm"; }),
+                  "lens \"90 mm\"");
+  expect_one_line(captured_with("old", [](json& calibration) { calibration["utc"] = "2020-01-01T00:00:00Z"; }),
+                  "days old");
+  expect_one_line(
+      captured_with("failed", [](json& calibration) { calibration["platform"]["gates"][0]["passed"] = false; }),
+      "--accept-calibration");
+}
+
 // On the simulated clock, from the session's start to a step's exposure.
 double seconds_until(const std::string& session, const std::string& step) {
   std::ifstream journal(session + "/journal.jsonl");
