@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "station/documents/board_file.h"
+#include "station/documents/calibration_file.h"
 #include "station/documents/rig_file.h"
 #include "station/documents/spool.h"
 #include "tests/station/refusal.h"
@@ -36,6 +37,20 @@ TEST(Documents, EveryRigAndSpoolInFixturesIsRead) {
     ++read;
   }
   EXPECT_GE(read, 6);
+}
+
+TEST(Documents, ACalibrationIsReadAndWrittenWithoutLoss) {
+  const std::string file = std::string(FIXTURES_DIR) + "/calibrations/simulated.json";
+  json document = read_json_file(file), written = to_json(read_calibration(file));
+  // Angles are radians inside: the last digit of degrees may change.
+  for (const char* key : {"angles_deg", "readings_deg"})
+    for (std::size_t i = 0; i < document["platform"][key].size(); ++i)
+      EXPECT_NEAR(written["platform"][key][i].get<double>(), document["platform"][key][i].get<double>(), 1e-12);
+  for (json* each : {&document, &written})
+    for (const char* key :
+         {"angles_deg", "readings_deg", "angle_offset_deg", "angle_rms_deg", "axis_to_table_normal_deg"})
+      (*each)["platform"].erase(key);
+  EXPECT_EQ(json::diff(document, written), json::array());
 }
 
 TEST(Documents, EveryBoardInFixturesIsRead) {
