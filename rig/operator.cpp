@@ -18,6 +18,8 @@ std::string object_name(BenchObject object) {
       return "the Spectralon target";
     case BenchObject::holder:
       return "the holder";
+    case BenchObject::colour_chart:
+      return "the colour chart";
     case BenchObject::nothing:
       break;
   }

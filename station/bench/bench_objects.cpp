@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "calibration/colour_chart.h"
 #include "calibration/spectralon.h"
+#include "station/calibrate/chart_patches.h"
 
 namespace station {
 namespace {
@@ -103,6 +105,23 @@ std::vector<renderer::TriangleMesh> spectralon_meshes(const SpectralonPanel& pan
       return 1 + droop * calibration::droop_shape(cos_theta_i, cos_theta_o, cos_phi);
     };
   add_tags(meshes, panel.tags);
+  return meshes;
+}
+
+std::vector<renderer::TriangleMesh> colour_chart_meshes(const ColourChart& chart,
+                                                        const Eigen::Matrix3d& camera_from_linear_srgb) {
+  std::vector<renderer::TriangleMesh> meshes{
+      rectangle(Eigen::Isometry3d::Identity(), chart.plate_mm, chart.plate_mm, plain(kBlackPaintAlbedo))};
+  const auto& patches = calibration::colour_chart();
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    const Eigen::Vector3d colour = camera_from_linear_srgb * calibration::linear_srgb_of_lab(patches[i].lab_d50);
+    const Eigen::Vector3f albedo = colour.cwiseMax(0.0).cwiseMin(1.0).cast<float>();
+    const Eigen::Isometry3d place(
+        Eigen::Translation3d(chart_patch_centre(chart, i) + Eigen::Vector3d(0, 0, kPaperLift_mm)));
+    meshes.push_back(rectangle(place, chart.patch_mm, chart.patch_mm,
+                               cv::Mat3f(1, 1, cv::Vec3f(albedo[0], albedo[1], albedo[2]))));
+  }
+  add_tags(meshes, chart.tags);
   return meshes;
 }
 

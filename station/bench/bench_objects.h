@@ -21,6 +21,9 @@ std::vector<renderer::TriangleMesh> lying_tag_meshes(const calibration::TagLayou
 std::vector<renderer::TriangleMesh> board_meshes(const calibration::TagLayout& board, double bow_mm);
 std::vector<renderer::TriangleMesh> spectralon_meshes(const SpectralonPanel& panel,
                                                       double droop);  // calibration/spectralon.h
+// `camera_from_linear_srgb`: what the patches' colours are to the simulated camera.
+std::vector<renderer::TriangleMesh> colour_chart_meshes(const ColourChart& chart,
+                                                        const Eigen::Matrix3d& camera_from_linear_srgb);
 std::vector<renderer::TriangleMesh> holder_meshes(const inversion::WrappedSpool& spool,
                                                   const calibration::TagLayout& tags);
 

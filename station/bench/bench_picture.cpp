@@ -1,5 +1,6 @@
 #include "station/bench/bench_picture.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -44,6 +45,10 @@ void add(renderer::Scene& scene, std::vector<renderer::TriangleMesh> meshes,
   }
 }
 
+Eigen::Matrix3d matrix_of(const std::array<double, 9>& rows) {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rows.data());
+}
+
 struct Painter {
   RigFile rig;
   std::optional<Spool> spool;
@@ -61,6 +66,11 @@ struct Painter {
         break;
       case rig::BenchObject::spectralon:
         scene.meshes = spectralon_meshes(rig.spectralon, rig.simulation->spectralon_droop);
+        break;
+      case rig::BenchObject::colour_chart:
+        if (!rig.colour_chart)
+          throw std::runtime_error("rig \"" + rig.name + "\" has no colour_chart; there is none to draw");
+        scene.meshes = colour_chart_meshes(*rig.colour_chart, matrix_of(rig.linear_srgb_from_camera).inverse());
         break;
       case rig::BenchObject::holder:
         if (!spool)

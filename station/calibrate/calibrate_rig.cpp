@@ -23,6 +23,7 @@ bool belongs_to(CalibrationRole role, const std::string& part) {
     case CalibrationRole::rapid:
     case CalibrationRole::dark:
     case CalibrationRole::white_field:
+    case CalibrationRole::colour:
       return part == "response";
   }
   return false;

@@ -11,8 +11,8 @@ namespace station {
 namespace {
 
 constexpr double kRadPerDeg = M_PI / 180.0;
-constexpr std::array<const char*, 8> kRoleWords{"lens",     "turning", "front_light", "back_light",
-                                                "response", "rapid",   "dark",        "white_field"};
+constexpr std::array<const char*, 9> kRoleWords{"lens",  "turning", "front_light", "back_light", "response",
+                                                "rapid", "dark",    "white_field", "colour"};
 
 Eigen::Matrix3d turn(double degrees, const Eigen::Vector3d& axis) {
   return Eigen::AngleAxisd(degrees * kRadPerDeg, axis).toRotationMatrix();
@@ -95,6 +95,23 @@ void add_panel_steps(const RigFile& rig, std::vector<CalibrationStep>& plan) {
   }
 }
 
+// Facing the camera, turned away from the lamp in front, so that gloss goes elsewhere.
+void add_chart_step(const RigFile& rig, std::vector<CalibrationStep>& plan) {
+  if (!rig.colour_chart) return;
+  const Eigen::Vector3d centre(18, 0, rig.platform_height_mm + rig.colour_chart->plate_mm / 2 + 6);
+  const Eigen::Vector3d to_camera = (rig.world_from_camera_by_tape.translation() - centre).normalized();
+  const Eigen::Vector3d to_lamp = (rig.front_lamp_mm - centre).normalized();
+  const Eigen::Vector3d away = to_lamp - to_camera.dot(to_lamp) * to_camera;
+  const Eigen::Vector3d normal = (to_camera - 0.4 * away.normalized()).normalized();  // 22 degrees from the camera
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear().col(0) = Eigen::Vector3d::UnitZ().cross(normal).normalized();
+  pose.linear().col(1) = normal.cross(pose.linear().col(0));
+  pose.linear().col(2) = normal;
+  pose.translation() = centre;
+  plan.push_back(step(CalibrationRole::colour, 1,
+                      {.object = rig::BenchObject::colour_chart, .pose = pose, .lamp = rig::Lamp::front}));
+}
+
 }  // namespace
 
 std::string to_text(CalibrationRole role) {
@@ -113,6 +130,7 @@ std::vector<CalibrationStep> make_calibration_plan(const RigFile& rig) {
   add_platform_steps(plan);
   add_response_steps(rig, plan);
   add_panel_steps(rig, plan);
+  add_chart_step(rig, plan);
   return plan;
 }
 

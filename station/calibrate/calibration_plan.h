@@ -11,7 +11,7 @@
 
 namespace station {
 
-enum class CalibrationRole { lens, turning, front_light, back_light, response, rapid, dark, white_field };
+enum class CalibrationRole { lens, turning, front_light, back_light, response, rapid, dark, white_field, colour };
 
 struct CalibrationStep {
   std::string id;  // file name without extension

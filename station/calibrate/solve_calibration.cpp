@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "calibration/pose.h"
+#include "station/calibrate/chart_patches.h"
 #include "station/calibrate/lamp_monitor.h"
 #include "station/calibrate/lamps.h"
 #include "station/calibrate/light_patches.h"
@@ -101,6 +102,25 @@ calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& l
                                 pictures);
 }
 
+// std::nullopt when no picture of the chart was taken.
+std::optional<calibration::ColourFit> solve_colour(const RigFile& rig, const RigCalibration& calibration,
+                                                   const std::vector<Loaded>& loaded) {
+  for (const Loaded& entry : loaded) {
+    if (entry.picture.role != CalibrationRole::colour || !rig.colour_chart) continue;
+    const auto pose = calibration::fit_pose(calibration.lens.lens, rig.colour_chart->tags, entry.tags);
+    if (!pose)
+      throw std::runtime_error(entry.picture.id +
+                               " does not show the colour chart: none of its tags was found; hold it "
+                               "into the picture and take it again with calibrate --only response");
+    calibration::DevelopOptions options{.vignetting = calibration.light.vignetting};
+    if (calibration.sensor) options.response = &calibration.sensor->response;
+    return calibration::fit_colours(chart_colours(calibration::develop(entry.raw, options), calibration.lens.lens,
+                                                  calibration.platform.world_from_camera, pose->camera_from_object,
+                                                  *rig.colour_chart, calibration.light));
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 RigCalibration solve_calibration(const RigFile& rig, const std::filesystem::path& folder,
@@ -140,6 +160,10 @@ RigCalibration solve_calibration(const RigFile& rig, const std::filesystem::path
                              (result.lens.converged ? "" : "lens ") + (result.platform.converged ? "" : "platform ") +
                              (result.light.converged ? "" : "light ") +
                              "); take its pictures again with calibrate --only");
+  result.colour = solve_colour(rig, result, loaded);
+  if (result.colour)
+    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(result.linear_srgb_from_camera.data()) =
+        result.colour->linear_srgb_from_camera;
   progress(static_cast<int>(pictures.size()), static_cast<int>(pictures.size()), "solved");
   return result;
 }
@@ -165,7 +189,13 @@ std::string describe(const RigCalibration& calibration) {
   }
   std::snprintf(text, sizeof text, "          beam cos^%.2f, panel's droop %.1f %% at 60 deg, patches rms %.2f %%\n",
                 light.beam_exponent, 100 * light.droop.sum(), 100 * light.relative_rms);
-  return lines + text + (calibration.sensor ? describe(*calibration.sensor) : std::string());
+  lines += text;
+  if (calibration.colour) {
+    std::snprintf(text, sizeof text, "colour    chart to CIEDE2000 %.2f in the mean, %.2f at most\n",
+                  calibration.colour->mean_delta_e, calibration.colour->largest_delta_e);
+    lines += text;
+  }
+  return lines + (calibration.sensor ? describe(*calibration.sensor) : std::string());
 }
 
 }  // namespace station

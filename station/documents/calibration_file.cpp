@@ -187,6 +187,17 @@ calibration::LightFit parse_light(ObjectReader reader, double& albedo) {
   return fit;
 }
 
+calibration::ColourFit parse_colour(ObjectReader reader, const std::array<double, 9>& matrix) {
+  calibration::ColourFit fit;
+  fit.linear_srgb_from_camera = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(matrix.data());
+  fit.delta_e = reader.numbers("delta_e_2000");
+  fit.mean_delta_e = reader.number("mean_delta_e_2000", 0, 1000);
+  fit.largest_delta_e = reader.number("largest_delta_e_2000", 0, 1000);
+  fit.gates = parse_gates(reader, "gates");
+  reader.finish();
+  return fit;
+}
+
 }  // namespace
 
 std::vector<calibration::Gate> all_gates(const RigCalibration& calibration) {
@@ -195,6 +206,8 @@ std::vector<calibration::Gate> all_gates(const RigCalibration& calibration) {
   gates.insert(gates.end(), calibration.light.gates.begin(), calibration.light.gates.end());
   if (calibration.sensor)
     gates.insert(gates.end(), calibration.sensor->gates.begin(), calibration.sensor->gates.end());
+  if (calibration.colour)
+    gates.insert(gates.end(), calibration.colour->gates.begin(), calibration.colour->gates.end());
   return gates;
 }
 
@@ -211,6 +224,11 @@ json to_json(const RigCalibration& calibration) {
                    {"light", light_json(calibration.light, calibration.spectralon_albedo)},
                    {"picture_sha256", calibration.picture_sha256}};
   if (calibration.sensor) document["sensor"] = to_json(*calibration.sensor);
+  if (calibration.colour)
+    document["colour"] = {{"delta_e_2000", calibration.colour->delta_e},
+                          {"mean_delta_e_2000", calibration.colour->mean_delta_e},
+                          {"largest_delta_e_2000", calibration.colour->largest_delta_e},
+                          {"gates", to_json(calibration.colour->gates)}};
   return document;
 }
 
@@ -226,6 +244,8 @@ RigCalibration parse_calibration(const json& document, const std::string& source
   calibration.lens = parse_lens_fit(reader.object("lens"));
   calibration.platform = parse_platform(reader.object("platform"), calibration.still_tags);
   calibration.light = parse_light(reader.object("light"), calibration.spectralon_albedo);
+  if (reader.has("colour"))
+    calibration.colour = parse_colour(reader.object("colour"), calibration.linear_srgb_from_camera);
   if (reader.has("sensor")) calibration.sensor = parse_sensor_section(reader.object("sensor"));
   const json& hashes = reader.raw("picture_sha256");
   if (!hashes.is_array()) reader.refuse("picture_sha256", "expected a list of text");

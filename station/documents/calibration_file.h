@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/colour_chart.h"
 #include "calibration/lens.h"
 #include "calibration/light.h"
 #include "calibration/platform.h"
@@ -28,9 +29,10 @@ struct RigCalibration {
   CameraSetup camera;
   calibration::LensFit lens;
   calibration::PlatformFit platform;
-  calibration::StillTags still_tags;    // of the table, as the platform pictures showed them
-  calibration::LightFit light;          // light 0 = front, 1 = back
-  std::optional<SensorSection> sensor;  // absent: black level and exposure times as the files say
+  calibration::StillTags still_tags;             // of the table, as the platform pictures showed them
+  calibration::LightFit light;                   // light 0 = front, 1 = back
+  std::optional<SensorSection> sensor;           // absent: black level and exposure times as the files say
+  std::optional<calibration::ColourFit> colour;  // absent: no chart, linear_srgb_from_camera is the rig file's
   double spectralon_albedo = 0.99;
   std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major; for display only
   std::string rig_name, utc, software;

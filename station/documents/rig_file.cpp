@@ -63,8 +63,13 @@ void scale_prints(RigFile& rig, const ObjectReader& reader) {
   for (calibration::TagLayout* layout :
        {&rig.board, &rig.platform_ring, &rig.table_tags, &rig.lamp_tags, &rig.holder_tags, &rig.spectralon.tags})
     *layout = calibration::scaled(std::move(*layout), rig.control_bar_mm);
-  const std::string shared = calibration::shared_ids(
-      {rig.board, rig.platform_ring, rig.table_tags, rig.lamp_tags, rig.holder_tags, rig.spectralon.tags});
+  std::vector<calibration::TagLayout> layouts{rig.board,     rig.platform_ring, rig.table_tags,
+                                              rig.lamp_tags, rig.holder_tags,   rig.spectralon.tags};
+  if (rig.colour_chart) {
+    rig.colour_chart->tags = calibration::scaled(std::move(rig.colour_chart->tags), rig.control_bar_mm);
+    layouts.push_back(rig.colour_chart->tags);
+  }
+  const std::string shared = calibration::shared_ids(layouts);
   if (!shared.empty()) reader.refuse("first_id", shared + "; give each printed target ids of its own");
 }
 
@@ -94,6 +99,16 @@ rig::LampChanges parse_lamp_changes(ObjectReader reader) {
   changes.pwm_duty = reader.number("pwm_duty", 0.01, 1);
   reader.finish();
   return changes;
+}
+
+ColourChart parse_chart(ObjectReader reader) {
+  ColourChart chart;
+  chart.patch_mm = reader.number("patch_mm", 1, 200);
+  chart.pitch_mm = reader.number("pitch_mm", chart.patch_mm, 300);
+  chart.plate_mm = reader.number("plate_mm", 6 * chart.pitch_mm, 2000);
+  chart.tags = corner_tags(reader.object("tags"), "colour chart", Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
+  reader.finish();
+  return chart;
 }
 
 rig::TrueSensor parse_sensor(ObjectReader sensor, rig::TrueLens& lens) {
@@ -218,6 +233,7 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
         ReferencePatch{.edge_mm = patch.number("edge_mm", 1, 100), .albedo = patch.number("albedo", 0.01, 1)};
     patch.finish();
   }
+  if (reader.has("colour_chart")) rig.colour_chart = parse_chart(reader.object("colour_chart"));
   ObjectReader panel = reader.object("spectralon");
   rig.spectralon.albedo = panel.number("albedo", 0.5, 1);
   rig.spectralon.white_mm = panel.number("white_mm", 1, 1000);

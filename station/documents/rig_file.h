@@ -22,6 +22,13 @@ struct SpectralonPanel {
   calibration::TagLayout tags;
 };
 
+// 24 patches, 4 rows of 6, on a black plate with a tag at each corner (calibration/colour_chart.h).
+struct ColourChart {
+  double patch_mm = 8, pitch_mm = 9.5;
+  double plate_mm = 88;
+  calibration::TagLayout tags;
+};
+
 struct SimulatedRig {
   rig::BenchTruth truth;
   double board_bow_mm = 0;            // how far the board's middle stands out
@@ -49,6 +56,7 @@ struct RigFile {
   calibration::TagLayout holder_tags;
   std::optional<ReferencePatch> reference_patch;
   SpectralonPanel spectralon;
+  std::optional<ColourChart> colour_chart;
   Eigen::Vector3d front_lamp_mm, back_lamp_mm;  // by tape, world frame
   Eigen::Vector3d lamp_aim_mm;                  // what both are pointed at
   double lamp_radius_mm = 0;                    // of its bright face

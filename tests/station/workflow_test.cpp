@@ -49,6 +49,11 @@ TEST_F(Workflow, CalibrationFindsTheBenchAsItIs) {
         station::camera_of(station::lens_of(truth.lens), truth.lens.world_from_camera, false), point);
     EXPECT_LT((seen - true_seen).norm(), 1.5) << point.transpose();
   }
+  // The chart's colours are drawn by the rig file's matrix; 0.03 in a matrix of about 1 is one unit of colour difference.
+  const auto drawn = station::read_rig(path("rig.json")).linear_srgb_from_camera;
+  ASSERT_TRUE(found.colour.has_value());
+  EXPECT_LT(found.colour->mean_delta_e, 2.0);
+  for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(found.linear_srgb_from_camera[i], drawn[i], 0.03) << i;
   // Lamps: found within 0.5 mm here; asked are 2.5 and 5 mm, and the irradiance about the spool to 0.5 and 1 %.
   EXPECT_LT((found.light.positions[0] - truth.front.position).norm(), 2.5);
   EXPECT_LT((found.light.positions[1] - truth.back.position).norm(), 5);
