@@ -89,7 +89,7 @@ TEST_F(LightFaults, TheRoomLightIsOnInAllPicturesOfTheFrontLamp) {
   for (const json& entry : list["pictures"]) all.push_back(entry["id"]);
   std::erase_if(all, [](const std::string& id) { return !id.starts_with("front_light"); });
   take_again(folder, all, [&](rig::BenchState& state) { state.room_radiance = room; });
-  expect_one_line(solve(folder), "the light calibration is not good enough");
+  expect_one_line(solve(folder), "not good enough: lamp output in one picture");
 }
 
 TEST_F(LightFaults, TheLampIsMovedBetweenPictures) {
