@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "calibration/correspondences.h"
+#include "calibration/median.h"
 #include "calibration/projection.h"
 
 namespace calibration {
@@ -157,9 +158,7 @@ double median_tag_error(const Lens& lens, const TagLayout& layout, const TagObse
                         const Isometry3d& pose) {
   std::vector<double> errors;
   for (const TagDetection& tag : tags) errors.push_back(tag_error(lens, layout, tag, pose));
-  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-  std::nth_element(errors.begin(), middle, errors.end());
-  return *middle;
+  return median(errors);
 }
 
 // The largest set of tags that agree with one pose. A pose from one tag alone reaches the others with an error of

@@ -8,6 +8,9 @@
 #include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <utility>
+
+#include "calibration/median.h"
 
 namespace calibration {
 namespace {
@@ -22,9 +25,7 @@ double median(const cv::Mat1f& values, const cv::Mat1b& leave_out = {}) {
     for (int column = 0; column < values.cols; ++column)
       if (leave_out.empty() || !leave_out(row, column)) all.push_back(values(row, column));
   if (all.empty()) return 0.0;
-  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-  std::nth_element(all.begin(), middle, all.end());
-  return static_cast<double>(*middle);
+  return static_cast<double>(calibration::median<float>(std::move(all)));
 }
 
 template <typename T>

@@ -1,18 +1,13 @@
 #include "calibration/still_tags.h"
 
-#include <algorithm>
 #include <cstdio>
+
+#include "calibration/median.h"
 
 namespace calibration {
 namespace {
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-Eigen::Vector2d median(const std::vector<Eigen::Vector2d>& points) {
+Eigen::Vector2d middle_of(const std::vector<Eigen::Vector2d>& points) {
   std::vector<double> x, y;
   for (const Eigen::Vector2d& point : points) {
     x.push_back(point.x());
@@ -34,7 +29,7 @@ StillTags still_tags(const TagLayout& layout, const std::vector<TagObservation>&
       }
     }
     if (seen[0].empty()) continue;
-    for (std::size_t c = 0; c < 4; ++c) still[tag.id][c] = median(seen[c]);
+    for (std::size_t c = 0; c < 4; ++c) still[tag.id][c] = middle_of(seen[c]);
   }
   return still;
 }
@@ -51,7 +46,7 @@ std::optional<Shift> shift_of(const StillTags& reference, const TagObservation& 
     shifts.push_back(mean);
   }
   if (shifts.size() < 2) return std::nullopt;
-  Shift shift{.mean_px = median(shifts), .tags = static_cast<int>(shifts.size())};
+  Shift shift{.mean_px = middle_of(shifts), .tags = static_cast<int>(shifts.size())};
   for (std::size_t i = 0; i < shifts.size(); ++i) {
     const double own_px = (shifts[i] - shift.mean_px).norm();
     if (own_px <= shift.odd_px) continue;

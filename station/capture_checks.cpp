@@ -1,5 +1,6 @@
 #include "station/capture_checks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <opencv2/imgproc.hpp>
@@ -8,9 +9,10 @@
 
 #include "calibration/develop.h"
 #include "calibration/lamp_stability.h"
-#include "calibration/pose.h"
 #include "calibration/sensor_maps.h"
+#include "station/bench_reading.h"
 #include "station/capture/picture_record.h"
+#include "station/develop/mounted_holder.h"
 #include "station/exposure.h"
 #include "station/reference_patch.h"
 #include "station/report/html.h"
@@ -21,16 +23,10 @@ namespace {
 
 constexpr double kOverExposed = 0.97, kOverExposedPercentile = 95, kUnderExposed = 0.02;
 constexpr double kMostDarkOffset = 1e-3;  // of the range
-constexpr int kFewestTags = 2;
 
 std::string percent(double part) {
   return number_text(100 * part, 1) + " %";
 }
-
-struct Mounted {
-  Eigen::Isometry3d world_from_holder;
-  double reading_rad;
-};
 
 struct LastView {
   rig::Lamp lamp;
@@ -48,7 +44,7 @@ class Inspection {
   void operator()(const PlanStep& step, const rig::Picture& picture, double reading_rad) {
     if (step.kind == StepKind::exposure) return;  // its view has been looked at
     const calibration::SensorPicture raw = calibration::read_sensor_bytes(picture.bytes, "picture of " + step.id);
-    if (step.kind == StepKind::pose) mounted_[step.mounting] = holder_in(raw, reading_rad);
+    if (step.kind == StepKind::pose) posed_[step.mounting].push_back({step.id, reading_rad, tags_in(raw)});
     if (step.kind == StepKind::dark && calibration_.sensor) check_dark(step, raw);
     if (step.kind == StepKind::view) check_view(step, raw, reading_rad);
   }
@@ -100,12 +96,11 @@ class Inspection {
   std::optional<PatchReading> patch_reading(const PlanStep& step, const calibration::SensorPicture& raw,
                                             double reading_rad) {
     if (!asked_.rig.reference_patch) return std::nullopt;
-    if (!mounted_.contains(step.mounting)) mounted_[step.mounting] = stored_pose(step.mounting);
-    const std::optional<Mounted>& mounted = mounted_.at(step.mounting);
-    if (!mounted) return std::nullopt;
-    const double turned_rad = calibration_.platform.scale * (reading_rad - mounted->reading_rad);
+    if (!mounted_.contains(step.mounting)) mounted_[step.mounting] = holder_of(step.mounting);
+    const BenchReading bench = read_bench(calibration_, asked_.rig, tags_in(raw));
+    const double angle_rad = bench.angle ? bench.angle->angle_rad : calibration_.platform.scale * reading_rad;
     const Eigen::Isometry3d holder_from_world =
-        (Eigen::AngleAxisd(turned_rad, Eigen::Vector3d::UnitZ()) * mounted->world_from_holder).inverse();
+        (Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()) * mounted_.at(step.mounting)).inverse();
     calibration::DevelopOptions options{.vignetting = calibration_.light.vignetting};
     if (calibration_.sensor) options.response = &calibration_.sensor->response;
     const calibration::Developed picture = calibration::develop(raw, options);
@@ -117,25 +112,26 @@ class Inspection {
         lamp_in_holder(calibration_, asked_.rig.lamp_radius_mm, step.lamp == rig::Lamp::back, holder_from_world));
   }
 
-  std::optional<Mounted> holder_in(const calibration::SensorPicture& raw, double reading_rad) const {
-    const auto pose = calibration::fit_pose(calibration_.lens.lens, asked_.rig.holder_tags, tags_in(raw));
-    if (!pose || pose->tags_used < kFewestTags) return std::nullopt;
-    return Mounted{calibration_.platform.world_from_camera * pose->camera_from_object, reading_rad};
-  }
-
-  // Of a session that goes on: from the picture that an earlier run took.
-  std::optional<Mounted> stored_pose(rig::Mounting mounting) const {
-    for (const auto& [id, record] : taken_pictures(session_.records()))
-      if (record.kind == StepKind::pose && record.mounting == mounting)
-        return holder_in(calibration::read_sensor_file(session_.path() / record.file), record.read_angle_rad);
-    return std::nullopt;
+  // From this run's pose pictures; a session that goes on has those of an earlier run.
+  Eigen::Isometry3d holder_of(rig::Mounting mounting) const {
+    std::vector<PosePicture> pictures;
+    if (const auto posed = posed_.find(mounting); posed != posed_.end()) pictures = posed->second;
+    for (const auto& [id, record] : taken_pictures(session_.records())) {
+      const auto same_step = [&step = id](const PosePicture& picture) { return picture.step == step; };
+      if (record.kind != StepKind::pose || record.mounting != mounting || std::ranges::any_of(pictures, same_step))
+        continue;
+      const calibration::SensorPicture raw = calibration::read_sensor_file(session_.path() / record.file);
+      pictures.push_back({id, record.read_angle_rad, tags_in(raw)});
+    }
+    return measure_holder(pictures, calibration_, asked_.rig).platform_from_holder;
   }
 
   const SessionFolder& session_;
   const SessionFile& asked_;
   RigCalibration calibration_;
-  std::map<rig::Mounting, std::optional<Mounted>> mounted_;
-  std::optional<LastView> last_;  // of this run
+  std::map<rig::Mounting, std::vector<PosePicture>> posed_;  // this run's
+  std::map<rig::Mounting, Eigen::Isometry3d> mounted_;       // platform_from_holder
+  std::optional<LastView> last_;                             // of this run
 };
 
 }  // namespace

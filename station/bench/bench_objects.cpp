@@ -4,7 +4,6 @@
 
 #include "calibration/colour_chart.h"
 #include "calibration/spectralon.h"
-#include "station/calibrate/chart_patches.h"
 
 namespace station {
 namespace {

@@ -10,16 +10,9 @@
 namespace station {
 namespace {
 
-constexpr std::size_t kColumns = 6, kRows = 4;
 constexpr double kUsedFraction = 0.6;  // of a patch's edge: away from its border, and from the pose's error
 
 }  // namespace
-
-Eigen::Vector3d chart_patch_centre(const ColourChart& chart, std::size_t patch) {
-  const double column = static_cast<double>(patch % kColumns) - (kColumns - 1) / 2.0;
-  const double row = static_cast<double>(patch / kColumns) - (kRows - 1) / 2.0;
-  return {column * chart.pitch_mm, -row * chart.pitch_mm, 0};
-}
 
 std::vector<Eigen::Vector3d> chart_colours(const calibration::Developed& picture, const calibration::Lens& lens,
                                            const Eigen::Isometry3d& world_from_camera,
@@ -30,7 +23,7 @@ std::vector<Eigen::Vector3d> chart_colours(const calibration::Developed& picture
   const double half = chart.patch_mm * kUsedFraction / 2;
   const cv::Rect frame(0, 0, picture.radiance.cols, picture.radiance.rows);
   std::vector<Eigen::Vector3d> colours;
-  for (std::size_t patch = 0; patch < kColumns * kRows; ++patch) {
+  for (std::size_t patch = 0; patch < kChartColumns * kChartRows; ++patch) {
     colours.emplace_back(Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
     const Eigen::Vector3d centre = chart_patch_centre(chart, patch);
     std::vector<cv::Point> outline;

@@ -10,9 +10,6 @@
 
 namespace station {
 
-// Centre of patch 0 ... 23 in the chart's frame (mm): 4 rows of 6, the first at the top left.
-Eigen::Vector3d chart_patch_centre(const ColourChart& chart, std::size_t patch);
-
 // Mean of each patch over what a perfect diffuser in its place would show, RGB. `picture`: flat-fielded, distortion left
 // in; NaN for a patch that is saturated or not in the picture.
 std::vector<Eigen::Vector3d> chart_colours(const calibration::Developed& picture, const calibration::Lens& lens,

@@ -46,13 +46,11 @@ std::optional<CellMean> mean_inside(const calibration::Developed& picture, const
 
 }  // namespace
 
-std::vector<calibration::LightPatch> panel_patches(const calibration::SensorPicture& picture,
+std::vector<calibration::LightPatch> panel_patches(const calibration::Developed& picture,
                                                    const calibration::Lens& lens,
                                                    const Eigen::Isometry3d& world_from_camera,
                                                    const Eigen::Isometry3d& camera_from_panel,
-                                                   const SpectralonPanel& panel, int light, int number,
-                                                   const calibration::SensorResponse* response) {
-  const calibration::Developed developed = calibration::develop(picture, {.response = response});
+                                                   const SpectralonPanel& panel, int light, int number) {
   const Eigen::Isometry3d panel_from_camera = camera_from_panel.inverse();
   const renderer::Camera camera = camera_of(lens, panel_from_camera, false);
   const Eigen::Isometry3d world_from_panel = world_from_camera * camera_from_panel;
@@ -65,7 +63,7 @@ std::vector<calibration::LightPatch> panel_patches(const calibration::SensorPict
       const Eigen::Vector2d pixel = renderer::project(camera, centre + Eigen::Vector3d(x * cell, y * cell, 0));
       outline.emplace_back(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
     }
-    const auto measured = mean_inside(developed, outline);
+    const auto measured = mean_inside(picture, outline);
     if (!measured) continue;
     const Eigen::Vector3d point = world_from_panel * centre;
     patches.push_back({.light = light,

@@ -82,11 +82,12 @@ calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& l
       throw std::runtime_error(entry.picture.id +
                                " is dark or does not show the panel: none of its tags was found; switch the lamp on, "
                                "hold the panel into the picture and take it again with calibrate --only light");
-    const auto cells = panel_patches(entry.raw, lens, world_from_camera, pose->camera_from_object, rig.spectralon,
-                                     front ? 0 : 1, static_cast<int>(pictures.size()), response);
+    const calibration::Developed picture = calibration::develop(entry.raw, {.response = response});
+    const auto cells = panel_patches(picture, lens, world_from_camera, pose->camera_from_object, rig.spectralon,
+                                     front ? 0 : 1, static_cast<int>(pictures.size()));
     patches.insert(patches.end(), cells.begin(), cells.end());
     under.at(front ? 0 : 1).push_back(pictures.size());
-    tags.at(front ? 0 : 1).push_back(tag_radiances(calibration::develop(entry.raw, {.response = response}), still));
+    tags.at(front ? 0 : 1).push_back(tag_radiances(picture, still));
     pictures.push_back({.name = entry.picture.id, .output = entry.picture.lamp_output});
   }
   for (const std::size_t place : {0, 1}) {

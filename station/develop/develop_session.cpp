@@ -7,6 +7,7 @@
 
 #include "calibration/develop.h"
 #include "calibration/lamp_stability.h"
+#include "calibration/median.h"
 #include "calibration/sensor_maps.h"
 #include "renderer/image_file.h"
 #include "station/bench_reading.h"
@@ -165,9 +166,7 @@ std::optional<double> measured_width_mm(const DevelopedViews& developed, const i
     if (const auto width = sheet_width_mm(view.view.image, view.view.camera, spool)) widths.push_back(*width);
   }
   if (widths.empty()) return std::nullopt;
-  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
-  std::nth_element(widths.begin(), middle, widths.end());
-  return *middle;
+  return calibration::median(widths);
 }
 
 void require_expected_width(double width_mm, const Spool& spool) {

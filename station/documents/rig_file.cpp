@@ -195,6 +195,12 @@ void parse_capture(ObjectReader capture, RigFile& rig) {
 
 }  // namespace
 
+Eigen::Vector3d chart_patch_centre(const ColourChart& chart, std::size_t patch) {
+  const double column = static_cast<double>(patch % kChartColumns) - (kChartColumns - 1) / 2.0;
+  const double row = static_cast<double>(patch / kChartColumns) - (kChartRows - 1) / 2.0;
+  return {column * chart.pitch_mm, -row * chart.pitch_mm, 0};
+}
+
 RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
   ObjectReader reader(document, source, "rig", 1);
   RigFile rig;

@@ -29,6 +29,10 @@ struct ColourChart {
   calibration::TagLayout tags;
 };
 
+inline constexpr std::size_t kChartColumns = 6, kChartRows = 4;
+// Centre of patch 0 ... 23 in the chart's frame (mm): the first at the top left, along rows.
+Eigen::Vector3d chart_patch_centre(const ColourChart& chart, std::size_t patch);
+
 struct SimulatedRig {
   rig::BenchTruth truth;
   double board_bow_mm = 0;            // how far the board's middle stands out

@@ -103,7 +103,7 @@ TEST_F(TagPictures, OfAnotherSizeAreNamed) {
 }
 
 TEST(CalibrateCamera, PhotographsOfDebiansOpencvDocGiveTheLensThatMrcalsOwnToolGives) {
-  if (!std::filesystem::exists(kPhotographs)) GTEST_SKIP() << "Debian's opencv-doc is not installed";
+  ASSERT_TRUE(std::filesystem::exists(kPhotographs)) << "install opencv-doc, as station/packages.txt says";
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "left");
   for (const auto& entry : std::filesystem::directory_iterator(kPhotographs))
