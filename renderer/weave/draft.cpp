@@ -162,6 +162,10 @@ Draft basket_draft(int yarns) {
                     [=](int pick, int end) { return (pick / yarns + end / yarns) % 2 == 0; });
 }
 
+double bending_of(const YarnSystem& system) {
+  return system.bending_n_mm2 > 0 ? system.bending_n_mm2 : kBundleBending * system.diameter_mm * system.diameter_mm;
+}
+
 int ends_in_patch(const Draft& draft) {
   return static_cast<int>(std::lcm(draft.warp_over.front().size(), draft.warp.threads.size()));
 }

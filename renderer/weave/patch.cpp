@@ -12,6 +12,8 @@ Yarn make_yarn(const YarnSystem& system, std::size_t index, bool warp) {
   return {.warp = warp,
           .thread = system.threads[index % system.threads.size()],
           .radius_mm = system.diameter_mm / 2,
+          .flatness = system.flatness,
+          .tex = system.tex,
           .control_points = {}};
 }
 
@@ -36,7 +38,7 @@ PeriodicSpline center_line(const YarnPatch& patch, const Yarn& yarn) {
   return {yarn.control_points, period_of(patch, yarn)};
 }
 
-YarnPatch initial_patch(const Draft& draft) {
+YarnPatch initial_patch(const Draft& draft, int points_per_crossing) {
   if (const auto problem = check_draft(draft)) throw std::runtime_error("draft \"" + draft.name + "\": " + *problem);
   const auto ends = static_cast<std::size_t>(ends_in_patch(draft)),
              picks = static_cast<std::size_t>(picks_in_patch(draft));
@@ -60,8 +62,8 @@ YarnPatch initial_patch(const Draft& draft) {
       }
       Yarn yarn = make_yarn(own, k, warp);
       const double across = (static_cast<double>(k) + 0.5) * own.pitch_mm;
-      yarn.control_points =
-          control_points_of(yarn_path(on_top, pitch, wave), across, warp, period_of(patch, yarn), draft.height_scale);
+      yarn.control_points = control_points_of(yarn_path(on_top, pitch, wave, points_per_crossing), across, warp,
+                                              period_of(patch, yarn), draft.height_scale);
       patch.yarns.push_back(std::move(yarn));
     }
   };
