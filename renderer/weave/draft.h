@@ -22,14 +22,14 @@ struct YarnSystem {
 
   // For the relaxation (relaxation.h); of forces only ratios change the shape.
   double bending_n_mm2 = 0.0;  // stiffness; 0: bending_of() takes that of a bundle of loose fibers
-  double tension_n = 0.05;     // dead load on each yarn
+  double tension_n = 0.5;      // dead load on each yarn
   double flatness = 1.0;     // width / height of the section, an ellipse of the round yarn's area, wide in the plane
   double contraction = 0.0;  // above 0: instead of the load, a spring that wants this share less than the drawn path
 };
 
-// Bending stiffness: as given, or kBundleBending x diameter^2, 0.05 N mm^2 for a yarn of 0.5 mm.
+// Bending stiffness: as given, or kBundleBending x diameter^2, 0.0125 N mm^2 for a yarn of 0.5 mm.
 double bending_of(const YarnSystem& system);
-inline constexpr double kBundleBending = 0.2;  // N
+inline constexpr double kBundleBending = 0.05;  // N
 
 struct Draft {
   std::string name;
@@ -58,5 +58,6 @@ std::optional<std::string> check_draft(const Draft& draft);
 inline constexpr int kPointsPerCrossing = 8;  // of a yarn's curve, from one crossing to the next
 inline constexpr int kMostCrossings = 4096;
 inline constexpr int kMostThreads = 4096;
+inline constexpr double kMostContraction = 0.3, kMostFlatness = 4;
 
 }  // namespace renderer

@@ -114,21 +114,37 @@ class Factorization {
   Eigen::CholmodDecomposition<Eigen::SparseMatrix<double>, Eigen::Lower> solver_;
 };
 
-VectorXd newton_direction(const Objective& objective, const Place& place, Factorization& factors,
-                          MinimizerReport& report) {
-  constexpr double kLeastShift =
-      1e-9;  // moves that cost nothing (the whole cloth, yarns along themselves) stay small
-  if (factors.compute(objective.hessian(place.x, true), kLeastShift, report)) return -factors.solve(place.gradient);
-  const Eigen::SparseMatrix<double> positive = objective.hessian(place.x, false);
-  for (double shift = 1e-6; shift < 1e3; shift *= 100)
-    if (factors.compute(positive, shift, report)) return -factors.solve(place.gradient);
-  return -place.gradient;
-}
+// Newton's direction with the true second derivatives, shifted by as little as makes them positive definite: by what the
+// step before needed, less each time.
+class NewtonDirection {
+ public:
+  VectorXd at(const Objective& objective, const Place& place, MinimizerReport& report) {
+    const Eigen::SparseMatrix<double> exact = objective.hessian(place.x, true);
+    for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+      if (factors_.compute(exact, shift_, report)) {
+        const VectorXd direction = -factors_.solve(place.gradient);
+        shift_ = shift_ / 8 < kLeastWorking ? kLeastShift : shift_ / 8;
+        return direction;
+      }
+      shift_ = std::max(8 * shift_, kLeastWorking);
+    }
+    shift_ = kLeastShift;
+    factors_.compute(objective.hessian(place.x, false), kLeastWorking, report);
+    return -factors_.solve(place.gradient);
+  }
+
+ private:
+  // Of the mean diagonal. Moves that cost nothing, such as lifting the whole cloth, stay small.
+  static constexpr double kLeastShift = 1e-9, kLeastWorking = 1e-6;
+  static constexpr int kMostAttempts = 6;
+  Factorization factors_;
+  double shift_ = kLeastShift;
+};
 
 void run_newton(const Objective& objective, const MinimizerOptions& options, Place& place, MinimizerReport& report) {
-  Factorization factors;
+  NewtonDirection newton;
   for (int step = 0; step < options.most_newton && largest(place.gradient) > options.gradient_goal; ++step) {
-    VectorXd direction = newton_direction(objective, place, factors, report);
+    VectorXd direction = newton.at(objective, place, report);
     if (!direction.allFinite() || direction.dot(place.gradient) >= 0) direction = -place.gradient;
     const double length = std::min(1.0, options.largest_move / largest(direction));
     if (!search_line(objective, direction, length, place)) return;

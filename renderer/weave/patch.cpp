@@ -1,5 +1,6 @@
 #include "renderer/weave/patch.h"
 
+#include <cmath>
 #include <stdexcept>
 
 #include "renderer/weave/patch_measures.h"
@@ -29,6 +30,13 @@ std::vector<Eigen::Vector3d> control_points_of(const std::vector<Eigen::Vector2d
 }
 
 }  // namespace
+
+double half_width(const Yarn& yarn) {
+  return yarn.radius_mm * std::sqrt(yarn.flatness);
+}
+double half_height(const Yarn& yarn) {
+  return yarn.radius_mm / std::sqrt(yarn.flatness);
+}
 
 Eigen::Vector3d period_of(const YarnPatch& patch, const Yarn& yarn) {
   return yarn.warp ? Eigen::Vector3d(0, patch.period_y_mm, 0) : Eigen::Vector3d(patch.period_x_mm, 0, 0);

@@ -18,11 +18,10 @@ namespace renderer {
 // of the same area, wide in the plane of the cloth.
 struct Yarn {
   bool warp = true;
-  int thread = 0;           // index into the list of threads that the cloth is made of
-  double radius_mm = 0.25;  // of the round section
-  double flatness =
-      1.0;           // width / height of the section: half width radius x sqrt(flatness), half height radius / that
-  double tex = 0.0;  // g per km; 0: unknown
+  int thread = 0;                               // index into the list of threads that the cloth is made of
+  double radius_mm = 0.25;                      // of the round section
+  double flatness = 1.0;                        // width / height of the section
+  double tex = 0.0;                             // g per km; 0: unknown
   std::vector<Eigen::Vector3d> control_points;  // one period, mm; at least 4
 };
 
@@ -41,6 +40,10 @@ struct YarnPatch {
   double cover = 0.0;            // share of the plane that yarns hide: k1 + k2 - k1 k2, k = diameters / period
   double least_gap_mm = 0.0;     // between the surfaces of any two yarns; negative: how deep they overlap
 };
+
+// Of the section, mm; their product is radius^2.
+double half_width(const Yarn& yarn);
+double half_height(const Yarn& yarn);
 
 Eigen::Vector3d period_of(const YarnPatch& patch, const Yarn& yarn);
 PeriodicSpline center_line(const YarnPatch& patch, const Yarn& yarn);

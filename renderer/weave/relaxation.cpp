@@ -16,6 +16,7 @@
 namespace renderer {
 namespace {
 
+constexpr double kPeriodForce = 1e-5;     // of the force scale: the cell pulls at nothing
 constexpr double kAxialStiffness = 1000;  // of a contracted yarn: EA r^2 / B, nearly inextensible
 
 struct Cell {
@@ -148,6 +149,53 @@ void stiffen_contact(Cell& cell, const RelaxationOptions& options, RelaxationRep
   report.overlap = overlap(cell);
 }
 
+// Moves the cell and all in it to another size.
+void resize(Cell& cell, const Eigen::Vector2d& period_mm) {
+  const Eigen::Vector2d ratio = period_mm.cwiseQuotient(cell.model.period_mm);
+  cell.points.topRows<2>().array().colwise() *= ratio.array();
+  for (Anchor& anchor : cell.model.anchors) anchor.value_mm *= ratio[anchor.axis];
+  cell.model.period_mm = period_mm;
+}
+
+// The size at which the cell pulls at nothing: Broyden's method on its two forces, yarns at rest at every size.
+void settle_periods(Cell& cell, const RelaxationOptions& options, RelaxationReport& report) {
+  constexpr int kMostSteps = 40;
+  constexpr double kLargestStep = 0.02, kDifference = 1e-4;  // of the period
+  const auto force_at = [&](const Eigen::Vector2d& period_mm) -> Eigen::Vector2d {
+    resize(cell, period_mm);
+    add_steps(report, come_to_rest(cell, options.gradient_goal * report.force_scale_n, false));
+    return derivatives(cell, cell.points, Curvature::none).period_gradient;
+  };
+  Eigen::Vector2d period = cell.model.period_mm, force = force_at(period);
+  Eigen::Matrix2d slope;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double step = kDifference * period[axis];
+    slope.col(axis) = (force_at(period + step * Eigen::Vector2d::Unit(axis)) - force) / step;
+  }
+  for (int step = 0; step < kMostSteps && force.cwiseAbs().maxCoeff() > kPeriodForce * report.force_scale_n; ++step) {
+    Eigen::Vector2d move = -slope.fullPivLu().solve(force);
+    if (!move.allFinite() || move.dot(force) > 0) move = -force / slope.norm();  // downhill
+    move *= std::min(1.0, kLargestStep / move.cwiseQuotient(period).cwiseAbs().maxCoeff());
+    const Eigen::Vector2d next = force_at(period + move);
+    slope += (next - force - slope * move) * move.transpose() / move.squaredNorm();
+    period += move;
+    force = next;
+  }
+  force = force_at(period);
+  report.overlap = overlap(cell);
+  report.converged = report.converged && force.cwiseAbs().maxCoeff() <= kPeriodForce * report.force_scale_n;
+}
+
+double least_crown_gap(const YarnPatch& patch) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Crossing& crossing : crossings_of(patch)) {
+    const Yarn &warp = patch.yarns[crossing.warp], &weft = patch.yarns[crossing.weft];
+    const double contact = half_height(warp) + half_height(weft);
+    least = std::min(least, std::abs(crossing.warp_z_mm - crossing.weft_z_mm) / contact - 1);
+  }
+  return least;
+}
+
 YarnPatch patch_of(const Cell& cell, YarnPatch patch) {
   patch.period_x_mm = cell.model.period_mm.x();
   patch.period_y_mm = cell.model.period_mm.y();
@@ -169,13 +217,15 @@ RelaxedPatch relax(const Draft& draft, const RelaxationOptions& options) {
   report.force_scale_n = force_scale(cell.model);
   add_anchors(cell, report.force_scale_n / thinnest_radius(cell.model));
   stiffen_contact(cell, options, report);
+  if (draft.free_periods) settle_periods(cell, options, report);
 
-  report.jammed = report.overlap > kMostOverlap;
   report.contact_n_mm2 = cell.model.contact_n_mm2;
   report.contact_forces_n = cell.contacts.forces(cell.model, cell.points);
   report.cell_force_n = derivatives(cell, cell.points, Curvature::none).period_gradient;
   YarnPatch patch = patch_of(cell, start);
   report.as_drafted = is_as_drafted(patch, draft);
+  report.crown_gap = least_crown_gap(patch);
+  report.jammed = report.overlap > kMostOverlap || report.crown_gap > kJammedCrownGap;
   patch.height_scale = draft.height_scale;
   for (Yarn& yarn : patch.yarns)
     for (Eigen::Vector3d& point : yarn.control_points) point.z() *= draft.height_scale;

@@ -8,7 +8,7 @@
 namespace renderer {
 namespace {
 
-constexpr double kSkin = 0.15;  // of the smallest contact distance
+constexpr double kSkin = 0.08;  // of the smallest contact distance
 
 int floor_divide(int a, int b) {
   return a >= 0 ? a / b : -((b - 1 - a) / b);
