@@ -230,6 +230,8 @@ RelaxedPatch relax(const Draft& draft, const RelaxationOptions& options) {
   for (Yarn& yarn : patch.yarns)
     for (Eigen::Vector3d& point : yarn.control_points) point.z() *= draft.height_scale;
   measure(patch);
+  const bool flattened = draft.warp.flatness > 1 || draft.weft.flatness > 1;
+  if (flattened && report.overlap > 0) patch.least_gap_mm = -report.overlap * thinnest_radius(cell.model);
   relaxed.patch = std::move(patch);
   return relaxed;
 }
