@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "station/documents/reader.h"
+#include "station/documents/wif_file.h"
 
 namespace station {
 namespace {
@@ -79,6 +80,8 @@ renderer::Draft parse_draft(const json& document, const std::string& source) {
 }
 
 renderer::Draft read_draft(const std::filesystem::path& file) {
+  const std::string kind = file.extension().string();
+  if (kind == ".wif" || kind == ".WIF") return read_wif(file);
   return parse_draft(read_json_file(file), file.string());
 }
 

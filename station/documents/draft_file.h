@@ -13,7 +13,7 @@
 namespace station {
 
 renderer::Draft parse_draft(const nlohmann::json& document, const std::string& source);
-renderer::Draft read_draft(const std::filesystem::path& file);
+renderer::Draft read_draft(const std::filesystem::path& file);  // *.wif: wif_file.h
 nlohmann::json to_json(const renderer::Draft& draft);
 
 }  // namespace station

@@ -2,10 +2,14 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
+#include "renderer/weave/relaxation.h"
+#include "station/documents/draft_drawing.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/patch_file.h"
 #include "station/documents/reader.h"
+#include "station/documents/wif_file.h"
 #include "tests/station/refusal.h"
 
 namespace station {
@@ -56,6 +60,13 @@ TEST_F(WeaveDocuments, ADraftThatIsWrittenAndReadIsTheSameDraft) {
   draft.warp = {.diameter_mm = 0.1 + 0.2, .pitch_mm = 1.0 / 3, .threads = {0, 2, 1}};
   draft.weft.pitch_mm = 0.77;
   draft.height_scale = 0.9;
+  draft.weft.tex = 20.5;
+  draft.weft.bending_n_mm2 = 0.031;
+  draft.weft.tension_n = 1.7;
+  draft.warp.contraction = 0.1 / 3;
+  draft.weft.contraction = 0.02;
+  draft.weft.flatness = 1.25;
+  draft.free_periods = true;
   write_json_file(folder_ / "draft.json", to_json(draft));
   const renderer::Draft read = read_draft(folder_ / "draft.json");
   EXPECT_EQ(to_json(read), to_json(draft));
@@ -111,6 +122,13 @@ TEST_F(WeaveDocuments, EachBadDraftFileIsRefusedInOneLineThatNamesTheKey) {
   expect_refused(spoiled("/weft/threads", json::array({0.5})), true, "\"weft.threads\"");
   expect_refused(spoiled("/weft/threads", json::array({1e300})), true, "\"weft.threads\"");
   expect_refused(spoiled("/height_scale", 0), true, "height scale is 0");
+  expect_refused(spoiled("/warp/tension_n", -1), true, "warp tension is -1");
+  expect_refused(spoiled("/weft/bending_n_mm2", -1), true, "weft bending stiffness is -1");
+  expect_refused(spoiled("/weft/contraction", 0.5), true, "weft contraction is 0.5");
+  expect_refused(spoiled("/weft/flatness", 0.9), true, "weft flatness is 0.9");
+  expect_refused(spoiled("/weft/tex", -2), true, "weft tex is -2");
+  expect_refused(spoiled("/periods", "free"), true, "warp yarns have no contraction");
+  expect_refused(spoiled("/periods", "loose"), true, "\"periods\"");
   json without = good;
   without.erase("weft");
   expect_refused(without, true, "\"weft\": is missing");
@@ -147,6 +165,121 @@ TEST_F(WeaveDocuments, FilesThatAreCutShortAreRefusedWhereverTheyAreCut) {
       EXPECT_NE(line.find("ends too early"), std::string::npos) << line;
     }
   }
+}
+
+std::string text_of(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), with);
+}
+
+TEST_F(WeaveDocuments, AWifIsTheSameClothAsItsJson) {
+  const renderer::Draft wif = read_draft(kDrafts / "houndstooth.wif"),
+                        draft = read_draft(kDrafts / "houndstooth.json");
+  EXPECT_EQ(wif.name, draft.name);
+  EXPECT_EQ(wif.warp_over, draft.warp_over);  // 16 x 16 written out, 4 x 4 the repeat
+  for (const auto& [a, b] : {std::pair(wif.warp, draft.warp), std::pair(wif.weft, draft.weft)}) {
+    EXPECT_EQ(a.threads, b.threads);
+    EXPECT_NEAR(a.pitch_mm, b.pitch_mm, 1e-12);
+    EXPECT_NEAR(a.diameter_mm, b.diameter_mm, 1e-12);
+  }
+}
+
+TEST_F(WeaveDocuments, AWifsLiftPlanSinkingShedAndUnitsAreUnderstood) {
+  const std::string good = text_of(kDrafts / "houndstooth.wif");
+  const renderer::Draft draft = parse_wif(good, "file.wif");
+  std::string plan = "[LIFTPLAN]\n";
+  for (int pick = 0; pick < 16; ++pick)
+    plan += std::to_string(pick + 1) + "=" + std::to_string(pick % 4 + 1) + "," + std::to_string((pick + 1) % 4 + 1) +
+            "\n";
+  EXPECT_EQ(parse_wif(good + plan, "file.wif").warp_over, draft.warp_over);
+  renderer::Draft sinking = parse_wif(replaced(good, "Rising Shed=true", "rising shed = FALSE ; sinks"), "file.wif");
+  for (std::vector<bool>& pick : sinking.warp_over) pick.flip();
+  EXPECT_EQ(sinking.warp_over, draft.warp_over);
+  EXPECT_NEAR(parse_wif(replaced(good, "Units=centimeters\nSpacing=0.065\nThickness=0.05",
+                                 "Units=Inches\nSpacing=0.03\nThickness=0.02"),
+                        "file.wif")
+                  .warp.pitch_mm,
+              0.762, 1e-12);
+  EXPECT_NEAR(parse_wif(replaced(good, "Units=centimeters\nSpacing=0.065\nThickness=0.05",
+                                 "Units=Decipoints\nSpacing=20\nThickness=15"),
+                        "file.wif")
+                  .warp.pitch_mm,
+              20 * 25.4 / 720, 1e-12);
+}
+
+TEST_F(WeaveDocuments, EachBadWifIsRefusedInOneLineThatNamesTheFault) {
+  const std::string good = text_of(kDrafts / "houndstooth.wif");
+  const struct {
+    std::string text, named;
+  } cases[]{{"", "is empty"},
+            {"hello\n", "no [WIF] section"},
+            {good + std::string(1, '\0') + "\n", "bytes of zero"},
+            {replaced(good, "Units=centimeters", "Units=ells"), "[WARP] Units is \"ells\""},
+            {replaced(good, "Thickness=0.05", ""), "[WARP] Thickness is missing"},
+            {replaced(good, "Spacing=0.065", "Spacing=wide"), "[WARP] Spacing is \"wide\", expected a number"},
+            {replaced(good, "Spacing=0.065", "Spacing=-0.065"), "warp pitch is -0.65 mm"},
+            {replaced(good, "Thickness=0.05", "Thickness=0"), "warp diameter is 0 mm"},
+            {replaced(good, "Spacing=0.065", "Spacing=0.04"), "neighbouring yarns overlap"},
+            {replaced(good, "Threads=16", "Threads=17"), "no shaft for end 17"},
+            {replaced(good, "Threads=16", "Threads=99999999"), "whole number from 1 to 4096"},
+            {replaced(good, "Shafts=4", "Shafts=3"), "[THREADING] \"4\" has \"4\""},
+            {replaced(good, "Shafts=4", "Shafts=nan"), "[WEAVING] Shafts"},
+            {replaced(good, "4=4,1", "4=4,"), "[TIEUP] \"4\" ends before its number"},
+            {replaced(good, "4=4,1\n", ""), "uses treadle 4"},
+            {replaced(good, "4=4,1", "four=4,1"), "has \"four\""},
+            {replaced(good, "1=1,2\n2=2,3\n3=3,4\n4=4,1", "1=0\n2=0\n3=0\n4=0"), "never interlaces"},
+            {replaced(good, "Rising Shed=true", "Rising Shed=perhaps"), "expected true or false"}};
+  for (const auto& [text, named] : cases) {
+    const std::string line = refusal([&] { parse_wif(text, "file.wif"); });
+    EXPECT_EQ(line.rfind("file.wif: ", 0), 0u) << line;
+    EXPECT_NE(line.find(named), std::string::npos) << "expected \"" << named << "\", found: " << line;
+  }
+}
+
+// A cut at the end of a line of the last section leaves a valid file (yarns without a colour have the system's); every
+// other cut is noticed.
+TEST_F(WeaveDocuments, AWifThatIsCutShortIsRefusedWhereverItIsCut) {
+  const std::string good = text_of(kDrafts / "houndstooth.wif");
+  const std::size_t last_section = good.find("[WEFT COLORS]");
+  for (std::size_t size = 0; size < good.size(); ++size) {
+    const std::string cut = good.substr(0, size);
+    if (size > last_section && cut.back() == '\n') continue;
+    EXPECT_FALSE(refusal([&] { parse_wif(cut, "file.wif"); }).empty()) << size;
+  }
+}
+
+TEST_F(WeaveDocuments, EveryDraftInFixturesIsReadAndHasADrawing) {
+  int count = 0;
+  for (const fs::directory_entry& file : fs::directory_iterator(kDrafts)) {
+    if (file.path().extension() == ".md") continue;
+    const renderer::Draft draft = read_draft(file.path());
+    const cv::Mat3b picture = draw_draft(draft, 4);
+    EXPECT_EQ(picture.cols, 4 * (ends_in_patch(draft) + 2)) << file.path();
+    EXPECT_EQ(picture.rows, 4 * (picks_in_patch(draft) + 2)) << file.path();
+    const std::string svg = draw_draft_svg(draft);
+    EXPECT_EQ(svg.rfind("<svg", 0), 0u);
+    EXPECT_NE(svg.find("</svg>"), std::string::npos);
+    ++count;
+  }
+  EXPECT_EQ(count, 12);
+}
+
+TEST_F(WeaveDocuments, TheDrawingShowsTheYarnOnTopAndTheFirstPickAtTheBottom) {
+  renderer::Draft draft = renderer::twill_draft(3, 1);
+  const cv::Mat3b picture = draw_draft(draft, 2);
+  const cv::Vec3b warp = picture(0, 4), weft = picture(4, 0);  // the colour orders along the edges
+  EXPECT_NE(warp, weft);
+  for (int pick = 0; pick < 4; ++pick)
+    for (int end = 0; end < 4; ++end)
+      EXPECT_EQ(picture(2 * (5 - pick), 2 * (end + 2)),
+                draft.warp_over[static_cast<std::size_t>(pick)][static_cast<std::size_t>(end)] ? warp : weft);
 }
 
 }  // namespace

@@ -1,0 +1,17 @@
+// A draft as weavers draw it: one square per crossing of the patch, in the colour of the yarn that lies on top, the first
+// pick at the bottom; colour orders of warp and weft along the edges.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "renderer/weave/draft.h"
+
+namespace station {
+
+// A colour per thread, told apart at a glance; threads beyond the palette take it from the start again. The first two
+// are the dark warp and light weft of textbooks, taken for both systems when a draft has one thread only.
+cv::Mat3b draw_draft(const renderer::Draft& draft, int square_px = 16);
+std::string draw_draft_svg(const renderer::Draft& draft);
+
+}  // namespace station
