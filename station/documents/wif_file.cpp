@@ -137,7 +137,7 @@ class WifReader {
   }
 
   std::string source_;
-  CSimpleIniCaseA ini_;
+  CSimpleIniA ini_;  // names in any case
 };
 
 // Millimetres of one unit of a section.
