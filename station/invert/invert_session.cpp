@@ -18,7 +18,7 @@ using nlohmann::json;
 constexpr std::uint64_t kViewSeed = 424242;  // of the fitted views: paths that the fit has not seen
 constexpr double kFitShare = 0.6;            // of the progress bar; the fitted views take the rest
 
-json fit_json(const inversion::ThreadFit& fit, const InvertRequest& request, const InvertResult& result) {
+json fit_json(const inversion::ViewFit& fit, const InvertRequest& request, const InvertResult& result) {
   json rounds = json::array(), views = json::array(), held = json::array();
   for (const inversion::FitRound& round : fit.rounds)
     rounds.push_back({{"paths_per_block", round.paths_per_block},
@@ -60,8 +60,8 @@ json provenance_json(const std::filesystem::path& session, const SessionFile& as
 
 // Renders one view with the fitted thread, compares it, and writes both pictures.
 FittedView write_fitted_view(const InvertRequest& request, const inversion::WrappedSpool& spool,
-                             const inversion::View& view, const inversion::ThreadFit& fit, std::uint64_t seed) {
-  const cv::Mat3f fitted = inversion::fitted_view(spool, view, fit.parameters, request.samples_per_pixel, seed,
+                             const inversion::View& view, const inversion::ViewFit& fit, std::uint64_t seed) {
+  const cv::Mat3f fitted = inversion::fitted_view(spool, view, fit.thread(), request.samples_per_pixel, seed,
                                                   [](double) { return !interrupted(); });
   cv::Mat3f residual(fitted.size(), cv::Vec3f(0, 0, 0));
   cv::subtract(fitted, view.image, residual, view.mask);
@@ -117,7 +117,7 @@ InvertResult invert_session(const InvertRequest& request) {
     if (percent / 5 != shown / 5 || shown < 0) progress.show(shown = percent, 100, what);
     return !interrupted();
   };
-  const inversion::ThreadFit fit = inversion::fit_thread(asked.spool.wrapping, views, options);
+  const inversion::ViewFit fit = inversion::fit_views(asked.spool.wrapping, views, options);
 
   InvertResult result;
   std::filesystem::remove(thread_file_of(request.session));  // it no longer belongs to the pictures beside it
@@ -132,7 +132,7 @@ InvertResult invert_session(const InvertRequest& request) {
   result.relative_rmse = inversion::overall_relative_rmse(agreements);
   result.thread.name = asked.spool.name;
   result.thread.diameter_mm = asked.spool.wrapping.thread_diameter_mm;
-  result.thread.parameters = fit.parameters;
+  result.thread.parameters = fit.thread();
   result.thread.linear_srgb_from_camera = developed.linear_srgb_from_camera;
   result.thread.fit = fit_json(fit, request, result);
   result.thread.provenance = provenance_json(request.session, asked);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "inversion/agreement.h"
-#include "inversion/fit_thread.h"
+#include "inversion/fit_views.h"
 #include "station/documents/thread_file.h"
 #include "station/progress.h"
 
@@ -36,7 +36,7 @@ struct InvertResult {
 
 // Writes result/thread.json, result/fitted/<view>.exr and result/residual/<view>.exr (fitted minus photographed; both
 // linear camera RGB, radiance unit, zero outside the mask). Ctrl-C stops it; thread.json is written last, so that it
-// always belongs to whole pictures. Errors: those of read_views and fit_thread, and of what cannot be written.
+// always belongs to whole pictures. Errors: those of read_views and fit_views, and of what cannot be written.
 InvertResult invert_session(const InvertRequest& request);
 
 std::string describe(const InvertResult& result);
