@@ -40,7 +40,7 @@ double overall_relative_rmse(const std::vector<ViewAgreement>& views) {
   return std::sqrt(squares / count) / (references / count);
 }
 
-cv::Mat3f fitted_view(const WrappedSpool& spool, const View& view, const renderer::ThreadParameters& thread,
+cv::Mat3f fitted_view(const WrappedSpool& spool, const View& view, const renderer::ScatteringModel& thread,
                       int samples_per_pixel, std::uint64_t seed, const std::function<bool(double)>& progress) {
   const renderer::PathTracer tracer(view_scene(spool, thread, view.light));
   renderer::RenderOptions options{.samples_per_pixel = samples_per_pixel, .seed = seed};

@@ -26,7 +26,7 @@ double overall_relative_rmse(const std::vector<ViewAgreement>& views);
 
 // The view as its fitted thread gives it, by the path tracer with paths of its own (the fit never saw them); radiance
 // unit, black outside the mask. progress: see renderer::RenderOptions.
-cv::Mat3f fitted_view(const WrappedSpool& spool, const View& view, const renderer::ThreadParameters& thread,
+cv::Mat3f fitted_view(const WrappedSpool& spool, const View& view, const renderer::ScatteringModel& thread,
                       int samples_per_pixel, std::uint64_t seed, const std::function<bool(double)>& progress = {});
 
 }  // namespace inversion

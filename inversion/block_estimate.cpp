@@ -192,7 +192,9 @@ BlockEstimate shade_block(const LightPaths& paths, std::size_t block, const Mode
   };
   BlockEstimate estimate;
   Directions<Model> directions;
-  Eigen::Array3d squares = Eigen::Array3d::Zero();
+  std::array<Eigen::Array3d, kPathBatches> sums;
+  sums.fill(Eigen::Array3d::Zero());
+  int batch = 0;
   for (std::uint32_t first = begin, last = begin; first < end; first = last) {
     while (last < end && (last == first || paths.path_ends[last] - first_event(first) <= kEventsTogether)) ++last;
     directions.restart(2 * (paths.path_ends[last - 1] - first_event(first)));
@@ -202,16 +204,22 @@ BlockEstimate shade_block(const LightPaths& paths, std::size_t block, const Mode
     for (std::uint32_t path = first; path < last; ++path) {
       const std::size_t own = direction;
       const Eigen::Array3d value = radiance(events(path), directions, direction).template cast<double>();
-      estimate.value += value;
-      squares += value.square();
+      while (static_cast<int>(path - begin) >= batch_end(static_cast<int>(end - begin), batch)) ++batch;
+      sums[static_cast<std::size_t>(batch)] += value;
       if (with_slopes) weigh(events(path), directions, own);
     }
     if (with_slopes) directions.add_slopes(model, estimate.slopes);
   }
   const double count = end - begin;
-  estimate.value /= count;
+  for (const Eigen::Array3d& sum : sums) estimate.value += sum / count;
   estimate.slopes /= count;
-  estimate.variance = (squares / count - estimate.value.square()).max(0.0) / count;
+  if (end - begin < kPathBatches) return estimate;
+  for (int b = 0; b < kPathBatches; ++b) {
+    const double size =
+        batch_end(static_cast<int>(count), b) - (b > 0 ? batch_end(static_cast<int>(count), b - 1) : 0);
+    const Eigen::Array3d off = sums[static_cast<std::size_t>(b)] / size - estimate.value;
+    estimate.variance += off.square() / (kPathBatches * (kPathBatches - 1));
+  }
   return estimate;
 }
 

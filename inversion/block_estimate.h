@@ -23,7 +23,7 @@ struct BlockEstimate {
   Eigen::Array3d value = Eigen::Array3d::Zero();
   renderer::ThreadSlopes<double> slopes =
       renderer::ThreadSlopes<double>::Zero();        // rows: ThreadSlope, FiberSlope or YarnSlope
-  Eigen::Array3d variance = Eigen::Array3d::Zero();  // of `value`, as the spread of the paths shows it
+  Eigen::Array3d variance = Eigen::Array3d::Zero();  // of `value`, as the spread of the batches shows it
 };
 
 using BlockPacket = renderer::Packet<renderer::kPacketWidth>;

@@ -61,21 +61,24 @@ Certainty certainty_of(const LinearisedFit& fit) {
     if (!fit.fixed[static_cast<std::size_t>(k)]) free.push_back(k);
   if (free.empty()) return certainty;
 
-  // In units of the scales, so that numbers of unlike size are inverted together; a direction without any information is
-  // given that of its scale.
+  // In units of the scales, so that numbers of unlike size are inverted together.
   const VectorXd all_scales = fit.scales;
-  const MatrixXd jacobian = columns(fit.jacobian * all_scales.asDiagonal(), free);
-  MatrixXd hessian = jacobian.transpose() * jacobian;
-  if (fit.penalty_jacobian.rows() > 0) {
-    const MatrixXd penalties = columns(fit.penalty_jacobian * all_scales.asDiagonal(), free);
-    hessian += penalties.transpose() * penalties;
-  }
+  const auto scaled = [&](const MatrixXd& rows) { return columns(rows * all_scales.asDiagonal(), free); };
+  const MatrixXd jacobian = scaled(fit.jacobian);
+  const MatrixXd identity = MatrixXd::Identity(jacobian.cols(), jacobian.cols());
+  MatrixXd hessian = jacobian.transpose() * jacobian, prior = MatrixXd::Zero(jacobian.cols(), jacobian.cols());
+  for (const MatrixXd* rows : {&fit.penalty_jacobian, &fit.prior_jacobian})
+    if (rows->rows() > 0) hessian += scaled(*rows).transpose() * scaled(*rows);
+  if (fit.prior_jacobian.rows() > 0) prior = scaled(fit.prior_jacobian).transpose() * scaled(fit.prior_jacobian);
+  const double mean_square = fit.residuals.squaredNorm() / static_cast<double>(fit.residuals.size());
   const double floor = 1e-12 * hessian.diagonal().maxCoeff();
-  hessian.diagonal().array() += floor;
-  const MatrixXd inverse = hessian.ldlt().solve(MatrixXd::Identity(hessian.rows(), hessian.cols()));
   const MatrixXd noise = jacobian.transpose() * fit.variances.asDiagonal() * jacobian;
+  const MatrixXd inverse = (hessian + floor * identity).ldlt().solve(identity);
   const MatrixXd by_noise = inverse * noise * inverse;
-  const MatrixXd total = by_noise + inverse * misfit_part(fit, jacobian) * inverse;
+  // The deviation of 1 is one more piece of information on each unknown.
+  const MatrixXd weak = (hessian + (mean_square + floor) * identity).ldlt().solve(identity);
+  const MatrixXd total =
+      weak * (noise + misfit_part(fit, jacobian) + mean_square * prior + mean_square * mean_square * identity) * weak;
   const auto unscaled = [&](const MatrixXd& c) {
     return MatrixXd(all_scales.asDiagonal() * spread(c, free, unknowns) * all_scales.asDiagonal());
   };

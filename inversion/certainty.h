@@ -1,11 +1,11 @@
 // How well a fit knows its unknowns: the covariance of a least-squares estimate whose residuals have other variances than
 // its weights say,
 //
-//   C = H^-1 (J' S J) H^-1,    H = J' J + penalties' part
+//   C = H^-1 (J' S J) H^-1,    H = J' J + the other terms' part
 //
-// (White 1980). S has the photographs' noise and that of the light paths, and for the total what the model cannot
-// explain: a view's mean squared residual beyond its noise, taken as common to all its blocks, because misfit is smooth
-// over a view.
+// (White 1980). S has the photographs' noise and that of the light paths. The total has besides what the model cannot
+// explain - a view's mean squared residual beyond its noise, taken as common to all its blocks, because misfit is smooth
+// over a view -, the prior's own uncertainty, and for directions that nothing speaks of a deviation of 1 in the scales.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,8 +33,10 @@ struct LinearisedFit {
   Eigen::VectorXd residuals, variances;
   std::vector<int> views;            // of each residual, from 0
   Eigen::MatrixXd penalty_jacobian;  // penalties x unknowns; may have no rows
-  std::vector<bool> fixed;           // unknowns that are held or at a bound
-  Eigen::VectorXd scales;            // of the unknowns: what counts as a large change
+  Eigen::MatrixXd
+      prior_jacobian;       // the prior's terms, each of the residuals' mean square as its variance; may be empty
+  std::vector<bool> fixed;  // unknowns that are held or at a bound
+  Eigen::VectorXd scales;   // of the unknowns: what counts as a large change
 };
 
 Certainty certainty_of(const LinearisedFit& fit);

@@ -2,11 +2,13 @@
 
 #include <ceres/ceres.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <stdexcept>
 
 #include "inversion/adam.h"
 #include "inversion/view_objective.h"
+#include "renderer/scattering/thread_prior.h"
 
 namespace inversion {
 namespace {
@@ -32,6 +34,38 @@ class DataTerm : public ceres::CostFunction {
   const ViewObjective& objective_;
   int unknowns_;
 };
+
+// The simulated threads' mean and covariance as terms of the loss: ||scale (u - mean)||^2 / 2.
+class PriorTerm : public ceres::CostFunction {
+ public:
+  // weight: of the prior's chi square in the loss.
+  explicit PriorTerm(double weight) {
+    const renderer::ThreadPrior& prior = renderer::simulated_thread_prior();
+    jacobian_.setZero();
+    const renderer::PriorMatrix root = prior.covariance.llt().matrixL();
+    jacobian_.rightCols<renderer::kPriorUnknownCount>() =
+        std::sqrt(weight) * root.triangularView<Eigen::Lower>().solve(renderer::PriorMatrix::Identity());
+    mean_.setZero();
+    mean_.tail<renderer::kPriorUnknownCount>() = prior.mean;
+    set_num_residuals(renderer::kPriorUnknownCount);
+    mutable_parameter_block_sizes()->push_back(renderer::kThreadParameterCount);
+  }
+  using Rows = Eigen::Matrix<double, renderer::kPriorUnknownCount, renderer::kThreadParameterCount, Eigen::RowMajor>;
+  const Rows& jacobian() const { return jacobian_; }
+  double loss(const VectorXd& u) const { return 0.5 * (jacobian_ * (u - mean_)).squaredNorm(); }
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    Eigen::Map<Eigen::Matrix<double, renderer::kPriorUnknownCount, 1>> values(residuals);
+    values = jacobian_ * (Eigen::Map<const ThreadUnknowns>(parameters[0]) - mean_);
+    if (jacobians && jacobians[0]) std::copy_n(jacobian_.data(), jacobian_.size(), jacobians[0]);
+    return true;
+  }
+
+ private:
+  Rows jacobian_;
+  ThreadUnknowns mean_;
+};
+// The prior's unknowns are a thread's last ones, in its order.
+static_assert(kBeta + 3 == kL0 && kBeta + renderer::kPriorUnknownCount == renderer::kThreadParameterCount);
 
 struct FollowLoss : ceres::IterationCallback {
   std::function<bool(int)> go_on;
@@ -62,11 +96,13 @@ void set_bounds(ceres::Problem& problem, const Search& search, VectorXd& unknown
     problem.SetManifold(unknowns.data(), new ceres::SubsetManifold(count, search.held));
 }
 
-FitRound solve(const ViewObjective& objective, const Search& search, const std::function<bool(int)>& go_on,
-               VectorXd& unknowns) {
+FitRound solve(const ViewObjective& objective, const Search& search, double prior_scale,
+               const std::function<bool(int)>& go_on, VectorXd& unknowns) {
   ceres::Problem problem;
   problem.AddResidualBlock(new DataTerm(objective, static_cast<int>(unknowns.size())), nullptr, unknowns.data());
   search.family->add_penalties(problem, unknowns.data());
+  const PriorTerm prior(prior_scale);
+  if (prior_scale > 0) problem.AddResidualBlock(new PriorTerm(prior_scale), nullptr, unknowns.data());
   set_bounds(problem, search, unknowns);
 
   FitRound round;
@@ -76,7 +112,7 @@ FitRound solve(const ViewObjective& objective, const Search& search, const std::
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = kMostSteps;
-  options.function_tolerance = 1e-4;
+  options.function_tolerance = 1e-6;
   options.initial_trust_region_radius = 1;  // the start is far: full Gauss-Newton steps end at the bounds
   options.logging_type = ceres::SILENT;
   options.callbacks = {&callback};
@@ -87,6 +123,7 @@ FitRound solve(const ViewObjective& objective, const Search& search, const std::
     throw std::runtime_error("the fit found no thread: " + summary.message + "; look at the views and their masks");
   round.steps = static_cast<int>(summary.iterations.size()) - 1;
   round.loss_before = summary.initial_cost, round.loss_after = summary.final_cost;
+  if (prior_scale > 0) round.prior_share = prior.loss(unknowns) / std::max(round.loss_after, 1e-300);
   round.converged = summary.termination_type == ceres::CONVERGENCE;
   return round;
 }
@@ -98,6 +135,12 @@ struct Attempt {
   std::vector<FitRound> rounds{};
   double loss() const { return rounds.empty() ? 0 : rounds.back().loss_after; }
 };
+
+// The prior's chi square counts as much as that of residuals of the size that the round before left.
+double prior_scale(const ViewObjective& objective, const Search& search, const std::vector<FitRound>& before) {
+  if (search.options->model != ModelKind::thread || before.empty()) return 0;
+  return search.options->prior_weight * 2 * before.back().loss_after / objective.residual_count();
+}
 
 class RoundRunner {
  public:
@@ -123,7 +166,7 @@ class RoundRunner {
       if (!go_on("tracing", kTracingShare * views_done / total)) throw std::runtime_error(kStopped);
     });
     attempt.rounds.push_back(solve(
-        objective_, search_,
+        objective_, search_, prior_scale(objective_, search_, attempt.rounds),
         [&](int step) {
           return go_on("step " + std::to_string(step), kTracingShare + (1 - kTracingShare) * step / kMostSteps);
         },
@@ -193,7 +236,7 @@ std::vector<bool> fixed_unknowns(const Search& search, const VectorXd& unknowns)
 }
 
 // At the unknowns, with the paths that were recorded last.
-Certainty certainty_at(const ViewObjective& objective, const Search& search, VectorXd unknowns) {
+Certainty certainty_at(const ViewObjective& objective, const Search& search, double prior_scale, VectorXd unknowns) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   LinearisedFit fit;
   RowMajor jacobian(objective.residual_count(), unknowns.size());
@@ -218,6 +261,7 @@ Certainty certainty_at(const ViewObjective& objective, const Search& search, Vec
         fit.penalty_jacobian(row, sparse.cols[static_cast<std::size_t>(i)]) =
             sparse.values[static_cast<std::size_t>(i)];
   }
+  if (prior_scale > 0) fit.prior_jacobian = PriorTerm(prior_scale).jacobian();
   return certainty_of(fit);
 }
 
@@ -231,10 +275,11 @@ ViewFit fit_family(const WrappedSpool& spool, const std::vector<View>& views, co
         search.held.push_back(k);
   Attempt best = options.solver == Solver::adam ? search_by_adam(objective, search, starts.front())
                                                 : search_by_rounds(objective, search, starts);
+  const std::vector<FitRound> before(best.rounds.begin(), std::prev(best.rounds.end()));
   ViewFit fit{.model = family.model(best.unknowns),
               .unknowns = best.unknowns,
               .unknown_names = family.unknown_names(),
-              .certainty = certainty_at(objective, search, best.unknowns),
+              .certainty = certainty_at(objective, search, prior_scale(objective, search, before), best.unknowns),
               .rounds = best.rounds,
               .start = best.start,
               .block_px = objective.block_px(),

@@ -3,7 +3,7 @@
 //   L = sum over views i of  w_i sum over masked pixels ||I_i - I_ref,i||^2  +  penalties,      w_i = 1 / masked pixels
 //
 // over block averages (blocks.h), in units of the mean radiance of a perfect diffuser facing the lamp (view.h). The
-// pictures I_i are path-traced. Penalties: scattering_family.h.
+// pictures I_i are path-traced. Penalties: scattering_family.h, and where the views say little the prior below.
 //
 //   solver              | light paths                                    | steps
 //   levenberg_marquardt | recorded at the parameters known so far and    | until the loss settles, in each of a few rounds
@@ -39,6 +39,9 @@ struct FitOptions {
   // farthest. Adam goes from `start` alone, with as many paths a step as adam_paths says.
   std::vector<int> paths_per_block{256, 256, 512, 1024, 2048};
   int adam_steps = 100, adam_paths = 1024;
+  // How strongly the thread model leans on simulated threads (renderer/scattering/thread_prior.h): 1 as their spread says,
+  // beside data whose residuals are as large as those of the round before; 0: not at all. Levenberg-Marquardt only.
+  double prior_weight = 1;
   std::vector<ParameterGroup> held{};  // of the thread model: left at `start`, the only one then
   std::uint64_t seed = 1;
   // Called between steps with what is done and the finished fraction; returning false stops the fit.
@@ -50,6 +53,7 @@ struct FitRound {
   int steps = 0;
   double loss_before = 0, loss_after = 0;
   std::vector<double> losses{};  // after each step, the loss before them first
+  double prior_share = 0;        // of the loss that is the prior's
   bool converged = false;
 };
 

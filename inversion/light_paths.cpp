@@ -114,10 +114,18 @@ struct BlockPaths {
 };
 
 BlockPaths trace_block(const PathRecorder& recorder, const View& view, const Block& block, int count,
-                       renderer::Sampler sampler) {
+                       std::uint64_t seed, std::size_t number) {
   BlockPaths traced;
+  int batch = -1, first = 0;
+  std::optional<renderer::Sampler> stream;
   for (int i = 0; i < count; ++i) {
-    sampler.start_sample(static_cast<std::uint32_t>(i));
+    while (batch < 0 || i >= batch_end(count, batch)) {
+      first = i;
+      ++batch;
+      stream.emplace(seed, number * kPathBatches + static_cast<std::size_t>(batch));
+    }
+    renderer::Sampler& sampler = *stream;
+    sampler.start_sample(static_cast<std::uint32_t>(i - first));
     const auto chosen = static_cast<std::size_t>(sampler.next_1d() * static_cast<float>(block.pixels.size()));
     const cv::Point& pixel = block.pixels[std::min(chosen, block.pixels.size() - 1)];
     const Eigen::Vector2f u = sampler.next_2d();
@@ -140,7 +148,7 @@ LightPaths trace_light_paths(const renderer::RayScene& rays, const View& view, c
   const PathRecorder recorder(rays, view, traced_with);
   std::vector<BlockPaths> traced(blocks.size());
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
-    traced[b] = trace_block(recorder, view, blocks[b], paths_per_block, renderer::Sampler(seed, b));
+    traced[b] = trace_block(recorder, view, blocks[b], paths_per_block, seed, b);
   });
   LightPaths paths;
   for (const BlockPaths& block : traced) {

@@ -35,6 +35,10 @@ struct PathEvent {
   float inverse_next_pdf;  // includes roulette; 0 where the path ends
 };
 
+// A block's paths come in so many batches with random numbers of their own: within a batch they are low-discrepancy, so
+// that only batches tell how far an estimate is off.
+inline constexpr int kPathBatches = 4;
+
 struct LightPaths {
   std::vector<PathEvent> events;
   std::vector<std::uint32_t> path_ends;    // index after each path's last event; paths without events have none
@@ -44,7 +48,11 @@ struct LightPaths {
 // The wrapped spool as rays meet it; the same for all views.
 renderer::RayScene spool_rays(const WrappedSpool& spool);
 
-// `paths_per_block` paths from random positions in each block's pixels.
+// `paths_per_block` paths from random positions in each block's pixels, batch after batch (batch_end).
+// Number of paths in the batches up to and including `batch`.
+constexpr int batch_end(int paths, int batch) {
+  return static_cast<int>(static_cast<std::int64_t>(paths) * (batch + 1) / kPathBatches);
+}
 LightPaths trace_light_paths(const renderer::RayScene& rays, const View& view, const std::vector<Block>& blocks,
                              const renderer::ScatteringModel& traced_with, int paths_per_block, std::uint64_t seed);
 

@@ -20,8 +20,7 @@ std::vector<View> photographs(const WrappedSpool& spool, const renderer::ThreadP
   return views;
 }
 
-std::vector<ViewAgreement> agreements(const WrappedSpool& spool, const std::vector<View>& views,
-                                      const ViewFit& fit) {
+std::vector<ViewAgreement> agreements(const WrappedSpool& spool, const std::vector<View>& views, const ViewFit& fit) {
   std::vector<ViewAgreement> found;
   for (const View& view : views) {
     const cv::Mat3f rendered = fitted_view(spool, view, fit.thread(), kSamples, 99 + found.size());
