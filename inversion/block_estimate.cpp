@@ -190,35 +190,52 @@ BlockEstimate shade_block(const LightPaths& paths, std::size_t block, const Mode
   const auto events = [&](std::uint32_t path) {
     return Path(paths.events).subspan(first_event(path), paths.path_ends[path] - first_event(path));
   };
+  const auto count = static_cast<int>(end - begin);
+  const auto batch_limit = [&](int batch) { return begin + static_cast<std::uint32_t>(batch_end(count, batch)); };
   BlockEstimate estimate;
   Directions<Model> directions;
   std::array<Eigen::Array3d, kPathBatches> sums;
   sums.fill(Eigen::Array3d::Zero());
-  int batch = 0;
-  for (std::uint32_t first = begin, last = begin; first < end; first = last) {
-    while (last < end && (last == first || paths.path_ends[last] - first_event(first) <= kEventsTogether)) ++last;
-    directions.restart(2 * (paths.path_ends[last - 1] - first_event(first)));
-    for (std::uint32_t path = first; path < last; ++path) directions.add_all_of(events(path));
-    directions.shade(model, with_slopes);
-    std::size_t direction = 0;
-    for (std::uint32_t path = first; path < last; ++path) {
-      const std::size_t own = direction;
-      const Eigen::Array3d value = radiance(events(path), directions, direction).template cast<double>();
-      while (static_cast<int>(path - begin) >= batch_end(static_cast<int>(end - begin), batch)) ++batch;
-      sums[static_cast<std::size_t>(batch)] += value;
-      if (with_slopes) weigh(events(path), directions, own);
+  std::uint32_t first = begin;
+  for (int batch = 0; batch < kPathBatches; ++batch) {
+    HalfEstimate& half = estimate.halves[static_cast<std::size_t>(batch) / (kPathBatches / 2)];
+    for (std::uint32_t last = first; first < batch_limit(batch); first = last) {
+      while (last < batch_limit(batch) &&
+             (last == first || paths.path_ends[last] - first_event(first) <= kEventsTogether))
+        ++last;
+      directions.restart(2 * (paths.path_ends[last - 1] - first_event(first)));
+      for (std::uint32_t path = first; path < last; ++path) directions.add_all_of(events(path));
+      directions.shade(model, with_slopes);
+      std::size_t direction = 0;
+      for (std::uint32_t path = first; path < last; ++path) {
+        const std::size_t own = direction;
+        sums[static_cast<std::size_t>(batch)] +=
+            radiance(events(path), directions, direction).template cast<double>();
+        if (with_slopes) weigh(events(path), directions, own);
+      }
+      if (with_slopes) directions.add_slopes(model, half.slopes);
     }
-    if (with_slopes) directions.add_slopes(model, estimate.slopes);
   }
-  const double count = end - begin;
-  for (const Eigen::Array3d& sum : sums) estimate.value += sum / count;
-  estimate.slopes /= count;
-  if (end - begin < kPathBatches) return estimate;
+  for (std::size_t batch = 0; batch < kPathBatches; ++batch)
+    estimate.halves[batch / (kPathBatches / 2)].value += sums[batch];
+  for (const HalfEstimate& half : estimate.halves) {
+    estimate.value += half.value / count;
+    estimate.slopes += half.slopes / count;
+  }
+  if (count < kPathBatches) {
+    estimate.halves = {};
+    return estimate;
+  }
   for (int b = 0; b < kPathBatches; ++b) {
-    const double size =
-        batch_end(static_cast<int>(count), b) - (b > 0 ? batch_end(static_cast<int>(count), b - 1) : 0);
+    const double size = batch_end(count, b) - (b > 0 ? batch_end(count, b - 1) : 0);
     const Eigen::Array3d off = sums[static_cast<std::size_t>(b)] / size - estimate.value;
     estimate.variance += off.square() / (kPathBatches * (kPathBatches - 1));
+  }
+  const double halfway = batch_end(count, kPathBatches / 2 - 1);
+  for (std::size_t h = 0; h < 2; ++h) {
+    const double size = h == 0 ? halfway : count - halfway;
+    estimate.halves[h].value /= size;
+    estimate.halves[h].slopes /= size;
   }
   return estimate;
 }

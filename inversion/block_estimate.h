@@ -8,6 +8,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 
 #include "inversion/light_paths.h"
@@ -18,12 +19,19 @@
 
 namespace inversion {
 
+// One of two estimates from paths of their own: the first and the second half of the batches.
+struct HalfEstimate {
+  Eigen::Array3d value = Eigen::Array3d::Zero();
+  renderer::ThreadSlopes<double> slopes = renderer::ThreadSlopes<double>::Zero();
+};
+
 // Per unit of the lamp's intensity (1/mm^2), RGB.
 struct BlockEstimate {
   Eigen::Array3d value = Eigen::Array3d::Zero();
   renderer::ThreadSlopes<double> slopes =
       renderer::ThreadSlopes<double>::Zero();        // rows: ThreadSlope, FiberSlope or YarnSlope
   Eigen::Array3d variance = Eigen::Array3d::Zero();  // of `value`, as the spread of the batches shows it
+  std::array<HalfEstimate, 2> halves{};              // zero where there are fewer paths than batches
 };
 
 using BlockPacket = renderer::Packet<renderer::kPacketWidth>;

@@ -47,6 +47,15 @@ MatrixXd spread(const MatrixXd& matrix, const std::vector<int>& chosen, Eigen::I
   return whole;
 }
 
+// In the scaled free unknowns; noise may have made it indefinite: then it is J' J, which is too sure of itself.
+MatrixXd data_hessian(const LinearisedFit& fit, const MatrixXd& jacobian, const std::vector<int>& free) {
+  const MatrixXd square = jacobian.transpose() * jacobian;
+  if (fit.hessian.size() == 0) return square;
+  const MatrixXd scaled = fit.scales.asDiagonal() * fit.hessian * fit.scales.asDiagonal();
+  const MatrixXd kept = columns(columns(scaled, free).transpose(), free);
+  return Eigen::SelfAdjointEigenSolver<MatrixXd>(kept).eigenvalues().minCoeff() > 0 ? kept : square;
+}
+
 }  // namespace
 
 Certainty certainty_of(const LinearisedFit& fit) {
@@ -66,7 +75,7 @@ Certainty certainty_of(const LinearisedFit& fit) {
   const auto scaled = [&](const MatrixXd& rows) { return columns(rows * all_scales.asDiagonal(), free); };
   const MatrixXd jacobian = scaled(fit.jacobian);
   const MatrixXd identity = MatrixXd::Identity(jacobian.cols(), jacobian.cols());
-  MatrixXd hessian = jacobian.transpose() * jacobian, prior = MatrixXd::Zero(jacobian.cols(), jacobian.cols());
+  MatrixXd hessian = data_hessian(fit, jacobian, free), prior = MatrixXd::Zero(jacobian.cols(), jacobian.cols());
   for (const MatrixXd* rows : {&fit.penalty_jacobian, &fit.prior_jacobian})
     if (rows->rows() > 0) hessian += scaled(*rows).transpose() * scaled(*rows);
   if (fit.prior_jacobian.rows() > 0) prior = scaled(fit.prior_jacobian).transpose() * scaled(fit.prior_jacobian);

@@ -30,6 +30,7 @@ struct Certainty {
 
 struct LinearisedFit {
   Eigen::MatrixXd jacobian;  // residuals x unknowns
+  Eigen::MatrixXd hessian;   // of the data: J' J unless the noise of J itself was taken out; may be empty: J' J
   Eigen::VectorXd residuals, variances;
   std::vector<int> views;            // of each residual, from 0
   Eigen::MatrixXd penalty_jacobian;  // penalties x unknowns; may have no rows

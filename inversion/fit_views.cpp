@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "inversion/adam.h"
+#include "inversion/bias_free.h"
 #include "inversion/view_objective.h"
 #include "renderer/scattering/thread_prior.h"
 
@@ -16,6 +17,8 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int kMostSteps = 40;
+// With fewer the product of two halves' errors is larger than what it is to find.
+constexpr int kFewestPathsWithoutBias = 512;
 constexpr const char* kStopped = "the fit was stopped on request; start it again for a thread";
 
 class DataTerm : public ceres::CostFunction {
@@ -138,8 +141,11 @@ struct Attempt {
 
 // The prior's chi square counts as much as that of residuals of the size that the round before left.
 double prior_scale(const ViewObjective& objective, const Search& search, const std::vector<FitRound>& before) {
-  if (search.options->model != ModelKind::thread || before.empty()) return 0;
-  return search.options->prior_weight * 2 * before.back().loss_after / objective.residual_count();
+  if (search.options->model != ModelKind::thread) return 0;
+  const auto last =
+      std::find_if(before.rbegin(), before.rend(), [](const FitRound& round) { return !round.bias_free; });
+  if (last == before.rend()) return 0;
+  return search.options->prior_weight * 2 * last->loss_after / objective.residual_count();
 }
 
 class RoundRunner {
@@ -195,6 +201,79 @@ Attempt search_by_rounds(ViewObjective& objective, const Search& search, const s
   return best;
 }
 
+// Penalties and prior.
+class OtherTerms {
+ public:
+  OtherTerms(const Search& search, double prior_scale, Eigen::Index unknowns) : at_(unknowns) {
+    problem_.AddParameterBlock(at_.data(), static_cast<int>(unknowns));
+    search.family->add_penalties(problem_, at_.data());
+    if (prior_scale > 0) problem_.AddResidualBlock(new PriorTerm(prior_scale), nullptr, at_.data());
+  }
+  // As they are at the unknowns, with the Gauss-Newton approximation of the Hessian.
+  BiasFreeTerms at(const VectorXd& unknowns) {
+    at_ = unknowns;
+    BiasFreeTerms terms;
+    terms.gradient = VectorXd::Zero(unknowns.size());
+    terms.hessian = Eigen::MatrixXd::Zero(unknowns.size(), unknowns.size());
+    if (problem_.NumResiduals() == 0) return terms;
+    std::vector<double> gradient;
+    problem_.Evaluate({}, &terms.loss, nullptr, &gradient, nullptr);
+    terms.gradient = Eigen::Map<const VectorXd>(gradient.data(), unknowns.size());
+    const Eigen::MatrixXd rows = jacobian();
+    terms.hessian = rows.transpose() * rows;
+    return terms;
+  }
+
+ private:
+  Eigen::MatrixXd jacobian() {
+    ceres::CRSMatrix sparse;
+    problem_.Evaluate({}, nullptr, nullptr, nullptr, &sparse);
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(sparse.num_rows, at_.size());
+    for (int row = 0; row < sparse.num_rows; ++row)
+      for (auto i = static_cast<std::size_t>(sparse.rows[static_cast<std::size_t>(row)]);
+           i < static_cast<std::size_t>(sparse.rows[static_cast<std::size_t>(row) + 1]); ++i)
+        dense(row, sparse.cols[i]) = sparse.values[i];
+    return dense;
+  }
+
+  VectorXd at_;
+  ceres::Problem problem_;
+};
+
+BiasFreeTerms data_terms(const ViewObjective& objective, const VectorXd& unknowns) {
+  const ViewObjective::Halves both = objective.halves(unknowns);
+  const auto& [a, b] = both.residuals;
+  const auto& [by_a, by_b] = both.jacobians;
+  const Eigen::MatrixXd product = by_a.transpose() * by_b;
+  return {.loss = 0.5 * a.dot(b),
+          .gradient = 0.5 * (by_a.transpose() * b + by_b.transpose() * a),
+          .hessian = 0.5 * (product + product.transpose())};
+}
+
+// From where the search has ended. The last step's paths remain recorded.
+void remove_bias(ViewObjective& objective, const Search& search, Attempt& attempt) {
+  const FitOptions& options = *search.options;
+  const int paths = options.paths_per_block.back();
+  OtherTerms others(search, prior_scale(objective, search, attempt.rounds), attempt.unknowns.size());
+  const auto loss = [&](int step, const VectorXd& unknowns) {
+    const std::string name = "without bias, step " + std::to_string(step + 1);
+    const auto number = options.paths_per_block.size() + static_cast<std::size_t>(step);
+    objective.trace(unknowns, paths, options.seed + 1000003 * number, [&](int, int) {
+      if (options.progress && !options.progress(name, 1)) throw std::runtime_error(kStopped);
+    });
+    BiasFreeTerms terms = others.at(unknowns);
+    const BiasFreeTerms data = data_terms(objective, unknowns);
+    return BiasFreeTerms{terms.loss + data.loss, terms.gradient + data.gradient, terms.hessian + data.hessian};
+  };
+  FitRound round{.paths_per_block = paths, .bias_free = true, .converged = true};
+  round.losses = minimise_bias_free(
+      loss, {.lower = search.family->lower_bounds(), .upper = search.family->upper_bounds(), .held = search.held},
+      attempt.unknowns);
+  round.steps = static_cast<int>(round.losses.size());
+  round.loss_before = round.losses.front(), round.loss_after = round.losses.back();
+  attempt.rounds.push_back(std::move(round));
+}
+
 Attempt search_by_adam(ViewObjective& objective, const Search& search, const VectorXd& start) {
   const FitOptions& options = *search.options;
   Attempt attempt{.unknowns = start};
@@ -243,6 +322,7 @@ Certainty certainty_at(const ViewObjective& objective, const Search& search, dou
   fit.residuals.resize(objective.residual_count());
   objective.residuals(unknowns, fit.residuals.data(), jacobian.data());
   fit.jacobian = jacobian;
+  fit.hessian = data_terms(objective, unknowns).hessian;
   fit.variances = objective.residual_variances(unknowns);
   fit.views = objective.residual_views();
   fit.fixed = fixed_unknowns(search, unknowns);
@@ -275,15 +355,18 @@ ViewFit fit_family(const WrappedSpool& spool, const std::vector<View>& views, co
         search.held.push_back(k);
   Attempt best = options.solver == Solver::adam ? search_by_adam(objective, search, starts.front())
                                                 : search_by_rounds(objective, search, starts);
-  const std::vector<FitRound> before(best.rounds.begin(), std::prev(best.rounds.end()));
-  ViewFit fit{.model = family.model(best.unknowns),
-              .unknowns = best.unknowns,
-              .unknown_names = family.unknown_names(),
-              .certainty = certainty_at(objective, search, prior_scale(objective, search, before), best.unknowns),
-              .rounds = best.rounds,
-              .start = best.start,
-              .block_px = objective.block_px(),
-              .blocks = objective.block_count()};
+  if (options.solver == Solver::levenberg_marquardt && options.without_bias &&
+      options.paths_per_block.back() >= kFewestPathsWithoutBias)
+    remove_bias(objective, search, best);
+  ViewFit fit{
+      .model = family.model(best.unknowns),
+      .unknowns = best.unknowns,
+      .unknown_names = family.unknown_names(),
+      .certainty = certainty_at(objective, search, prior_scale(objective, search, best.rounds), best.unknowns),
+      .rounds = best.rounds,
+      .start = best.start,
+      .block_px = objective.block_px(),
+      .blocks = objective.block_count()};
   if (auto* thread = std::get_if<renderer::ThreadParameters>(&fit.model)) thread->limit_energy = true;
   return fit;
 }
@@ -305,6 +388,12 @@ ViewFit fit_best_yarn(const WrappedSpool& spool, const std::vector<View>& views,
 }
 
 }  // namespace
+
+double ViewFit::loss() const {
+  const auto last =
+      std::find_if(rounds.rbegin(), rounds.rend(), [](const FitRound& round) { return !round.bias_free; });
+  return last == rounds.rend() ? rounds.back().loss_after : last->loss_after;
+}
 
 ViewFit fit_views(const WrappedSpool& spool, const std::vector<View>& views, const FitOptions& options) {
   const std::vector<int>& paths = options.paths_per_block;

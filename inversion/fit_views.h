@@ -42,6 +42,9 @@ struct FitOptions {
   // How strongly the thread model leans on simulated threads (renderer/scattering/thread_prior.h): 1 as their spread says,
   // beside data whose residuals are as large as those of the round before; 0: not at all. Levenberg-Marquardt only.
   double prior_weight = 1;
+  // Levenberg-Marquardt ends with steps without the bias of the paths' noise (bias_free.h), unless the last of
+  // paths_per_block is below 512. false: eq. 6 as it stands.
+  bool without_bias = true;
   std::vector<ParameterGroup> held{};  // of the thread model: left at `start`, the only one then
   std::uint64_t seed = 1;
   // Called between steps with what is done and the finished fraction; returning false stops the fit.
@@ -54,6 +57,7 @@ struct FitRound {
   double loss_before = 0, loss_after = 0;
   std::vector<double> losses{};  // after each step, the loss before them first
   double prior_share = 0;        // of the loss that is the prior's
+  bool bias_free = false;        // bias_free.h: the loss has no part of the paths' noise, and may be below zero
   bool converged = false;
 };
 
@@ -68,7 +72,8 @@ struct ViewFit {
   std::size_t blocks = 0;
 
   const renderer::ThreadParameters& thread() const { return std::get<renderer::ThreadParameters>(model); }
-  double loss() const { return rounds.back().loss_after; }
+  // Eq. 6's, by the last round that is not bias-free.
+  double loss() const;
 };
 
 // Of yarns: the best of kYarnFiberCounts.

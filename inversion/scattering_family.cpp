@@ -54,12 +54,12 @@ class ThreadShader : public BlockShader {
   BlockEstimate shade(const LightPaths& paths, std::size_t block, bool with_slopes) const override {
     return shade_block(paths, block, model_, with_slopes);
   }
-  RgbByUnknowns by_unknowns(const BlockEstimate& estimate) const override {
+  RgbByUnknowns by_unknowns(const renderer::ThreadSlopes<double>& slopes) const override {
     Eigen::Matrix<double, 3, kThreadParameterCount> by_parameters;
     by_parameters.setZero();
     for (int c = 0; c < 3; ++c) {
-      by_parameters(c, c) = estimate.slopes(renderer::kSlopeSigma, c);
-      for (int k = 1; k < renderer::kThreadSlopeCount; ++k) by_parameters(c, k + 2) = estimate.slopes(k, c);
+      by_parameters(c, c) = slopes(renderer::kSlopeSigma, c);
+      for (int k = 1; k < renderer::kThreadSlopeCount; ++k) by_parameters(c, k + 2) = slopes(k, c);
     }
     return by_parameters * by_unknowns_;
   }
@@ -78,11 +78,11 @@ class BaselineShader : public BlockShader {
   BlockEstimate shade(const LightPaths& paths, std::size_t block, bool with_slopes) const override {
     return shade_block(paths, block, model_, with_slopes);
   }
-  RgbByUnknowns by_unknowns(const BlockEstimate& estimate) const override {
+  RgbByUnknowns by_unknowns(const renderer::ThreadSlopes<double>& slopes) const override {
     RgbByUnknowns rows = RgbByUnknowns::Zero(3, Model::kSlopeCount + 2);
     for (int c = 0; c < 3; ++c) {
-      rows(c, c) = sigma_scale_ * estimate.slopes(0, c);
-      for (int k = 1; k < Model::kSlopeCount; ++k) rows(c, k + 2) = estimate.slopes(k, c);
+      rows(c, c) = sigma_scale_ * slopes(0, c);
+      for (int k = 1; k < Model::kSlopeCount; ++k) rows(c, k + 2) = slopes(k, c);
     }
     return rows;
   }

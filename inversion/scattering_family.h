@@ -27,7 +27,8 @@ class BlockShader {
   virtual ~BlockShader() = default;
   virtual BlockEstimate shade(const LightPaths& paths, std::size_t block, bool with_slopes) const = 0;
   // A block's slopes by the unknowns, RGB x unknowns.
-  virtual Eigen::Matrix<double, 3, Eigen::Dynamic> by_unknowns(const BlockEstimate& estimate) const = 0;
+  virtual Eigen::Matrix<double, 3, Eigen::Dynamic> by_unknowns(
+      const renderer::ThreadSlopes<double>& slopes) const = 0;
 };
 
 class ScatteringFamily {

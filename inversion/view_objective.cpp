@@ -74,8 +74,30 @@ void ViewObjective::residuals(const Eigen::VectorXd& unknowns, double* residuals
       if (!jacobian) return;
       using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;
       Eigen::Map<Rows>(jacobian + first * static_cast<std::size_t>(count), 3, count) =
-          (weight * v.scale).matrix().asDiagonal() * shader->by_unknowns(estimate);
+          (weight * v.scale).matrix().asDiagonal() * shader->by_unknowns(estimate.slopes);
     });
+}
+
+ViewObjective::Halves ViewObjective::halves(const Eigen::VectorXd& unknowns) const {
+  const std::unique_ptr<BlockShader> shader = family_.shader(unknowns);
+  Halves both;
+  for (std::size_t h = 0; h < 2; ++h) {
+    both.residuals[h].resize(residual_count());
+    both.jacobians[h].resize(residual_count(), unknowns.size());
+  }
+  for (const ViewBlocks& v : views_)
+    tbb::parallel_for(std::size_t{0}, v.blocks.size(), [&](std::size_t b) {
+      const BlockEstimate estimate = shader->shade(v.paths, b, true);
+      const double weight = residual_weight(v, b);
+      const auto first = static_cast<Eigen::Index>(3 * (v.first_block + b));
+      for (std::size_t h = 0; h < 2; ++h) {
+        const HalfEstimate& half = estimate.halves[h];
+        both.residuals[h].segment<3>(first) = (weight * (v.scale * half.value - v.references[b])).matrix();
+        both.jacobians[h].middleRows<3>(first) =
+            (weight * v.scale).matrix().asDiagonal() * shader->by_unknowns(half.slopes);
+      }
+    });
+  return both;
 }
 
 Eigen::VectorXd ViewObjective::residual_variances(const Eigen::VectorXd& unknowns) const {

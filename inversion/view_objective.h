@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -27,6 +28,13 @@ class ViewObjective {
   // residuals: sqrt(2 w_i n_b) (I - I_ref) / diffuser, so that half their squared norm is the loss; block after block,
   // RGB. jacobian: residuals x unknowns, row-major, or null. One call shades every path: the fit's whole cost.
   void residuals(const Eigen::VectorXd& unknowns, double* residuals, double* jacobian) const;
+
+  // The residuals from either half of the paths, whose errors are independent of each other.
+  struct Halves {
+    std::array<Eigen::VectorXd, 2> residuals;
+    std::array<Eigen::MatrixXd, 2> jacobians;
+  };
+  Halves halves(const Eigen::VectorXd& unknowns) const;
 
   // Variance of each residual: the photographs' noise (View::variance) and that of the light paths.
   Eigen::VectorXd residual_variances(const Eigen::VectorXd& unknowns) const;

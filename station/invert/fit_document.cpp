@@ -63,6 +63,7 @@ json rounds_json(const inversion::ViewFit& fit) {
                       {"loss_after", round.loss_after},
                       {"losses", round.losses},
                       {"prior_share", round.prior_share},
+                      {"bias_free", round.bias_free},
                       {"converged", round.converged}});
   return rounds;
 }
