@@ -2,6 +2,7 @@
 // mask (blocks.h), each weighted by its masked pixels.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <opencv2/core.hpp>
 #include <vector>
@@ -19,6 +20,11 @@ struct ViewAgreement {
 
 // `rendered` as view.image: same size and radiance unit. Blocks of block_px.
 ViewAgreement agreement(const View& view, const cv::Mat3f& rendered, int block_px);
+
+// The same from two photographs and two renderings whose noise is independent: mean_square is the mean of (R_1 - P_1)(R_2 - P_2),
+// which has no part of the noise of either and may be below zero; view.image is not used.
+ViewAgreement noiseless_agreement(const View& view, const std::array<cv::Mat3f, 2>& photographs,
+                                  const std::array<cv::Mat3f, 2>& rendered, int block_px);
 
 // Of all views together: root of the mean of their mean squares over the mean of their means, so that every view counts
 // alike, as in eq. 6.

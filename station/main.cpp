@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
   station::add_report_command(app);
   station::add_scatter_command(app);
   station::add_target_command(app);
+  station::add_validate_command(app);
   station::add_weave_command(app);
   station::add_render_command(app);
   try {

@@ -16,6 +16,7 @@ void add_invert_command(CLI::App& app);
 void add_report_command(CLI::App& app);
 void add_scatter_command(CLI::App& app);
 void add_target_command(CLI::App& app);
+void add_validate_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
 void add_weave_command(CLI::App& app);
 

@@ -81,7 +81,8 @@ cv::Mat3f with_sensor_noise(const cv::Mat3f& radiance, const cv::Mat1b& mask, co
   std::vector<float> levels;
   for (int row = 0; row < mask.rows; ++row)
     for (int column = 0; column < mask.cols; ++column)
-      if (mask(row, column)) levels.push_back(*std::max_element(radiance(row, column).val, radiance(row, column).val + 3));
+      if (mask(row, column))
+        levels.push_back(*std::max_element(radiance(row, column).val, radiance(row, column).val + 3));
   if (levels.empty()) return radiance;
   const auto brightest = levels.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(levels.size() - 1));
   std::nth_element(levels.begin(), brightest, levels.end());
