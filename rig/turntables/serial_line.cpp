@@ -135,6 +135,7 @@ class SerialLine final : public ByteLine {
       throw std::runtime_error("the port " + name_ + " refused " + std::to_string(baud) +
                                " baud; check \"baud\" in the rig file");
     }
+    fcntl(descriptor, F_SETFD, FD_CLOEXEC);  // a process that is started must not keep the port
     take_for_this_program_alone(descriptor, name_);
     if (sp_new_event_set(&events_) != SP_OK ||
         sp_add_port_events(events_, port_, static_cast<sp_event>(SP_EVENT_RX_READY | SP_EVENT_ERROR)) != SP_OK) {
