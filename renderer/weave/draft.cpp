@@ -104,6 +104,27 @@ Problem problem_of_sizes(const char* kind, const YarnSystem& system) {
   return {};
 }
 
+Problem problem_of_mechanics(const char* kind, const YarnSystem& system, bool free_periods) {
+  const auto refused = [&](const char* what, double value, const char* wanted) {
+    return kind + std::string(" ") + what + " is " + shown(value) + "; give " + wanted;
+  };
+  const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
+  if (!within(system.tex, 0, 1e6)) return refused("tex", system.tex, "grams per kilometre of yarn, 0 when unknown");
+  if (!within(system.bending_n_mm2, 0, 1e6))
+    return refused("bending stiffness", system.bending_n_mm2,
+                   "newtons x mm^2, 0 for that of a bundle of loose fibers");
+  if (!within(system.tension_n, 0, 1e6)) return refused("tension", system.tension_n, "newtons, 0 or more");
+  if (!within(system.contraction, 0, kMostContraction))
+    return refused("contraction", system.contraction, "a share of the yarn's length from 0 to 0.3");
+  if (!within(system.flatness, 1, kMostFlatness))
+    return refused("flatness", system.flatness, "width over height of the section, from 1 (round) to 4");
+  if (free_periods && system.contraction == 0)
+    return kind + std::string(
+                      " yarns have no contraction, so under their tension a cell of free periods shrinks "
+                      "without end; give a contraction or fixed periods");
+  return {};
+}
+
 Problem problem_of_threads(const char* kind, const YarnSystem& system) {
   if (system.threads.empty())
     return kind + std::string(" has no threads; name one thread per yarn of its colour order");
@@ -162,6 +183,10 @@ Draft basket_draft(int yarns) {
                     [=](int pick, int end) { return (pick / yarns + end / yarns) % 2 == 0; });
 }
 
+double bending_of(const YarnSystem& system) {
+  return system.bending_n_mm2 > 0 ? system.bending_n_mm2 : kBundleBending * system.diameter_mm * system.diameter_mm;
+}
+
 int ends_in_patch(const Draft& draft) {
   return static_cast<int>(std::lcm(draft.warp_over.front().size(), draft.warp.threads.size()));
 }
@@ -174,6 +199,8 @@ std::optional<std::string> check_draft(const Draft& draft) {
   Problem problem = problem_of_structure(draft);
   if (!problem) problem = problem_of_sizes("warp", draft.warp);
   if (!problem) problem = problem_of_sizes("weft", draft.weft);
+  if (!problem) problem = problem_of_mechanics("warp", draft.warp, draft.free_periods);
+  if (!problem) problem = problem_of_mechanics("weft", draft.weft, draft.free_periods);
   if (!problem) problem = problem_of_height_scale(draft);
   if (!problem) problem = problem_of_threads("warp", draft.warp);
   if (!problem) problem = problem_of_threads("weft", draft.weft);

@@ -17,14 +17,26 @@ struct YarnSystem {
   double diameter_mm = 0.5;
   double pitch_mm = 0.9;        // from one yarn of this system to the next
   std::vector<int> threads{0};  // yarn k is spun from thread threads[k % size], an index into the scene's threads
+
+  double tex = 0.0;  // g per km of yarn; 0: unknown, then so is the cloth's mass
+
+  // For the relaxation (relaxation.h); of forces only ratios change the shape.
+  double bending_n_mm2 = 0.0;  // stiffness; 0: bending_of() takes that of a bundle of loose fibers
+  double tension_n = 0.5;      // dead load on each yarn
+  double flatness = 1.0;     // width / height of the section, an ellipse of the round yarn's area, wide in the plane
+  double contraction = 0.0;  // above 0: instead of the load, a spring that wants this share less than the drawn path
 };
+
+// Bending stiffness: as given, or kBundleBending x diameter^2, 0.0125 N mm^2 for a yarn of 0.5 mm.
+double bending_of(const YarnSystem& system);
+inline constexpr double kBundleBending = 0.05;  // N
 
 struct Draft {
   std::string name;
   std::vector<std::vector<bool>> warp_over;  // [pick][end]: true where the warp lies on top
   YarnSystem warp, weft;
-  double height_scale =
-      1.0;  // multiplies the heights of all centre lines; anything but 1 is no longer a contact shape
+  bool free_periods = false;  // relaxation: the cell takes the size at which it pulls at nothing; needs contraction
+  double height_scale = 1.0;  // multiplies the heights of all centre lines; not 1: no longer a contact shape
 };
 
 // The common weaves; sizes, sett and threads are those of YarnSystem until the caller changes them.
@@ -43,7 +55,9 @@ int picks_in_patch(const Draft& draft);
 // A sett in which round yarns jam is woven; its overlap is measured (YarnPatch::least_gap_mm).
 std::optional<std::string> check_draft(const Draft& draft);
 
+inline constexpr int kPointsPerCrossing = 8;  // of a yarn's curve, from one crossing to the next
 inline constexpr int kMostCrossings = 4096;
 inline constexpr int kMostThreads = 4096;
+inline constexpr double kMostContraction = 0.3, kMostFlatness = 4;
 
 }  // namespace renderer

@@ -1,5 +1,6 @@
 #include "renderer/weave/patch.h"
 
+#include <cmath>
 #include <stdexcept>
 
 #include "renderer/weave/patch_measures.h"
@@ -12,6 +13,8 @@ Yarn make_yarn(const YarnSystem& system, std::size_t index, bool warp) {
   return {.warp = warp,
           .thread = system.threads[index % system.threads.size()],
           .radius_mm = system.diameter_mm / 2,
+          .flatness = system.flatness,
+          .tex = system.tex,
           .control_points = {}};
 }
 
@@ -28,6 +31,13 @@ std::vector<Eigen::Vector3d> control_points_of(const std::vector<Eigen::Vector2d
 
 }  // namespace
 
+double half_width(const Yarn& yarn) {
+  return yarn.radius_mm * std::sqrt(yarn.flatness);
+}
+double half_height(const Yarn& yarn) {
+  return yarn.radius_mm / std::sqrt(yarn.flatness);
+}
+
 Eigen::Vector3d period_of(const YarnPatch& patch, const Yarn& yarn) {
   return yarn.warp ? Eigen::Vector3d(0, patch.period_y_mm, 0) : Eigen::Vector3d(patch.period_x_mm, 0, 0);
 }
@@ -36,7 +46,7 @@ PeriodicSpline center_line(const YarnPatch& patch, const Yarn& yarn) {
   return {yarn.control_points, period_of(patch, yarn)};
 }
 
-YarnPatch initial_patch(const Draft& draft) {
+YarnPatch initial_patch(const Draft& draft, int points_per_crossing) {
   if (const auto problem = check_draft(draft)) throw std::runtime_error("draft \"" + draft.name + "\": " + *problem);
   const auto ends = static_cast<std::size_t>(ends_in_patch(draft)),
              picks = static_cast<std::size_t>(picks_in_patch(draft));
@@ -60,8 +70,8 @@ YarnPatch initial_patch(const Draft& draft) {
       }
       Yarn yarn = make_yarn(own, k, warp);
       const double across = (static_cast<double>(k) + 0.5) * own.pitch_mm;
-      yarn.control_points =
-          control_points_of(yarn_path(on_top, pitch, wave), across, warp, period_of(patch, yarn), draft.height_scale);
+      yarn.control_points = control_points_of(yarn_path(on_top, pitch, wave, points_per_crossing), across, warp,
+                                              period_of(patch, yarn), draft.height_scale);
       patch.yarns.push_back(std::move(yarn));
     }
   };

@@ -14,11 +14,14 @@
 
 namespace renderer {
 
-// A round yarn. Its centre line is a periodic uniform cubic B-spline (periodic_spline.h) of constant radius.
+// A yarn. Its centre line is a periodic uniform cubic B-spline (periodic_spline.h); its section is round, or an ellipse
+// of the same area, wide in the plane of the cloth.
 struct Yarn {
   bool warp = true;
-  int thread = 0;  // index into the list of threads that the cloth is made of
-  double radius_mm = 0.25;
+  int thread = 0;                               // index into the list of threads that the cloth is made of
+  double radius_mm = 0.25;                      // of the round section
+  double flatness = 1.0;                        // width / height of the section
+  double tex = 0.0;                             // g per km; 0: unknown
   std::vector<Eigen::Vector3d> control_points;  // one period, mm; at least 4
 };
 
@@ -33,9 +36,14 @@ struct YarnPatch {
   double thickness_mm = 0.0;  // from the lowest to the highest point of the yarns' surfaces
   double crimp_warp = 0.0;    // length of yarn / length of cloth - 1, mean over the warp yarns
   double crimp_weft = 0.0;
-  double cover = 0.0;         // share of the plane that yarns hide: k1 + k2 - k1 k2, k = diameters / period
-  double least_gap_mm = 0.0;  // between the surfaces of any two yarns; negative: how deep they overlap
+  double areal_mass_g_m2 = 0.0;  // 0: unknown, where a yarn's tex is
+  double cover = 0.0;            // share of the plane that yarns hide: k1 + k2 - k1 k2, k = diameters / period
+  double least_gap_mm = 0.0;     // between the surfaces of any two yarns; negative: how deep they overlap
 };
+
+// Of the section, mm; their product is radius^2.
+double half_width(const Yarn& yarn);
+double half_height(const Yarn& yarn);
 
 Eigen::Vector3d period_of(const YarnPatch& patch, const Yarn& yarn);
 PeriodicSpline center_line(const YarnPatch& patch, const Yarn& yarn);
@@ -43,6 +51,6 @@ PeriodicSpline center_line(const YarnPatch& patch, const Yarn& yarn);
 // The patch of a draft with the analytic shapes of yarn_path.h, measured. Yarns are straight in plan: warp end j at
 // x = (j + 1/2) pitch, weft pick i at y = (i + 1/2) pitch; control point 0 belongs to the knot on the cell's border.
 // Errors: std::runtime_error with the line of check_draft().
-YarnPatch initial_patch(const Draft& draft);
+YarnPatch initial_patch(const Draft& draft, int points_per_crossing = kPointsPerCrossing);
 
 }  // namespace renderer

@@ -135,8 +135,8 @@ SurfaceRange surface_range(const YarnPatch& patch) {
     const PeriodicSpline line = center_line(patch, yarn);
     for (std::size_t k = 0; k < line.control_points.size() * kSteps; ++k) {
       const double z = spline_value(line, static_cast<double>(k) / kSteps).z();
-      range.low_mm = std::min(range.low_mm, z - yarn.radius_mm);
-      range.high_mm = std::max(range.high_mm, z + yarn.radius_mm);
+      range.low_mm = std::min(range.low_mm, z - half_height(yarn));
+      range.high_mm = std::max(range.high_mm, z + half_height(yarn));
     }
   }
   return range;
@@ -146,11 +146,20 @@ double cover(const YarnPatch& patch) {
   double warp = 0, weft = 0;
   for (const Yarn& yarn : patch.yarns) {
     if (yarn.warp)
-      warp += 2 * yarn.radius_mm / patch.period_x_mm;
+      warp += 2 * half_width(yarn) / patch.period_x_mm;
     else
-      weft += 2 * yarn.radius_mm / patch.period_y_mm;
+      weft += 2 * half_width(yarn) / patch.period_y_mm;
   }
   return 1 - (1 - std::min(warp, 1.0)) * (1 - std::min(weft, 1.0));
+}
+
+double areal_mass(const YarnPatch& patch) {
+  double mass_g = 0;
+  for (const Yarn& yarn : patch.yarns) {
+    if (yarn.tex == 0) return 0;
+    mass_g += yarn.tex * 1e-6 * spline_length(center_line(patch, yarn));  // tex = 1e-6 g per mm
+  }
+  return mass_g / (patch.period_x_mm * patch.period_y_mm * 1e-6);
 }
 
 double least_gap(const YarnPatch& patch) {
@@ -170,6 +179,7 @@ void measure(YarnPatch& patch) {
   patch.thickness_mm = range.high_mm - range.low_mm;
   patch.crimp_warp = mean_crimp(patch, true);
   patch.crimp_weft = mean_crimp(patch, false);
+  patch.areal_mass_g_m2 = areal_mass(patch);
   patch.cover = cover(patch);
   patch.least_gap_mm = least_gap(patch);
 }

@@ -21,6 +21,9 @@ SurfaceRange surface_range(const YarnPatch& patch);
 // Conventional cover factor from radii and periods (yarns taken as straight in plan), each system at most 1.
 double cover(const YarnPatch& patch);
 
+// Mass of the yarns over the area of the cell, g / m^2; 0 where a yarn's tex is unknown.
+double areal_mass(const YarnPatch& patch);
+
 // The least distance between the surfaces of two different yarns, periodic images included; negative where they
 // overlap. Sampled four times per spline segment, then refined at the closest pair; the distance is that of centre
 // lines minus both radii, so two yarns that cross "inside out" must be found by their order, not by this gap.

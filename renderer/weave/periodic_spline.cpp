@@ -5,10 +5,8 @@
 #include <cmath>
 
 namespace renderer {
-namespace {
 
-// Weights of the four control points at u in [0, 1] of a segment.
-Eigen::Vector4d basis(double u, int derivative) {
+Eigen::Vector4d spline_weights(double u, int derivative) {
   const double v = 1 - u;
   assert(derivative >= 0 && derivative <= 2);
   if (derivative == 0)
@@ -16,8 +14,6 @@ Eigen::Vector4d basis(double u, int derivative) {
   if (derivative == 1) return Eigen::Vector4d(-v * v, 3 * u * u - 4 * u, 4 * v - 3 * v * v, u * u) / 2;
   return {v, 3 * u - 2, 3 * v - 2, u};
 }
-
-}  // namespace
 
 Eigen::Vector3d PeriodicSpline::control_point(int k) const {
   const int count = static_cast<int>(control_points.size());
@@ -60,7 +56,7 @@ PeriodicSpline spline_through(const std::vector<Eigen::Vector3d>& points, const 
 Eigen::Vector3d spline_value(const PeriodicSpline& spline, double t, int derivative) {
   const double knot = std::floor(t);
   const int k = static_cast<int>(knot);
-  const Eigen::Vector4d weight = basis(t - knot, derivative);
+  const Eigen::Vector4d weight = spline_weights(t - knot, derivative);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int i = 0; i < 4; ++i) sum += weight[i] * spline.control_point(k - 1 + i);
   return sum;

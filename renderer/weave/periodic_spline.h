@@ -23,6 +23,9 @@ PeriodicSpline spline_through(const std::vector<Eigen::Vector3d>& points, const 
 // d-th derivative to t (d = 0: the point itself; d <= 2), any t.
 Eigen::Vector3d spline_value(const PeriodicSpline& spline, double t, int derivative = 0);
 
+// Weights of the four control points c_(k-1) .. c_(k+2) at u in [0, 1] of segment k, for the d-th derivative to t.
+Eigen::Vector4d spline_weights(double u, int derivative = 0);
+
 // Arc length of one period, mm (five Gauss points per segment).
 double spline_length(const PeriodicSpline& spline);
 

@@ -13,7 +13,7 @@ double least_crossing_crown(double pitch_mm, double contact_mm) {
 }
 
 double bending_weight(const YarnSystem& own, double pitch_along_mm) {
-  return std::pow(pitch_along_mm, 3) / (own.diameter_mm * own.diameter_mm);
+  return std::pow(pitch_along_mm, 3) / bending_of(own);
 }
 
 // The half-wave whose arc has the share kLeastArcShare: with straight part = q * arc and a radius of 1 it ends at
@@ -75,14 +75,15 @@ HalfWave half_wave(double pitch_mm, double crown_mm, double crossing_crown_mm) {
   return rounded_half_wave(pitch_mm, crown_mm);
 }
 
-std::vector<Eigen::Vector2d> yarn_path(const std::vector<bool>& on_top, double pitch_mm, const HalfWave& wave) {
+std::vector<Eigen::Vector2d> yarn_path(const std::vector<bool>& on_top, double pitch_mm, const HalfWave& wave,
+                                       int points_per_crossing) {
   const std::size_t crossings = on_top.size();
   std::vector<Eigen::Vector2d> points;
   for (std::size_t i = 0; i < crossings; ++i) {
     const double crossing = (static_cast<double>(i) + 0.5) * pitch_mm, side = on_top[i] ? 1 : -1;
-    for (int step = -kPointsPerCrossing / 2; step < kPointsPerCrossing / 2; ++step) {
+    for (int step = -points_per_crossing / 2; step < points_per_crossing / 2; ++step) {
       const bool neighbour = on_top[(i + (step < 0 ? crossings - 1 : 1)) % crossings];
-      const double fraction = 2.0 * std::abs(step) / kPointsPerCrossing;  // 0 at the crossing, 1 at the middle
+      const double fraction = 2.0 * std::abs(step) / points_per_crossing;  // 0 at the crossing, 1 at the middle
       const Eigen::Vector2d shape = neighbour == on_top[i] ? Eigen::Vector2d(fraction * pitch_mm / 2, wave.crown_mm)
                                                            : wave.at(fraction * wave.length_mm());
       points.push_back({crossing + (step < 0 ? -shape.x() : shape.x()), side * shape.y()});

@@ -22,7 +22,7 @@ struct CrownHeights {
 };
 
 // The split is Peirce's crimp interchange h1 / h2 = (B2 p2^3) / (B1 p1^3) (p2 = weft pitch, along the warp) with
-// bending stiffness B ~ diameter^2 (a bundle of loose fibers); equal for square cloth. Where that would press yarns
+// the yarns' bending stiffness (bending_of); equal for square cloth. Where that would press yarns
 // into each other it is moved to the nearest split that does not; where no split is free (the sett jams), to the
 // middle.
 CrownHeights split_heights(const YarnSystem& warp, const YarnSystem& weft);
@@ -46,12 +46,10 @@ HalfWave taut_half_wave(double pitch_mm, double crown_mm, double crossing_crown_
 // share.
 HalfWave half_wave(double pitch_mm, double crown_mm, double crossing_crown_mm);
 
-// One period, (along, height) at kPointsPerCrossing equal steps of arc length from one crossing to the next, starting
-// half a pitch before the first crossing (along = 0); crossing i is point kPointsPerCrossing * i + kPointsPerCrossing
-// / 2.
-std::vector<Eigen::Vector2d> yarn_path(const std::vector<bool>& on_top, double pitch_mm, const HalfWave& wave);
-
-inline constexpr int kPointsPerCrossing = 8;
+// One period, (along, height) at n = `points_per_crossing` (even) equal steps of arc length from one crossing to the
+// next, starting half a pitch before the first crossing (along = 0); crossing i is point n i + n / 2.
+std::vector<Eigen::Vector2d> yarn_path(const std::vector<bool>& on_top, double pitch_mm, const HalfWave& wave,
+                                       int points_per_crossing = kPointsPerCrossing);
 
 // The arc's share a of a shallow half-wave has the crimp (1 - 2 a / 3) / (2 (1 - a / 2)^2) (h/p)^2; 0.6 at this a.
 inline constexpr double kLeastArcShare = 0.53752;

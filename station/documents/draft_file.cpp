@@ -29,7 +29,7 @@ std::vector<std::vector<bool>> parse_structure(ObjectReader& draft) {
 }
 
 renderer::YarnSystem parse_system(ObjectReader reader) {
-  constexpr double kMost = 1000;
+  constexpr double kMost = 1000, kMostMechanics = 1e9;
   renderer::YarnSystem system;
   system.diameter_mm = reader.number("diameter_mm", -kMost, kMost);  // check_draft says what is wrong with its value
   system.pitch_mm = reader.number("pitch_mm", -kMost, kMost);
@@ -39,12 +39,27 @@ renderer::YarnSystem parse_system(ObjectReader reader) {
       reader.refuse("threads", "found " + json(thread).dump() + ", expected whole numbers");
     system.threads.push_back(static_cast<int>(thread));
   }
+  const auto optional = [&](const char* key, double& value) {
+    if (reader.has(key)) value = reader.number(key, -kMostMechanics, kMostMechanics);  // check_draft, as above
+  };
+  optional("tex", system.tex);
+  optional("bending_n_mm2", system.bending_n_mm2);
+  optional("tension_n", system.tension_n);
+  optional("contraction", system.contraction);
+  optional("flatness", system.flatness);
   reader.finish();
   return system;
 }
 
 json system_json(const renderer::YarnSystem& system) {
-  return {{"diameter_mm", system.diameter_mm}, {"pitch_mm", system.pitch_mm}, {"threads", system.threads}};
+  return {{"diameter_mm", system.diameter_mm},
+          {"pitch_mm", system.pitch_mm},
+          {"threads", system.threads},
+          {"tex", system.tex},
+          {"bending_n_mm2", system.bending_n_mm2},
+          {"tension_n", system.tension_n},
+          {"contraction", system.contraction},
+          {"flatness", system.flatness}};
 }
 
 }  // namespace
@@ -57,6 +72,7 @@ renderer::Draft parse_draft(const json& document, const std::string& source) {
   draft.warp = parse_system(reader.object("warp"));
   draft.weft = parse_system(reader.object("weft"));
   if (reader.has("height_scale")) draft.height_scale = reader.number("height_scale", -10, 10);
+  if (reader.has("periods")) draft.free_periods = reader.choice("periods", {"fixed", "free"}) == "free";
   reader.finish();
   if (const auto problem = renderer::check_draft(draft)) throw std::runtime_error(source + ": " + *problem);
   return draft;
@@ -79,6 +95,7 @@ json to_json(const renderer::Draft& draft) {
           {"structure", structure},
           {"warp", system_json(draft.warp)},
           {"weft", system_json(draft.weft)},
+          {"periods", draft.free_periods ? "free" : "fixed"},
           {"height_scale", draft.height_scale}};
 }
 

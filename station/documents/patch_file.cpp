@@ -31,6 +31,8 @@ renderer::Yarn parse_yarn(ObjectReader reader) {
   yarn.warp = reader.choice("system", {"warp", "weft"}) == "warp";
   yarn.thread = reader.integer("thread", 0, renderer::kMostThreads - 1);
   yarn.radius_mm = reader.number("radius_mm", 1e-6, kMostLength);
+  yarn.flatness = reader.number("flatness", 1, renderer::kMostFlatness);
+  yarn.tex = reader.number("tex", 0, 1e6);
   const json& points = reader.raw("control_points_mm");
   if (!points.is_array() || points.size() < kFewestPoints)
     reader.refuse("control_points_mm", "expected a list of at least " + std::to_string(kFewestPoints) + " points");
@@ -44,6 +46,7 @@ void parse_measures(ObjectReader reader, renderer::YarnPatch& patch) {
   patch.thickness_mm = reader.number("thickness_mm", 0, kMostLength);
   patch.crimp_warp = reader.number("crimp_warp", -1, 1e6);
   patch.crimp_weft = reader.number("crimp_weft", -1, 1e6);
+  patch.areal_mass_g_m2 = reader.number("areal_mass_g_m2", 0, 1e9);
   patch.cover = reader.number("cover", 0, 1);
   patch.least_gap_mm = reader.number("least_gap_mm", -kMostLength, kMostLength);
   reader.finish();
@@ -55,6 +58,8 @@ json yarn_json(const renderer::Yarn& yarn) {
   return {{"system", yarn.warp ? "warp" : "weft"},
           {"thread", yarn.thread},
           {"radius_mm", yarn.radius_mm},
+          {"flatness", yarn.flatness},
+          {"tex", yarn.tex},
           {"control_points_mm", points}};
 }
 
@@ -92,6 +97,7 @@ json to_json(const renderer::YarnPatch& patch) {
             {"crimp_warp", patch.crimp_warp},
             {"crimp_weft", patch.crimp_weft},
             {"cover", patch.cover},
+            {"areal_mass_g_m2", patch.areal_mass_g_m2},
             {"least_gap_mm", patch.least_gap_mm}}},
           {"yarns", yarns}};
 }

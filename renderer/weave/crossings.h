@@ -1,0 +1,21 @@
+// Crossings of a patch: where each warp yarn meets each weft yarn in plan, and which lies on top there.
+#pragma once
+
+#include <vector>
+
+#include "renderer/weave/patch.h"
+
+namespace renderer {
+
+struct Crossing {
+  std::size_t warp = 0, weft = 0;       // indices into the patch's yarns
+  double warp_z_mm = 0, weft_z_mm = 0;  // heights of the centre lines where they meet in plan
+};
+
+// One for each pair of a warp and a weft yarn, warp by warp.
+std::vector<Crossing> crossings_of(const YarnPatch& patch);
+
+// Whether at each crossing the yarn is on top that the draft says, with the draft repeated as in initial_patch().
+bool is_as_drafted(const YarnPatch& patch, const Draft& draft);
+
+}  // namespace renderer

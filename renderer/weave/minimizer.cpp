@@ -1,0 +1,170 @@
+#include "renderer/weave/minimizer.h"
+
+#include <Eigen/CholmodSupport>
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+namespace renderer {
+namespace {
+
+using Eigen::VectorXd;
+
+struct Place {
+  VectorXd x, gradient;
+  double energy = 0;
+};
+
+double largest(const VectorXd& v) {
+  return v.size() ? v.cwiseAbs().maxCoeff() : 0;
+}
+
+// Halves the step until the energy falls by a tenth of what the slope promises (less lets Newton hop between two sets of
+// touching samples); false when no step does. Where the promise is lost in rounding, the gradient decides.
+bool search_line(const Objective& objective, const VectorXd& direction, double first_length, Place& place) {
+  constexpr double kArmijo = 0.1, kRounding = 1e-13;
+  constexpr int kMostHalvings = 30;
+  const double slope = direction.dot(place.gradient);
+  Place next;
+  double length = first_length;
+  for (int halving = 0; halving < kMostHalvings; ++halving, length /= 2) {
+    next.x = place.x + length * direction;
+    next.energy = objective.value(next.x, next.gradient);
+    if (!std::isfinite(next.energy)) continue;
+    const double noise = kRounding * std::abs(place.energy);
+    const bool falls = next.energy <= place.energy + kArmijo * length * slope;
+    const bool even = std::abs(length * slope) <= noise && largest(next.gradient) < largest(place.gradient);
+    if (!falls && !even) continue;
+    place = std::move(next);
+    return true;
+  }
+  return false;
+}
+
+class QuasiNewton {
+ public:
+  VectorXd direction(const VectorXd& gradient) const {
+    VectorXd d = -gradient;
+    std::vector<double> alpha(pairs_.size());
+    for (std::size_t i = pairs_.size(); i-- > 0;) {
+      alpha[i] = pairs_[i].rho * pairs_[i].move.dot(d);
+      d -= alpha[i] * pairs_[i].change;
+    }
+    if (!pairs_.empty()) d /= pairs_.back().rho * pairs_.back().change.squaredNorm();
+    for (std::size_t i = 0; i < pairs_.size(); ++i)
+      d += (alpha[i] - pairs_[i].rho * pairs_[i].change.dot(d)) * pairs_[i].move;
+    return d;
+  }
+  void learn(const VectorXd& move, const VectorXd& change) {
+    const double product = move.dot(change);
+    if (product <= 1e-10 * move.norm() * change.norm()) return;
+    pairs_.push_back({move, change, 1 / product});
+    if (pairs_.size() > kMemory) pairs_.pop_front();
+  }
+  bool forget() {
+    const bool knew = !pairs_.empty();
+    pairs_.clear();
+    return knew;
+  }
+
+ private:
+  static constexpr std::size_t kMemory = 20;
+  struct Pair {
+    VectorXd move, change;
+    double rho;
+  };
+  std::deque<Pair> pairs_;
+};
+
+void run_quasi_newton(const Objective& objective, const MinimizerOptions& options, Place& place,
+                      MinimizerReport& report) {
+  QuasiNewton memory;
+  const double goal = std::max(options.newton_below, options.gradient_goal);
+  for (int step = 0; step < options.most_quasi_newton && largest(place.gradient) > goal; ++step) {
+    VectorXd direction = memory.direction(place.gradient);
+    if (direction.dot(place.gradient) >= 0) {
+      memory.forget();
+      direction = -place.gradient;
+    }
+    const double cap = options.largest_move / largest(direction);
+    const Place before = place;
+    if (!search_line(objective, direction, std::min(1.0, cap), place)) {
+      if (!memory.forget()) return;
+      continue;
+    }
+    memory.learn(place.x - before.x, place.gradient - before.gradient);
+    ++report.quasi_newton_steps;
+  }
+}
+
+class Factorization {
+ public:
+  Factorization() { solver_.cholmod().print = 0; }  // a matrix that is not positive definite is not worth a word
+  // Of the matrix + shift x its mean diagonal; false where that is not positive definite.
+  bool compute(Eigen::SparseMatrix<double> matrix, double shift, MinimizerReport& report) {
+    const double mean = matrix.diagonal().cwiseAbs().mean();
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) matrix.coeffRef(i, i) += shift * mean;
+    ++report.factorizations;
+    solver_.compute(matrix);
+    return solver_.info() == Eigen::Success;
+  }
+  VectorXd solve(const VectorXd& right) { return solver_.solve(right); }
+
+ private:
+  Eigen::CholmodDecomposition<Eigen::SparseMatrix<double>, Eigen::Lower> solver_;
+};
+
+// Newton's direction with the true second derivatives, shifted by as little as makes them positive definite: by what the
+// step before needed, less each time.
+class NewtonDirection {
+ public:
+  VectorXd at(const Objective& objective, const Place& place, MinimizerReport& report) {
+    const Eigen::SparseMatrix<double> exact = objective.hessian(place.x, true);
+    for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+      if (factors_.compute(exact, shift_, report)) {
+        const VectorXd direction = -factors_.solve(place.gradient);
+        shift_ = shift_ / 8 < kLeastWorking ? kLeastShift : shift_ / 8;
+        return direction;
+      }
+      shift_ = std::max(8 * shift_, kLeastWorking);
+    }
+    shift_ = kLeastShift;
+    factors_.compute(objective.hessian(place.x, false), kLeastWorking, report);
+    return -factors_.solve(place.gradient);
+  }
+
+ private:
+  // Of the mean diagonal. Moves that cost nothing, such as lifting the whole cloth, stay small.
+  static constexpr double kLeastShift = 1e-9, kLeastWorking = 1e-6;
+  static constexpr int kMostAttempts = 6;
+  Factorization factors_;
+  double shift_ = kLeastShift;
+};
+
+void run_newton(const Objective& objective, const MinimizerOptions& options, Place& place, MinimizerReport& report) {
+  NewtonDirection newton;
+  for (int step = 0; step < options.most_newton && largest(place.gradient) > options.gradient_goal; ++step) {
+    VectorXd direction = newton.at(objective, place, report);
+    if (!direction.allFinite() || direction.dot(place.gradient) >= 0) direction = -place.gradient;
+    const double length = std::min(1.0, options.largest_move / largest(direction));
+    if (!search_line(objective, direction, length, place)) return;
+    ++report.newton_steps;
+  }
+}
+
+}  // namespace
+
+MinimizerReport minimize(const Objective& objective, const MinimizerOptions& options, VectorXd& x) {
+  MinimizerReport report;
+  Place place{.x = x};
+  place.energy = objective.value(place.x, place.gradient);
+  run_quasi_newton(objective, options, place, report);
+  run_newton(objective, options, place, report);
+  x = place.x;
+  report.energy = place.energy;
+  report.gradient = largest(place.gradient);
+  report.converged = report.gradient <= options.gradient_goal;
+  return report;
+}
+
+}  // namespace renderer

@@ -1,0 +1,52 @@
+// Relaxation: from the analytic shape of a draft to the shape in which its yarns are at rest: tension and bending of
+// each yarn against contact with the others, in a cell that repeats.
+//
+// The energy is that of yarn_elasticity.h and yarn_contact.h; contact stiffens in steps until yarns overlap by no more
+// than `overlap_goal`. Source: models.md section 4.2, after Leaf et al. 2018.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "renderer/weave/minimizer.h"
+#include "renderer/weave/patch.h"
+
+namespace renderer {
+
+struct RelaxationOptions {
+  int points_per_crossing = 8;  // control points; even
+  double overlap_goal = 0.005;  // of the thinnest yarn's radius
+  double gradient_goal = 1e-7;  // of force_scale_n
+  int most_stages = 10;         // of contact stiffness, each four times the one before
+  bool quasi_newton = false;    // L-BFGS before Newton
+};
+
+struct RelaxationReport {
+  bool converged = false;   // gradient_goal reached at the last stiffness
+  bool as_drafted = false;  // at each crossing the yarn lies on top that the draft says
+  bool jammed = false;      // yarns have no room in this sett: they overlap by more than kMostOverlap, or have been
+                            // squeezed out of the plane until no two touch where they cross (crown_gap)
+  double crown_gap = 0.0;   // least free height where two yarns cross, of their contact distance
+  double gradient = 0.0;    // largest component, of force_scale_n
+  double force_scale_n = 0.0;  // largest tension + bending stiffness / radius^2
+  double overlap = 0.0;        // deepest, of the thinnest yarn's radius, at the contact samples
+  double contact_n_mm2 = 0.0;  // stiffness at the end
+  int stages = 0, quasi_newton_steps = 0, newton_steps = 0, factorizations = 0;
+  double energy_n_mm = 0.0;
+  Eigen::Vector2d cell_force_n =
+      Eigen::Vector2d::Zero();        // with which the cell resists being widened, d energy / d period
+  Eigen::Matrix3Xd contact_forces_n;  // on each yarn, sum over its contacts
+};
+
+struct RelaxedPatch {
+  YarnPatch patch;
+  RelaxationReport report;
+};
+
+inline constexpr double kMostOverlap = 0.01;  // of a radius: what a relaxed patch may have
+// In square plain cloth the gap is 1.7 % at p / D = 0.9, 2.5 % at 0.88, 4.4 % at 0.86; Peirce's jam lies at 0.866.
+inline constexpr double kJammedCrownGap = 0.035;
+
+// Errors: std::runtime_error with the line of check_draft(). Quality is in the report.
+RelaxedPatch relax(const Draft& draft, const RelaxationOptions& options = {});
+
+}  // namespace renderer

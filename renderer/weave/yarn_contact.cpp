@@ -1,0 +1,257 @@
+#include "renderer/weave/yarn_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+namespace renderer {
+namespace {
+
+constexpr double kSkin = 0.08;  // of the smallest contact distance
+
+int floor_divide(int a, int b) {
+  return a >= 0 ? a / b : -((b - 1 - a) / b);
+}
+
+// Squares of at least `reach`, so that neighbouring squares hold all that is near; few squares mean many images.
+struct Grid {
+  Eigen::Vector2i squares;
+  std::vector<std::vector<int>> members;
+
+  Grid(const Eigen::Vector2d& period, double reach)
+      : squares((period / reach).array().floor().min(512.0).max(1.0).cast<int>()),
+        members(static_cast<std::size_t>(squares.prod())) {}
+  std::vector<int>& at(int column, int row) { return members[static_cast<std::size_t>(row * squares.x() + column)]; }
+};
+
+double half_width(const ModelYarn& yarn) {
+  return yarn.radius_mm * std::sqrt(yarn.flatness);
+}
+double half_height(const ModelYarn& yarn) {
+  return yarn.radius_mm / std::sqrt(yarn.flatness);
+}
+
+}  // namespace
+
+// How far apart two yarns are: the length of scale x difference, which is `contact` where they touch.
+struct ContactList::Metric {
+  Eigen::Vector3d scale;
+  double contact;
+
+  Metric(const ModelYarn& a, const ModelYarn& b) : scale(1, 1, 1), contact(half_height(a) + half_height(b)) {
+    if (a.warp == b.warp) {
+      scale[a.warp ? 0 : 1] = contact / (half_width(a) + half_width(b));
+    } else {
+      const ModelYarn &warp = a.warp ? a : b, &weft = a.warp ? b : a;
+      scale[0] = contact / (half_width(warp) + half_height(weft));
+      scale[1] = contact / (half_width(weft) + half_height(warp));
+    }
+  }
+};
+
+struct ContactList::Touch {
+  std::size_t pair;
+  Eigen::Vector3d slope;  // of the distance to the difference a - b
+  Eigen::Vector3d scale;
+  double distance, contact;
+  double factor;  // energy = factor f(distance / contact)
+};
+
+void ContactList::make_samples(const WeaveModel& model) {
+  double thinnest = std::numeric_limits<double>::infinity();
+  for (const ModelYarn& yarn : model.yarns) thinnest = std::min(thinnest, 2 * half_height(yarn));
+  skin_mm_ = kSkin * thinnest;
+  for (std::size_t i = 0; i < model.yarns.size(); ++i) {
+    const ModelYarn& yarn = model.yarns[i];
+    const double segment_mm = yarn.length_mm / yarn.count;
+    const int count = std::max(1, static_cast<int>(std::ceil(segment_mm / (spacing_ * thinnest))));
+    for (int k = 0; k < yarn.count; ++k)
+      for (int m = 0; m < count; ++m)
+        samples_.push_back({static_cast<int>(i), k, spline_weights((m + 0.5) / count), segment_mm / count});
+  }
+}
+
+Eigen::Matrix3Xd ContactList::positions(const WeaveModel& model, const Eigen::Matrix3Xd& points) const {
+  Eigen::Matrix3Xd at(3, static_cast<Eigen::Index>(samples_.size()));
+  Eigen::Matrix<double, 3, 4> controls;
+  int yarn = -1, segment = -1;
+  for (std::size_t s = 0; s < samples_.size(); ++s) {
+    const Sample& sample = samples_[s];
+    if (sample.yarn != yarn || sample.segment != segment) {
+      yarn = sample.yarn;
+      segment = sample.segment;
+      for (int i = 0; i < 4; ++i)
+        controls.col(i) =
+            position(model, points, point_ref(model.yarns[static_cast<std::size_t>(yarn)], segment - 1 + i));
+    }
+    at.col(static_cast<Eigen::Index>(s)) = controls * sample.weights;
+  }
+  return at;
+}
+
+void ContactList::update(const WeaveModel& model, const Eigen::Matrix3Xd& points) {
+  if (samples_.empty()) make_samples(model);
+  const bool same = searched_at_.cols() == points.cols() && searched_period_mm_ == model.period_mm &&
+                    (points - searched_at_).colwise().norm().maxCoeff() < skin_mm_ / 2;
+  if (!same) search(model, points);
+}
+
+void ContactList::search(const WeaveModel& model, const Eigen::Matrix3Xd& points) {
+  searched_at_ = points;
+  searched_period_mm_ = model.period_mm;
+  pairs_.clear();
+  double widest = 0;
+  for (const ModelYarn& yarn : model.yarns) widest = std::max(widest, 2 * half_width(yarn));
+  Grid grid(model.period_mm, widest + skin_mm_);
+  const Eigen::Matrix3Xd at = positions(model, points);
+  std::vector<Eigen::Vector2i> home(samples_.size());  // periods that bring a sample into the cell
+  for (Eigen::Index s = 0; s < at.cols(); ++s) {
+    Eigen::Vector2i inside, cell;
+    for (int axis = 0; axis < 2; ++axis) {
+      const int square = static_cast<int>(std::floor(at(axis, s) / model.period_mm[axis] * grid.squares[axis]));
+      cell[axis] = -floor_divide(square, grid.squares[axis]);
+      inside[axis] = square + cell[axis] * grid.squares[axis];
+    }
+    home[static_cast<std::size_t>(s)] = cell;
+    grid.at(inside.x(), inside.y()).push_back(static_cast<int>(s));
+  }
+  const auto visit_squares = [&](int a, const std::vector<int>& others, const Eigen::Vector2i& turn) {
+    const auto yarn_a = static_cast<std::size_t>(samples_[static_cast<std::size_t>(a)].yarn);
+    for (const int b : others) {
+      const auto yarn_b = static_cast<std::size_t>(samples_[static_cast<std::size_t>(b)].yarn);
+      if (yarn_a >= yarn_b) continue;
+      const Eigen::Vector2i cell = home[static_cast<std::size_t>(b)] + turn - home[static_cast<std::size_t>(a)];
+      Eigen::Vector3d difference = at.col(a) - at.col(b);
+      difference.head<2>() -= model.period_mm.cwiseProduct(cell.cast<double>());
+      const Metric metric(model.yarns[yarn_a], model.yarns[yarn_b]);
+      if (metric.scale.cwiseProduct(difference).norm() < metric.contact + skin_mm_) pairs_.push_back({a, b, cell});
+    }
+  };
+  for (int row = 0; row < grid.squares.y(); ++row) {
+    for (int column = 0; column < grid.squares.x(); ++column) {
+      for (const int a : grid.at(column, row)) {
+        for (int dy = -1; dy <= 1; ++dy) {
+          for (int dx = -1; dx <= 1; ++dx) {
+            const Eigen::Vector2i turn(floor_divide(column + dx, grid.squares.x()),
+                                       floor_divide(row + dy, grid.squares.y()));
+            visit_squares(
+                a, grid.at(column + dx - turn.x() * grid.squares.x(), row + dy - turn.y() * grid.squares.y()), turn);
+          }
+        }
+      }
+    }
+  }
+  const auto order = [&](const Pair& pair) {
+    const Sample &a = samples_[static_cast<std::size_t>(pair.a)], &b = samples_[static_cast<std::size_t>(pair.b)];
+    return std::tuple(a.yarn, a.segment, b.yarn, b.segment, pair.cell.x(), pair.cell.y(), pair.a, pair.b);
+  };
+  std::sort(pairs_.begin(), pairs_.end(), [&](const Pair& p, const Pair& q) { return order(p) < order(q); });
+}
+
+template <typename Visit>
+void ContactList::for_each_touch(const WeaveModel& model, const Eigen::Matrix3Xd& points, Visit&& visit) const {
+  const Eigen::Matrix3Xd at = positions(model, points);
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const Pair& pair = pairs_[i];
+    const Sample &a = samples_[static_cast<std::size_t>(pair.a)], &b = samples_[static_cast<std::size_t>(pair.b)];
+    const Metric metric(model.yarns[static_cast<std::size_t>(a.yarn)], model.yarns[static_cast<std::size_t>(b.yarn)]);
+    Eigen::Vector3d difference = at.col(pair.a) - at.col(pair.b);
+    difference.head<2>() -= model.period_mm.cwiseProduct(pair.cell.cast<double>());
+    const Eigen::Vector3d scaled = metric.scale.cwiseProduct(difference);
+    const double squared = scaled.squaredNorm();
+    if (squared >= metric.contact * metric.contact) continue;
+    const double distance = std::sqrt(squared);
+    visit(Touch{i, metric.scale.cwiseProduct(scaled) / distance, metric.scale, distance, metric.contact,
+                model.contact_n_mm2 / 8 * metric.contact * a.length_mm * b.length_mm});
+  }
+}
+
+void ContactList::add(const WeaveModel& model, const Eigen::Matrix3Xd& points, WeaveDerivatives& sum) const {
+  Eigen::Matrix3Xd pull = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(samples_.size()));  // dE / d sample
+  using Block12 = Eigen::Matrix<double, 12, 12>;
+  const bool curved = sum.curvature != Curvature::none;
+  std::vector<Eigen::Matrix3d> own(curved ? samples_.size() : 0, Eigen::Matrix3d::Zero());
+  Block12 across = Block12::Zero();  // of the segments of a and b, while pairs of the same segments follow each other
+  const Pair* group = nullptr;
+  const auto sample = [&](int index) -> const Sample& { return samples_[static_cast<std::size_t>(index)]; };
+  const auto refs_of = [&](int index, const Eigen::Vector2i& cell) {
+    std::array<PointRef, 4> refs;
+    for (int i = 0; i < 4; ++i)
+      refs[static_cast<std::size_t>(i)] =
+          point_ref(model.yarns[static_cast<std::size_t>(sample(index).yarn)], sample(index).segment - 1 + i, cell);
+    return refs;
+  };
+  const auto close_group = [&] {
+    if (group)
+      sum.add_cross_curvature<4>(refs_of(group->a, Eigen::Vector2i::Zero()), refs_of(group->b, group->cell), across);
+    across.setZero();
+  };
+  const auto same_group = [&](const Pair& p, const Pair& q) {
+    return sample(p.a).yarn == sample(q.a).yarn && sample(p.a).segment == sample(q.a).segment &&
+           sample(p.b).yarn == sample(q.b).yarn && sample(p.b).segment == sample(q.b).segment && p.cell == q.cell;
+  };
+  for_each_touch(model, points, [&](const Touch& touch) {
+    const Pair& pair = pairs_[touch.pair];
+    const double q = touch.distance / touch.contact, f = 1 / q - q, f1 = -1 / (q * q) - 1, f2 = 2 / (q * q * q);
+    sum.energy += touch.factor * f * f;
+    const double push = touch.factor * 2 * f * f1 / touch.contact;  // dE / d distance, negative
+    pull.col(pair.a) += push * touch.slope;
+    pull.col(pair.b) -= push * touch.slope;
+    sum.period_gradient -= push * touch.slope.head<2>().cwiseProduct(pair.cell.cast<double>());
+    if (!curved) return;
+    const double stiffness = touch.factor * 2 * (f1 * f1 + f * f2) / (touch.contact * touch.contact);
+    Eigen::Matrix3d second = stiffness * touch.slope * touch.slope.transpose();
+    if (sum.curvature == Curvature::exact) {
+      second -= push / touch.distance * touch.slope * touch.slope.transpose();
+      second.diagonal() += push / touch.distance * touch.scale.cwiseAbs2();
+    }
+    own[static_cast<std::size_t>(pair.a)] += second;
+    own[static_cast<std::size_t>(pair.b)] += second;
+    if (!group || !same_group(*group, pair)) {
+      close_group();
+      group = &pair;
+    }
+    for (int p = 0; p < 4; ++p)
+      for (int r = 0; r < 4; ++r)
+        across.block<3, 3>(3 * p, 3 * r) -= sample(pair.a).weights[p] * sample(pair.b).weights[r] * second;
+  });
+  close_group();
+  // Samples hand on to control points, segment by segment.
+  for (std::size_t first = 0, last = 0; first < samples_.size(); first = last) {
+    Eigen::Matrix<double, 3, 4> slope = Eigen::Matrix<double, 3, 4>::Zero();
+    Block12 second = Block12::Zero();
+    for (; last < samples_.size() && samples_[last].yarn == samples_[first].yarn &&
+           samples_[last].segment == samples_[first].segment;
+         ++last) {
+      const Eigen::Vector4d& w = samples_[last].weights;
+      slope += pull.col(static_cast<Eigen::Index>(last)) * w.transpose();
+      if (!curved) continue;
+      for (int p = 0; p < 4; ++p)
+        for (int r = 0; r < 4; ++r) second.block<3, 3>(3 * p, 3 * r) += w[p] * w[r] * own[last];
+    }
+    const auto refs = refs_of(static_cast<int>(first), Eigen::Vector2i::Zero());
+    sum.add<4>(refs, slope);
+    if (curved) sum.add_curvature<4>(refs, second);
+  }
+}
+
+double ContactList::deepest_overlap(const WeaveModel& model, const Eigen::Matrix3Xd& points) const {
+  double deepest = 0;
+  for_each_touch(model, points,
+                 [&](const Touch& touch) { deepest = std::max(deepest, touch.contact - touch.distance); });
+  return deepest;
+}
+
+Eigen::Matrix3Xd ContactList::forces(const WeaveModel& model, const Eigen::Matrix3Xd& points) const {
+  Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(model.yarns.size()));
+  for_each_touch(model, points, [&](const Touch& touch) {
+    const double q = touch.distance / touch.contact;
+    const Eigen::Vector3d force = touch.factor * 2 * (1 / q - q) * (1 / (q * q) + 1) / touch.contact * touch.slope;
+    forces.col(samples_[static_cast<std::size_t>(pairs_[touch.pair].a)].yarn) += force;
+    forces.col(samples_[static_cast<std::size_t>(pairs_[touch.pair].b)].yarn) -= force;
+  });
+  return forces;
+}
+
+}  // namespace renderer

@@ -1,0 +1,59 @@
+// Contact of yarns: all points of two yarns that come closer than their sections are thick push each other apart.
+//
+//   E = K / (8 D) double integral of D^2 f(d / D) over the arcs of both yarns,   f(q) = (1/q - q)^2 for q < 1, else 0
+// with d the distance of the two points and D the sum of both radii; for shallow overlaps K / (2 D) (D - d)^2. The
+// integrals are sums over samples, `spacing` D apart or closer. Periodic images count; a yarn does not touch itself.
+// Flattened sections (half width a, half height b): d is measured with x and y shrunk so that contact of two crossing
+// yarns begins at the sums of b in z and of a of the yarn that is wrapped and b of the other across it; side by side at
+// the sums of a.
+//
+// Source: Kaldor et al. 2008 (models.md 4.1, 4.2). A single integral over samples and closest points was tried and
+// refused: where yarns wrap each other a yarn's crown is the centre of the other's arc, the closest point is anywhere
+// on that arc, and the energy has a kink at just the shape that is sought.
+#pragma once
+
+#include "renderer/weave/weave_model.h"
+
+namespace renderer {
+
+// Pairs of samples that may touch, found by a spatial hash and kept until points have moved by half of what the search
+// reached beyond contact.
+class ContactList {
+ public:
+  explicit ContactList(double spacing = 0.03) : spacing_(spacing) {}
+
+  // To be called before the others, with the same points.
+  void update(const WeaveModel& model, const Eigen::Matrix3Xd& points);
+  void add(const WeaveModel& model, const Eigen::Matrix3Xd& points, WeaveDerivatives& sum) const;
+
+  // Deepest overlap, mm, and the sum of contact forces on each yarn (columns), N.
+  double deepest_overlap(const WeaveModel& model, const Eigen::Matrix3Xd& points) const;
+  Eigen::Matrix3Xd forces(const WeaveModel& model, const Eigen::Matrix3Xd& points) const;
+
+ private:
+  struct Sample {
+    int yarn = 0, segment = 0;
+    Eigen::Vector4d weights;  // of the segment's control points
+    double length_mm = 0;
+  };
+  struct Pair {
+    int a = 0, b = 0;                                // samples; the yarn of a comes before that of b
+    Eigen::Vector2i cell = Eigen::Vector2i::Zero();  // image of b
+  };
+  struct Metric;
+  struct Touch;
+
+  void make_samples(const WeaveModel& model);
+  Eigen::Matrix3Xd positions(const WeaveModel& model, const Eigen::Matrix3Xd& points) const;
+  void search(const WeaveModel& model, const Eigen::Matrix3Xd& points);
+  template <typename Visit>
+  void for_each_touch(const WeaveModel& model, const Eigen::Matrix3Xd& points, Visit&& visit) const;
+
+  double spacing_, skin_mm_ = 0;
+  std::vector<Sample> samples_;
+  std::vector<Pair> pairs_;  // by segment of a, segment of b and image
+  Eigen::Matrix3Xd searched_at_;
+  Eigen::Vector2d searched_period_mm_ = Eigen::Vector2d::Zero();
+};
+
+}  // namespace renderer
