@@ -336,7 +336,11 @@ class GphotoCamera final : public Camera {
     picture.utc = clock.utc();
     CameraFilePath path{};
     const int status = gp_camera_capture(handle_.get(), GP_CAPTURE_IMAGE, &path, context_.get());
-    check("take a picture", status);
+    if (status < GP_OK) {
+      require_battery();  // either says more than the library does
+      require_space();
+      refuse("take a picture", status);
+    }
     picture.bytes = download(path);
     const std::string_view name = path.name;
     picture.extension = name.substr(name.rfind('.') == std::string_view::npos ? name.size() : name.rfind('.') + 1);

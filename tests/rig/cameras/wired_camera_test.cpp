@@ -64,6 +64,15 @@ TEST_F(GphotoCamera, ASettingThatIsAcceptedAndNotDoneIsSeen) {
               testing::AllOf(HasSubstr("set its shutterspeed to 2 and stays at 1/4"), HasSubstr("dial to M")));
 }
 
+TEST_F(GphotoCamera, ACardThatBecomesFullIsSaidAndTheNextPictureComesWhenItIsEmptied) {
+  const auto camera = open();
+  camera->capture();
+  wired.sony->set_condition({.store_full = true});
+  EXPECT_THAT(refusal([&] { camera->capture(); }), HasSubstr("card is full; empty the card, then resume"));
+  wired.sony->set_condition({});
+  EXPECT_TRUE(delivers_what_was_made(*camera));
+}
+
 TEST_F(GphotoCamera, AStalePictureIsRefused) {
   const auto camera = open();
   camera->capture();
