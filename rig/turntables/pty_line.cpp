@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <mutex>
 
 #include "rig/turntables/serial_line.h"
 
@@ -55,7 +56,9 @@ class PtyLine final : public ByteLine {
     throw Unplugged(unplugged());
   }
 
+  // One at a time: a terminal turns away who does not wait while another thread writes (a stop does).
   void write(std::string_view bytes) override {
+    const std::lock_guard one_at_a_time(writing_);
     const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
     if (written < 0 && errno != EAGAIN) {
       throw Unplugged(unplugged());
@@ -87,6 +90,7 @@ class PtyLine final : public ByteLine {
 
   std::string path_;
   int descriptor_;
+  std::mutex writing_;
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <mutex>
 
 #include "rig/detect.h"
 
@@ -113,8 +114,10 @@ class SerialLine final : public ByteLine {
     }
   }
 
-  // One system call, so that lines of two threads never mix.
+  // One system call, so that lines of two threads never mix; one at a time: a terminal turns away who does not wait while
+  // another thread writes (a stop does).
   void write(std::string_view bytes) override {
+    const std::lock_guard one_at_a_time(writing_);
     const int written = sp_nonblocking_write(port_, bytes.data(), bytes.size());
     if (written < 0) {
       throw Unplugged(unplugged_words(name_));
@@ -172,6 +175,7 @@ class SerialLine final : public ByteLine {
   std::string name_;
   sp_port* port_ = nullptr;
   sp_event_set* events_ = nullptr;
+  std::mutex writing_;
 };
 
 }  // namespace
