@@ -331,6 +331,11 @@ Vector3d facing_irradiance(const LightFit& fit, std::size_t light, const Vector3
                           from_light.squaredNorm());
 }
 
+double panel_factor(const Vector2d& droop, const Vector3d& normal, const Vector3d& to_light,
+                    const Vector3d& to_camera) {
+  return panel_factor<double>(to_light.dot(normal), to_light, normal, to_camera, droop.data());
+}
+
 LightFit fit_light(const std::vector<LightPatch>& patches, const std::vector<LightGuess>& guesses,
                    const LightOptions& options, const std::vector<LightPicture>& given_pictures) {
   const std::vector<LightPicture> pictures = named(given_pictures, patches);

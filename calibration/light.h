@@ -104,6 +104,10 @@ double held_out_error(const LightFit& fit, int light);
 // Irradiance on a surface at `point` (world, mm) that faces the light (RGB, radiance unit).
 Eigen::Vector3d facing_irradiance(const LightFit& fit, std::size_t light, const Eigen::Vector3d& point);
 
+// What the panel reflects over a Lambertian surface of its reflectance; directions are unit vectors.
+double panel_factor(const Eigen::Vector2d& droop, const Eigen::Vector3d& normal, const Eigen::Vector3d& to_light,
+                    const Eigen::Vector3d& to_camera);
+
 // `pictures` are those that patches name, and may be empty when no reading is known. Throws std::runtime_error, naming
 // what is missing, when the pictures cannot determine a light, a picture is dark, or a measurement is not a finite
 // number. Failed gates are for the caller to act on.

@@ -44,12 +44,12 @@ T beam_falloff(const Eigen::Matrix<T, 3, 1>& axis, const Eigen::Matrix<T, 3, 1>&
 }
 
 template <typename T>
-T panel_factor(const T& cos_theta_i, const Eigen::Matrix<T, 3, 1>& to_light, const LightPatch& patch,
-               const T* droop) {
+T panel_factor(const T& cos_theta_i, const Eigen::Matrix<T, 3, 1>& to_light, const Eigen::Vector3d& normal,
+               const Eigen::Vector3d& to_camera, const T* droop) {
   using std::sqrt;
-  const double cos_theta_e = patch.to_camera.dot(patch.normal);
-  const Eigen::Vector3d view = patch.to_camera - cos_theta_e * patch.normal;
-  const Eigen::Matrix<T, 3, 1> light = to_light - cos_theta_i * patch.normal.cast<T>();
+  const double cos_theta_e = to_camera.dot(normal);
+  const Eigen::Vector3d view = to_camera - cos_theta_e * normal;
+  const Eigen::Matrix<T, 3, 1> light = to_light - cos_theta_i * normal.cast<T>();
   const T cos_phi = light.dot(view.cast<T>()) / (sqrt(light.squaredNorm() + 1e-12) * (view.norm() + 1e-6));
   return T(1) + droop[0] * droop_shape(cos_theta_i, T(cos_theta_e), cos_phi) +
          droop[1] * T(2) * (cos_theta_i - std::cos(8 * M_PI / 180));
@@ -66,7 +66,7 @@ T unit_radiance(const LightPatch& patch, const T* position, const Eigen::Matrix<
   const Eigen::Matrix<T, 3, 1> to_light = offset / sqrt(d2);
   const T cos_theta_i = to_light.dot(patch.normal.template cast<T>());
   return (albedo / M_PI) * cos_theta_i / d2 * beam_falloff<T>(axis, -to_light, mu) *
-         panel_factor<T>(cos_theta_i, to_light, patch, droop);
+         panel_factor<T>(cos_theta_i, to_light, patch.normal, patch.to_camera, droop);
 }
 
 // Irradiance on a patch by way of a white table at world z = `table_mm`, for a lamp of unit intensity where it is guessed

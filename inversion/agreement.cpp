@@ -8,7 +8,7 @@
 namespace inversion {
 
 double ViewAgreement::relative_rmse() const {
-  return std::sqrt(mean_square) / mean_reference;
+  return std::copysign(std::sqrt(std::abs(mean_square)), mean_square) / mean_reference;
 }
 
 ViewAgreement agreement(const View& view, const cv::Mat3f& rendered, int block_px) {
@@ -30,6 +30,29 @@ ViewAgreement agreement(const View& view, const cv::Mat3f& rendered, int block_p
   return result;
 }
 
+ViewAgreement noiseless_agreement(const View& view, const std::array<cv::Mat3f, 2>& photographs,
+                                  const std::array<cv::Mat3f, 2>& rendered, int block_px) {
+  const double diffuser = diffuser_radiance(view.light).mean();
+  ViewAgreement result;
+  double pixels = 0, difference_sum = 0;
+  for (const Block& block : mask_blocks(view.mask, block_px)) {
+    const auto weight = static_cast<double>(block.pixels.size());
+    std::array<Eigen::Array3d, 2> difference;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Eigen::Array3d reference = block_mean(block, photographs[i]) / diffuser;
+      difference[i] = block_mean(block, rendered[i]) / diffuser - reference;
+      result.mean_reference += 0.5 * weight * reference.mean();
+      difference_sum += 0.5 * weight * difference[i].mean();
+    }
+    result.mean_square += weight * (difference[0] * difference[1]).mean();
+    pixels += weight;
+  }
+  result.relative_bias = difference_sum / result.mean_reference;
+  result.mean_square /= pixels;
+  result.mean_reference /= pixels;
+  return result;
+}
+
 double overall_relative_rmse(const std::vector<ViewAgreement>& views) {
   double squares = 0, references = 0;
   for (const ViewAgreement& view : views) {
@@ -37,10 +60,10 @@ double overall_relative_rmse(const std::vector<ViewAgreement>& views) {
     references += view.mean_reference;
   }
   const auto count = static_cast<double>(views.size());
-  return std::sqrt(squares / count) / (references / count);
+  return std::copysign(std::sqrt(std::abs(squares / count)), squares) / (references / count);
 }
 
-cv::Mat3f fitted_view(const WrappedSpool& spool, const View& view, const renderer::ThreadParameters& thread,
+cv::Mat3f fitted_view(const WrappedSpool& spool, const View& view, const renderer::ScatteringModel& thread,
                       int samples_per_pixel, std::uint64_t seed, const std::function<bool(double)>& progress) {
   const renderer::PathTracer tracer(view_scene(spool, thread, view.light));
   renderer::RenderOptions options{.samples_per_pixel = samples_per_pixel, .seed = seed};

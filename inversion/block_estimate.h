@@ -1,4 +1,4 @@
-// A block's radiance for any thread parameters, from recorded light paths, with its derivatives.
+// A block's radiance for any parameters of a scattering model, from recorded light paths, with its derivatives.
 //
 //   value = mean over paths of A_1,   A_v = w_v f_v(light) + f_v(next) / pdf_v A_(v+1)              (light_paths.h)
 //
@@ -8,23 +8,42 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 
 #include "inversion/light_paths.h"
+#include "renderer/scattering/fiber_gradient.h"
 #include "renderer/scattering/packet.h"
 #include "renderer/scattering/thread_gradient.h"
+#include "renderer/scattering/yarn_gradient.h"
 
 namespace inversion {
+
+// One of two estimates from paths of their own: the first and the second half of the batches.
+struct HalfEstimate {
+  Eigen::Array3d value = Eigen::Array3d::Zero();
+  renderer::ThreadSlopes<double> slopes = renderer::ThreadSlopes<double>::Zero();
+};
 
 // Per unit of the lamp's intensity (1/mm^2), RGB.
 struct BlockEstimate {
   Eigen::Array3d value = Eigen::Array3d::Zero();
-  renderer::ThreadSlopes<double> slopes = renderer::ThreadSlopes<double>::Zero();  // d value / d parameter
+  renderer::ThreadSlopes<double> slopes =
+      renderer::ThreadSlopes<double>::Zero();        // rows: ThreadSlope, FiberSlope or YarnSlope
+  Eigen::Array3d variance = Eigen::Array3d::Zero();  // of `value`, as the spread of the batches shows it
+  std::array<HalfEstimate, 2> halves{};              // zero where there are fewer paths than batches
 };
 
-using BlockModel = renderer::ThreadGradientModel<renderer::Packet<renderer::kPacketWidth>>;
+using BlockPacket = renderer::Packet<renderer::kPacketWidth>;
+using BlockModel = renderer::ThreadGradientModel<BlockPacket>;
+using FiberBlockModel = renderer::FiberGradientModel<BlockPacket>;
+using YarnBlockModel = renderer::YarnGradientModel<float>;  // one direction at a time
 BlockModel block_model(const renderer::ThreadParameters& parameters);
+FiberBlockModel block_model(const renderer::FiberParameters& parameters);
+YarnBlockModel block_model(const renderer::YarnParameters& parameters);
 
-BlockEstimate shade_block(const LightPaths& paths, std::size_t block, const BlockModel& model, bool with_slopes);
+// Paths must have been traced with the same kind of model; Model: one of the three above.
+template <class Model>
+BlockEstimate shade_block(const LightPaths& paths, std::size_t block, const Model& model, bool with_slopes);
 
 }  // namespace inversion

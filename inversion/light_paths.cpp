@@ -14,7 +14,6 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 using renderer::CurveLobes;
-using renderer::ThreadModel;
 
 PathDirection stored(const renderer::LobeAngles<float>& at) {
   return {at.distance2[0], at.cos_cos[0], {at.from_center[0], at.from_center[1], at.from_center[2]}};
@@ -23,8 +22,11 @@ PathDirection stored(const renderer::LobeAngles<float>& at) {
 // Traces the paths of one view; the lamp has unit intensity.
 class PathRecorder {
  public:
-  PathRecorder(const renderer::RayScene& rays, const View& view, const renderer::ThreadParameters& traced_with)
-      : rays_(rays), model_(renderer::in_scalar<float>(traced_with)), lights_({unit_lamp(view.light)}) {}
+  PathRecorder(const renderer::RayScene& rays, const View& view, const renderer::ScatteringModel& traced_with)
+      : rays_(rays),
+        traced_with_(traced_with),
+        model_(renderer::prepare_curve_models({traced_with}).front()),
+        lights_({unit_lamp(view.light)}) {}
 
   void record(renderer::CameraRay camera_ray, renderer::Sampler& sampler, std::vector<PathEvent>& events) const {
     if (!renderer::advance_to(rays_.bounds(), camera_ray)) return;
@@ -54,11 +56,9 @@ class PathRecorder {
     const Eigen::Matrix3f frame = renderer::local_from_world(curve);
     const Vector3f wo = frame * -arriving;
     const float h = renderer::viewing_offset(wo);
-    const CurveLobes<float> lobes = model_.lobes_at(h, wo);
-    const float cosine = std::hypot(wo.y(), wo.z());
-    const auto eta = static_cast<float>(renderer::kThreadEta);
+    const CurveLobes<float> lobes = std::visit([&](const auto& model) { return model.lobes_at(h, wo); }, model_);
     PathEvent event{};
-    event.point = {cosine, renderer::InnerChord<float>(h, wo.x(), cosine, eta).length};
+    event.point = point_at(h, wo);
     event.light_weight = record_light(curve.position, frame, lobes, sampler.next_2d(), event.light);
 
     const Eigen::Vector2f u = sampler.next_2d(), u_angles = sampler.next_2d();
@@ -81,6 +81,16 @@ class PathRecorder {
     return {curve.position, (frame.transpose() * next).normalized()};
   }
 
+  renderer::ThreadPoint<float> point_at(float h, const Vector3f& wo) const {
+    const float cosine = std::hypot(wo.y(), wo.z());
+    if (const auto* yarn = std::get_if<renderer::YarnParameters>(&traced_with_))
+      return {cosine, static_cast<float>(
+                          renderer::fibers_on_chord(yarn->fiber_count, yarn->radius_ratio, static_cast<double>(h)))};
+    const auto* fiber = std::get_if<renderer::FiberParameters>(&traced_with_);
+    const auto eta = static_cast<float>(fiber ? fiber->eta : renderer::kThreadEta);
+    return {cosine, renderer::InnerChord<float>(h, wo.x(), cosine, eta).length};
+  }
+
   float record_light(const Vector3f& position, const Eigen::Matrix3f& frame, const CurveLobes<float>& lobes,
                      const Eigen::Vector2f& u, PathDirection& direction) const {
     const Vector3d origin = position.cast<double>();
@@ -93,7 +103,8 @@ class PathRecorder {
   }
 
   const renderer::RayScene& rays_;
-  ThreadModel<float> model_;
+  renderer::ScatteringModel traced_with_;
+  renderer::CurveModel model_;
   renderer::SphereLights lights_;
 };
 
@@ -103,10 +114,18 @@ struct BlockPaths {
 };
 
 BlockPaths trace_block(const PathRecorder& recorder, const View& view, const Block& block, int count,
-                       renderer::Sampler sampler) {
+                       std::uint64_t seed, std::size_t number) {
   BlockPaths traced;
+  int batch = -1, first = 0;
+  std::optional<renderer::Sampler> stream;
   for (int i = 0; i < count; ++i) {
-    sampler.start_sample(static_cast<std::uint32_t>(i));
+    while (batch < 0 || i >= batch_end(count, batch)) {
+      first = i;
+      ++batch;
+      stream.emplace(seed, number * kPathBatches + static_cast<std::size_t>(batch));
+    }
+    renderer::Sampler& sampler = *stream;
+    sampler.start_sample(static_cast<std::uint32_t>(i - first));
     const auto chosen = static_cast<std::size_t>(sampler.next_1d() * static_cast<float>(block.pixels.size()));
     const cv::Point& pixel = block.pixels[std::min(chosen, block.pixels.size() - 1)];
     const Eigen::Vector2f u = sampler.next_2d();
@@ -125,11 +144,11 @@ renderer::RayScene spool_rays(const WrappedSpool& spool) {
 }
 
 LightPaths trace_light_paths(const renderer::RayScene& rays, const View& view, const std::vector<Block>& blocks,
-                             const renderer::ThreadParameters& traced_with, int paths_per_block, std::uint64_t seed) {
+                             const renderer::ScatteringModel& traced_with, int paths_per_block, std::uint64_t seed) {
   const PathRecorder recorder(rays, view, traced_with);
   std::vector<BlockPaths> traced(blocks.size());
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
-    traced[b] = trace_block(recorder, view, blocks[b], paths_per_block, renderer::Sampler(seed, b));
+    traced[b] = trace_block(recorder, view, blocks[b], paths_per_block, seed, b);
   });
   LightPaths paths;
   for (const BlockPaths& block : traced) {

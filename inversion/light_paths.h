@@ -1,5 +1,5 @@
-// Light paths through one view of the wrapped spool, traced once and then shaded with any thread parameters
-// (block_estimate.h).
+// Light paths through one view of the wrapped spool, traced once and then shaded with any parameters of the model that
+// they were traced with (block_estimate.h).
 //
 // Everything in a view but the thread's parameters is fixed: cameras, light, threads. So is what a path meets. A path
 // traced with some parameters (which decide how directions were drawn) therefore estimates the picture for all others
@@ -22,18 +22,22 @@
 
 namespace inversion {
 
-// LobeAngles of a thread: without tilt the lobes share the cone.
+// LobeAngles of three lobes: without tilt they share the cone.
 struct PathDirection {
   float distance2, cos_cos;
   std::array<float, 3> from_center;
 };
 
 struct PathEvent {
-  renderer::ThreadPoint<float> point;
+  renderer::ThreadPoint<float> point;  // of a yarn: its second number is that of the fibers on the chord
   PathDirection light, next;
   float light_weight;      // radiance per intensity / density of the direction, 1/mm^2; 0 in shadow
   float inverse_next_pdf;  // includes roulette; 0 where the path ends
 };
+
+// A block's paths come in so many batches with random numbers of their own: within a batch they are low-discrepancy, so
+// that only batches tell how far an estimate is off.
+inline constexpr int kPathBatches = 4;
 
 struct LightPaths {
   std::vector<PathEvent> events;
@@ -44,8 +48,12 @@ struct LightPaths {
 // The wrapped spool as rays meet it; the same for all views.
 renderer::RayScene spool_rays(const WrappedSpool& spool);
 
-// `paths_per_block` paths from random positions in each block's pixels.
+// `paths_per_block` paths from random positions in each block's pixels, batch after batch (batch_end).
+// Number of paths in the batches up to and including `batch`.
+constexpr int batch_end(int paths, int batch) {
+  return static_cast<int>(static_cast<std::int64_t>(paths) * (batch + 1) / kPathBatches);
+}
 LightPaths trace_light_paths(const renderer::RayScene& rays, const View& view, const std::vector<Block>& blocks,
-                             const renderer::ThreadParameters& traced_with, int paths_per_block, std::uint64_t seed);
+                             const renderer::ScatteringModel& traced_with, int paths_per_block, std::uint64_t seed);
 
 }  // namespace inversion

@@ -10,7 +10,18 @@
 namespace inversion {
 
 // Their order; sigma_a is R G B, alpha and beta are three each.
-enum Unknown { kSigma = 0, kAlpha = 3, kBeta = 6, kL0 = 9, kL1, kConcavity, kR1a, kLogR2a, kLogR2b, kN2 };  // kL0...: EnergyUnknown
+enum Unknown {
+  kSigma = 0,
+  kAlpha = 3,
+  kBeta = 6,
+  kL0 = 9,
+  kL1,
+  kConcavity,
+  kR1a,
+  kLogR2a,
+  kLogR2b,
+  kN2
+};  // kL0...: EnergyUnknown
 using ThreadUnknowns = Eigen::Matrix<double, renderer::kThreadParameterCount, 1>;
 using ThreadJacobian = Eigen::Matrix<double, renderer::kThreadParameterCount, renderer::kThreadParameterCount>;
 

@@ -26,8 +26,9 @@ struct View {
   renderer::Camera camera;  // undistorted; world = holder frame
   NearLight light;
   bool transmission = false;
-  cv::Mat3f image;  // linear camera RGB, radiance unit; may be empty
-  cv::Mat1b mask;   // 255 where threads are; same size
+  cv::Mat3f image;       // linear camera RGB, radiance unit; may be empty
+  cv::Mat3f variance{};  // of the image's noise, pixel by pixel, radiance unit squared; may be empty: not known
+  cv::Mat1b mask;        // 255 where threads are; same size
 };
 
 renderer::SphereLight sphere_light(const NearLight& light);

@@ -1,6 +1,7 @@
 // Time as the rig sees it, injected so that simulated runs and tests never wait.
 #pragma once
 
+#include <atomic>
 #include <string>
 
 namespace rig {
@@ -21,7 +22,7 @@ class SystemClock final : public Clock {
   void sleep_s(double duration_s) override;
 };
 
-// Starts at a given UTC time; sleeping advances it at once.
+// Starts at a given UTC time; sleeping advances it at once, in any thread.
 class SimulatedClock final : public Clock {
  public:
   explicit SimulatedClock(double utc_start_unix_s) : utc_start_unix_s_(utc_start_unix_s) {}
@@ -31,7 +32,7 @@ class SimulatedClock final : public Clock {
 
  private:
   double utc_start_unix_s_;
-  double elapsed_s_ = 0.0;
+  std::atomic<double> elapsed_s_ = 0.0;
 };
 
 }  // namespace rig

@@ -103,8 +103,10 @@ Verdict stopping(Turntable& turntable, double tolerance_rad) {
     std::this_thread::yield();
   }
   turntable.stop();
-  const bool ended_early = refusal([&] { move.get(); }).has_value();
+  const auto ended_early = refusal([&] { move.get(); });
   const TurntableState state = turntable.state();
+  if (state == TurntableState::unknown_position)
+    return {false, "the position was lost: " + ended_early.value_or("no reason was given")};
   const double stood_rad = turntable.angle_rad();
   turntable.move_to(10 * kDegree);
   const double then_rad = turntable.angle_rad();

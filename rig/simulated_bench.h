@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -116,7 +117,7 @@ class SimulatedBench {
   DrawPicture draw_;
   Arrangement arrangement_;
   Eigen::Isometry3d placed_pose_ = Eigen::Isometry3d::Identity();
-  double platform_angle_rad_ = 0.0;
+  std::atomic<double> platform_angle_rad_ = 0.0;  // a simulated motor turns it from the thread of its wire
 };
 
 // Devices that share one bench and one clock (both must outlive them).

@@ -109,7 +109,8 @@ class Inspection {
     return read_patch(
         picture.radiance, picture.saturated, camera, *asked_.rig.reference_patch, asked_.spool.wrapping,
         step.mounting,
-        lamp_in_holder(calibration_, asked_.rig.lamp_radius_mm, step.lamp == rig::Lamp::back, holder_from_world));
+        lamp_in_holder(calibration_, asked_.rig.lamp_radius_mm, step.lamp == rig::Lamp::back, holder_from_world),
+        calibration_.light.droop);
   }
 
   // From this run's pose pictures; a session that goes on has those of an earlier run.

@@ -75,6 +75,7 @@ RunOutcome run(SessionFolder& session, RigDevices& devices, const SessionFile& a
   };
   watch_interrupts();
   options.should_stop = interrupted;
+  const StopOnInterrupt emergency([&devices] { devices.turntable->stop(); });
   const RunDevices run_devices{*devices.camera, *devices.turntable, *devices.person, *devices.clock};
   const RunOutcome outcome = run_plan(asked.plan, run_devices, session, options);
   display.finish(outcome == RunOutcome::complete

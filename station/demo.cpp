@@ -75,7 +75,7 @@ DemoResult run_demo(const DemoRequest& request) {
                  .quick = request.quick,
                  .progress_style = request.progress_style});
   return {.session = session,
-          .thread = thread.thread_file,
+          .thread = thread.file,
           .relative_rmse = thread.relative_rmse,
           .cloth = cloth_pictures(session),
           .report = write_session_report(session),

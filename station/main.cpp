@@ -30,6 +30,9 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   station::add_demo_command(app);
   station::add_devices_command(app);
+  station::add_check_command(app);
+  station::add_camera_process_command(app);
+  station::add_simulate_hardware_command(app);
   station::add_calibrate_command(app);
   station::add_capture_command(app);
   station::add_verify_command(app);
@@ -38,6 +41,7 @@ int main(int argc, char** argv) {
   station::add_report_command(app);
   station::add_scatter_command(app);
   station::add_target_command(app);
+  station::add_validate_command(app);
   station::add_weave_command(app);
   station::add_render_command(app);
   try {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "calibration/light.h"
+
 namespace station {
 namespace {
 
@@ -51,7 +53,7 @@ Eigen::Isometry3d holder_from_patch(const ReferencePatch& patch, const inversion
 std::optional<PatchReading> read_patch(const cv::Mat3f& radiance, const cv::Mat1b& saturated,
                                        const renderer::Camera& camera, const ReferencePatch& patch,
                                        const inversion::WrappedSpool& spool, rig::Mounting mounting,
-                                       const inversion::NearLight& light) {
+                                       const inversion::NearLight& light, const Eigen::Vector2d& droop) {
   const Eigen::Isometry3d pose = holder_from_patch(patch, spool, mounting);
   const double half = kUsedFraction * patch.edge_mm / 2;
   std::vector<cv::Point2f> outline;
@@ -61,12 +63,15 @@ std::optional<PatchReading> read_patch(const cv::Mat3f& radiance, const cv::Mat1
     outline.emplace_back(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
     if (!frame.contains(cv::Point(cvRound(pixel.x()), cvRound(pixel.y())))) return std::nullopt;
   }
-  const Eigen::Vector3d to_light = light.position - pose.translation();
-  const double cosine = to_light.normalized().dot(pose.linear().col(2));
+  const Eigen::Vector3d offset = light.position - pose.translation(), to_light = offset.normalized(),
+                        normal = pose.linear().col(2);
+  const Eigen::Vector3d to_camera = (camera.world_from_camera.translation() - pose.translation()).normalized();
+  const double cosine = to_light.dot(normal);
   if (!(cosine > 0.1)) return std::nullopt;
-  const double along_beam = std::max(0.0, -to_light.normalized().dot(light.beam_axis));
+  const double along_beam = std::max(0.0, -to_light.dot(light.beam_axis));
   const double beam = light.beam_exponent == 0.0 ? 1.0 : std::pow(along_beam, light.beam_exponent);
-  const double expected = patch.albedo / M_PI * light.intensity.sum() * beam * cosine / to_light.squaredNorm();
+  const double expected = patch.albedo / M_PI * light.intensity.sum() * beam * cosine / offset.squaredNorm() *
+                          calibration::panel_factor(droop, normal, to_light, to_camera);
   const cv::Rect box = cv::boundingRect(outline) & frame;
   double sum = 0, squares = 0;
   int count = 0;

@@ -1,8 +1,9 @@
 // The small grey diffuser on the holder that is seen in every view: how bright the lamp is now.
 //
 // Two chips, each lying on an edge of the frame that is up in one mounting, reaching backwards from the front face: lit like
-// the threads from the front and from behind, and turning with the platform about its own normal, so that what its surface is
-// not (Lambertian) stays the same from view to view.
+// the threads from the front and from behind, and turning with the platform about its own normal, so that what its surface
+// is, which is the Spectralon panel's kind, stays the same from view to view. Seen and lit at 50 to 60 degrees it is some 10 %
+// off a Lambertian surface: darker under the lamp in front, brighter under the one behind.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -30,11 +31,12 @@ struct PatchReading {
 };
 
 // `radiance` and `camera` belong together (both with or both without distortion); everything in the holder frame. Nothing
-// when the chip is out of the picture, saturated, or fewer than 30 pixels.
+// when the chip is out of the picture, saturated, or fewer than 30 pixels. `droop`: the panel's, as calibrated
+// (calibration/light.h).
 std::optional<PatchReading> read_patch(const cv::Mat3f& radiance, const cv::Mat1b& saturated,
                                        const renderer::Camera& camera, const ReferencePatch& patch,
                                        const inversion::WrappedSpool& spool, rig::Mounting mounting,
-                                       const inversion::NearLight& light);
+                                       const inversion::NearLight& light, const Eigen::Vector2d& droop);
 
 // Strength of the lamp in a series of views relative to the first (1), from their readings. Readings under the lamp in front
 // and behind have factors of their own (position and surface are not known as well as a reading repeats): a series behind

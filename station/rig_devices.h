@@ -6,25 +6,48 @@
 #include <optional>
 
 #include "rig/camera.h"
+#include "rig/cameras/ptpip_server.h"
 #include "rig/clock.h"
 #include "rig/operator.h"
 #include "rig/simulated_bench.h"
 #include "rig/turntable.h"
+#include "rig/turntables/pty_server.h"
 #include "station/documents/rig_file.h"
 #include "station/documents/spool.h"
 
 namespace station {
 
+// The command by which the program starts itself again as its camera process (rig/cameras/camera_process.h).
+inline constexpr const char* kCameraProcess = "camera-process";
+
 struct RigDevices {
   std::unique_ptr<rig::Clock> clock;
-  std::unique_ptr<rig::SimulatedBench> bench;  // absent on a real rig
+  std::unique_ptr<rig::SimulatedBench> bench;      // absent on a real rig
+  std::unique_ptr<rig::PtyServer> simulated_wire;  // the turntable's firmware, when it is simulated on a wire
+  struct {
+    std::unique_ptr<rig::Camera> lens;  // what the simulated body photographs with
+    std::unique_ptr<rig::SimulatedSony> body;
+    std::unique_ptr<rig::PtpipServer> network;
+  } simulated_camera;  // when it is simulated on a wire
   std::unique_ptr<rig::Camera> camera;
   std::unique_ptr<rig::Turntable> turntable;
   std::unique_ptr<rig::Operator> person;
 };
 
+// The clock is the machine's as soon as a device is real, and a simulated one otherwise. Errors: std::runtime_error, of
+// the devices; when the pictures would be of another bench than the turntable turns.
 // `spool`: what is wrapped on the holder; a simulated bench needs it to draw the holder.
 // `unattended`: nobody is asked; refused when the rig's operator is a person.
 RigDevices open_rig(const RigFile& rig, const std::optional<Spool>& spool, bool unattended);
+
+// One device alone, with its clock; what is simulated stands on a bench that nobody draws.
+RigDevices open_turntable(const RigFile& rig);
+RigDevices open_camera(const RigFile& rig);
+
+// Puts the simulated camera that a rig file names on this computer's network, photographing `devices.bench`.
+void start_simulated_camera(RigDevices& devices);
+
+// The simulated firmware that a rig file names, turning `bench`. Throws when it names none.
+std::shared_ptr<rig::SimulatedPort> start_firmware(const RigFile& rig, rig::SimulatedBench& bench, rig::Clock& clock);
 
 }  // namespace station

@@ -1,16 +1,13 @@
 // The thread model's f_cos together with its derivatives with respect to all 16 parameters, in closed form.
 //
-// One formula with the renderer: values come from the densities of lobes.h and the energies of thread.h. Derivatives
-// of the logarithms of M and N by variance v and scale s [models of d'Eon 2011 and Chiang 2015, differentiated]:
-//
-//   dlogM/dv = D / 2v^2 - a/v (I1(a)/I0(a) - 1) - 1/v + 2 e^(-2/v) / (v^2 (1 - e^(-2/v))),   a = cos cos / v
-//   dlogN/ds = (x/s^2) tanh(x/2s) - 1/s + (pi/s^2) / sinh(pi/s)
-//
-// with D the squared distance across the cone and x the distance from the lobe's centre. The energy limit of thread.h
-// is left off: fits penalise the excess instead (thread.h). The options of thread.h are constants here.
+// One formula with the renderer: values come from the densities of lobes.h and the energies of thread.h, derivatives of
+// the densities from width_slopes.h.
+// The energy limit of thread.h is left off: fits penalise the excess instead (thread.h). The options of thread.h are
+// constants here.
 #pragma once
 
 #include "renderer/scattering/thread.h"
+#include "renderer/scattering/width_slopes.h"
 
 namespace renderer {
 
@@ -55,22 +52,20 @@ struct ThreadFactors {
 template <class S>
 class ThreadGradientModel {
  public:
+  static constexpr int kSlopeCount = kThreadSlopeCount;
+  using Factors = ThreadFactors<S>;
+
   explicit ThreadGradientModel(const BasicThreadParameters<S>& parameters) : parameters_(parameters) {
-    using std::exp, std::sinh, std::sqrt;
     parameters_.limit_energy = false;
     for (int p = 0; p < 3; ++p) {
       const auto i = static_cast<std::size_t>(p);
       const S alpha = parameters.alpha[i], beta = parameters.beta[i];
       widths_.set(p, longitudinal_variance(alpha), azimuthal_scale(beta));
-      const S v = widths_.v[p], s = widths_.s[p], tail = exp(S(-2.0) / v);
-      dv_dalpha_[p] = S(2.0) * sqrt(v) * (S(0.726) + S(1.624) * alpha + S(74.0) * power(alpha, 19));
-      ds_dbeta_[p] = S(std::sqrt(kPi / 8)) * (S(0.265) + S(2.388) * beta + S(118.184) * power(beta, 21));
-      m_constant_[p] = S(2.0) * tail / (v * v * (S(1.0) - tail)) - S(1.0) / v;
-      const S turn = S(kPi) / s;
-      n_constant_[p] = (turn < S(80.0) ? turn / (s * sinh(turn)) : S(0.0)) - S(1.0) / s;
+      dv_dalpha_[p] = longitudinal_variance_slope(alpha);
+      ds_dbeta_[p] = azimuthal_scale_slope(beta);
     }
     widths_.set(3, S(1.0), S(1.0));
-    dv_dalpha_[3] = ds_dbeta_[3] = m_constant_[3] = n_constant_[3] = S(0.0);
+    dv_dalpha_[3] = ds_dbeta_[3] = S(0.0);
   }
   // The same model in another scalar.
   template <class T>
@@ -78,9 +73,7 @@ class ThreadGradientModel {
       : parameters_(in_scalar<S>(other.parameters_)),
         widths_(other.widths_.template cast<S>()),
         dv_dalpha_(lanes_in<S, T>(other.dv_dalpha_)),
-        ds_dbeta_(lanes_in<S, T>(other.ds_dbeta_)),
-        m_constant_(lanes_in<S, T>(other.m_constant_)),
-        n_constant_(lanes_in<S, T>(other.n_constant_)) {}
+        ds_dbeta_(lanes_in<S, T>(other.ds_dbeta_)) {}
 
   ThreadGradient<S> evaluate(const ThreadPoint<S>& point, const LobeAngles<S>& at) const {
     const ThreadFactors<S> factors = slope_factors(point, at);
@@ -98,12 +91,12 @@ class ThreadGradientModel {
     return {.point = point,
             .lambda = thread_lobe_energies<S>(parameters_, point.cosine),
             .transmittance = thread_transmittance(parameters_, point.chord_length),
-            .density = longitudinal_density(widths_, at) * azimuthal_density(widths_, at)};
+            .density = longitudinal_density(widths_.widths, at) * azimuthal_density(widths_.widths, at)};
   }
   ThreadFactors<S> slope_factors(const ThreadPoint<S>& point, const LobeAngles<S>& at) const {
     ThreadFactors<S> f = factors(point, at);
-    f.by_alpha = f.density * dlog_m(at) * dv_dalpha_;
-    f.by_beta = f.density * dlog_n(at) * ds_dbeta_;
+    f.by_alpha = f.density * widths_.dlog_m(at) * dv_dalpha_;
+    f.by_beta = f.density * widths_.dlog_n(at) * ds_dbeta_;
     return f;
   }
 
@@ -112,7 +105,9 @@ class ThreadGradientModel {
            f.transmittance.tt * (f.density[1] * f.lambda[1]) + f.transmittance.trt * (f.density[2] * f.lambda[2]);
   }
 
-  void add_slopes(const ThreadFactors<S>& f, const Rgb<S>& weight, ThreadSlopes<S>& slopes) const {
+  // slopes(row, channel) += weight[channel] d f_cos[channel].
+  template <class Slopes>
+  void add_slopes(const Factors& f, const Rgb<S>& weight, Slopes& slopes) const {
     const S c = f.point.cosine, inverse = S(1.0) / (parameters_.r2a * c + parameters_.r2b);
     const auto power_tt = S(parameters_.transmittance_powers[0]), power_trt = S(parameters_.transmittance_powers[1]);
     for (int channel = 0; channel < 3; ++channel) {
@@ -142,19 +137,9 @@ class ThreadGradientModel {
   template <class>
   friend class ThreadGradientModel;
 
-  Lanes<S> dlog_m(const LobeAngles<S>& at) const {
-    const Lanes<S> a = at.cos_cos * widths_.inv_v;
-    return widths_.inv_v * (S(0.5) * at.distance2 * widths_.inv_v - bessel_i0e_log_slope(a)) + m_constant_;
-  }
-  Lanes<S> dlog_n(const LobeAngles<S>& at) const {
-    const Lanes<S> x = at.from_center * widths_.inv_s;
-    const Lanes<S> e = (-at.from_center * widths_.inv_s).exp();  // as in N; tanh(x / 2) = (1 - e) / (1 + e)
-    return x * widths_.inv_s * (S(1.0) - e) / (S(1.0) + e) + n_constant_;
-  }
-
   BasicThreadParameters<S> parameters_;
-  LobeWidths<S> widths_;
-  Lanes<S> dv_dalpha_, ds_dbeta_, m_constant_, n_constant_;
+  WidthSlopes<S> widths_;
+  Lanes<S> dv_dalpha_, ds_dbeta_;
 };
 
 }  // namespace renderer

@@ -30,6 +30,13 @@ cv::Mat3f plain(float albedo) {
   return cv::Mat3f(1, 1, cv::Vec3f(albedo, albedo, albedo));
 }
 
+void make_spectralon(renderer::TriangleMesh& mesh, double droop) {
+  if (droop == 0) return;
+  mesh.reflectance_factor = [droop](double cos_theta_i, double cos_theta_o, double cos_phi) {
+    return 1 + droop * calibration::droop_shape(cos_theta_i, cos_theta_o, cos_phi);
+  };
+}
+
 // The tag as printed on paper: 10 x 10 cells, the black square being 8 cells wide.
 renderer::TriangleMesh printed_tag(const calibration::Tag& tag, float paper_albedo) {
   const cv::Mat1b bitmap = calibration::tag_bitmap(tag.id);
@@ -99,10 +106,7 @@ std::vector<renderer::TriangleMesh> spectralon_meshes(const SpectralonPanel& pan
   std::vector<renderer::TriangleMesh> meshes{
       rectangle(Eigen::Isometry3d::Identity(), panel.plate_mm, panel.plate_mm, plain(kBlackPaintAlbedo)),
       rectangle(lifted, panel.white_mm, panel.white_mm, plain(static_cast<float>(panel.albedo)))};
-  if (droop != 0)
-    meshes.back().reflectance_factor = [droop](double cos_theta_i, double cos_theta_o, double cos_phi) {
-      return 1 + droop * calibration::droop_shape(cos_theta_i, cos_theta_o, cos_phi);
-    };
+  make_spectralon(meshes.back(), droop);
   add_tags(meshes, panel.tags);
   return meshes;
 }
@@ -132,12 +136,13 @@ std::vector<renderer::TriangleMesh> holder_meshes(const inversion::WrappedSpool&
 }
 
 std::vector<renderer::TriangleMesh> reference_patch_meshes(const ReferencePatch& patch,
-                                                           const inversion::WrappedSpool& spool) {
+                                                           const inversion::WrappedSpool& spool, double droop) {
   std::vector<renderer::TriangleMesh> meshes;
   for (const rig::Mounting mounting : {rig::Mounting::horizontal, rig::Mounting::vertical}) {
     const Eigen::Isometry3d lifted =
         holder_from_patch(patch, spool, mounting) * Eigen::Translation3d(0, 0, kPaperLift_mm);
     meshes.push_back(rectangle(lifted, patch.edge_mm, patch.edge_mm, plain(static_cast<float>(patch.albedo))));
+    make_spectralon(meshes.back(), droop);
   }
   return meshes;
 }

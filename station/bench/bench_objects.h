@@ -27,9 +27,9 @@ std::vector<renderer::TriangleMesh> colour_chart_meshes(const ColourChart& chart
 std::vector<renderer::TriangleMesh> holder_meshes(const inversion::WrappedSpool& spool,
                                                   const calibration::TagLayout& tags);
 
-// Both chips, holder frame.
+// Both chips, of the panel's kind; holder frame.
 std::vector<renderer::TriangleMesh> reference_patch_meshes(const ReferencePatch& patch,
-                                                           const inversion::WrappedSpool& spool);
+                                                           const inversion::WrappedSpool& spool, double droop);
 
 void transform(renderer::TriangleMesh& mesh, const Eigen::Isometry3d& to_from_mesh);
 

@@ -79,7 +79,8 @@ struct Painter {
         scene.curves.push_back(fibers);
         scene.meshes = holder_meshes(spool->wrapping, rig.holder_tags);
         if (rig.reference_patch)
-          for (renderer::TriangleMesh& chip : reference_patch_meshes(*rig.reference_patch, spool->wrapping))
+          for (renderer::TriangleMesh& chip :
+               reference_patch_meshes(*rig.reference_patch, spool->wrapping, rig.simulation->spectralon_droop))
             scene.meshes.push_back(std::move(chip));
         break;
     }

@@ -42,6 +42,7 @@ RigCalibration calibrate_rig(const CalibrateRequest& request) {
     if (!request.only.empty())
       forget_calibration_pictures(request.out, [&](CalibrationRole role) { return belongs_to(role, request.only); });
     RigDevices devices = open_rig(rig, std::nullopt, false);
+    const StopOnInterrupt emergency([&devices] { devices.turntable->stop(); });
     record_calibration(plan, devices, request.out, show, interrupted);
     utc = devices.clock->utc();
   }

@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "calibration/develop.h"
 #include "calibration/light.h"
 #include "calibration/pose.h"
-#include "calibration/develop.h"
 #include "calibration/sensor_response.h"
 #include "station/documents/rig_file.h"
 

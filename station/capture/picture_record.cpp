@@ -3,6 +3,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "rig/cameras/camera_frames.h"
 #include "station/capture/plan_file.h"
 
 namespace station {
@@ -10,16 +11,6 @@ namespace {
 
 using nlohmann::json;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
-
-json settings_to_json(const rig::ExposureSettings& settings) {
-  return {{"exposure_s", settings.exposure_s}, {"iso", settings.iso}, {"f_number", settings.f_number}};
-}
-
-rig::ExposureSettings settings_from_json(const json& document) {
-  return {.exposure_s = document.at("exposure_s").get<double>(),
-          .iso = document.at("iso").get<int>(),
-          .f_number = document.at("f_number").get<double>()};
-}
 
 StepKind kind_from_record(const std::string& name) {
   for (const StepKind kind : {StepKind::pose, StepKind::view, StepKind::exposure, StepKind::dark}) {
@@ -43,8 +34,8 @@ json picture_to_json(const PictureRecord& picture) {
                    {"room_light", picture.room_light},
                    {"platform_angle_asked_deg", file_degrees(picture.asked_angle_rad)},
                    {"platform_angle_read_deg", file_degrees(picture.read_angle_rad)},
-                   {"camera_asked", settings_to_json(picture.asked)},
-                   {"camera_read", settings_to_json(picture.read)},
+                   {"camera_asked", rig::settings_to_json(picture.asked)},
+                   {"camera_read", rig::settings_to_json(picture.read)},
                    {"exposure_utc", picture.utc}};
   if (!picture.same_as.empty()) {
     document["same_as"] = picture.same_as;
@@ -65,8 +56,8 @@ PictureRecord picture_from_json(const JournalRecord& record) {
             .room_light = data.at("room_light").get<bool>(),
             .asked_angle_rad = data.at("platform_angle_asked_deg").get<double>() * kRadiansPerDegree,
             .read_angle_rad = data.at("platform_angle_read_deg").get<double>() * kRadiansPerDegree,
-            .asked = settings_from_json(data.at("camera_asked")),
-            .read = settings_from_json(data.at("camera_read")),
+            .asked = rig::settings_from_json(data.at("camera_asked")),
+            .read = rig::settings_from_json(data.at("camera_read")),
             .utc = data.at("exposure_utc").get<std::string>(),
             .same_as = data.value("same_as", std::string())};
   } catch (const std::exception& error) {

@@ -7,7 +7,9 @@
 namespace station {
 
 void add_calibrate_command(CLI::App& app);
+void add_camera_process_command(CLI::App& app);
 void add_capture_command(CLI::App& app);
+void add_check_command(CLI::App& app);
 void add_demo_command(CLI::App& app);
 void add_develop_command(CLI::App& app);
 void add_devices_command(CLI::App& app);
@@ -15,7 +17,9 @@ void add_render_command(CLI::App& app);
 void add_invert_command(CLI::App& app);
 void add_report_command(CLI::App& app);
 void add_scatter_command(CLI::App& app);
+void add_simulate_hardware_command(CLI::App& app);
 void add_target_command(CLI::App& app);
+void add_validate_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
 void add_weave_command(CLI::App& app);
 

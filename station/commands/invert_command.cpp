@@ -20,6 +20,10 @@ void run(Arguments& arguments) {
   for (inversion::ParameterGroup group : inversion::kParameterGroups)
     for (const std::string& name : arguments.held)
       if (name == inversion::name_of(group)) request.fit.held.push_back(group);
+  request.fit.model = arguments.model == "fiber"  ? inversion::ModelKind::fiber
+                      : arguments.model == "yarn" ? inversion::ModelKind::yarn
+                                                  : inversion::ModelKind::thread;
+  request.fit.solver = arguments.solver == "adam" ? inversion::Solver::adam : inversion::Solver::levenberg_marquardt;
   request.progress_style = arguments.output.progress_style();
   const InvertResult result = invert_session(request);
   if (arguments.output.json)
@@ -34,15 +38,24 @@ void add_invert_command(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("invert", "fit a thread to a session's developed views");
   command->add_option("session", arguments->request.session, "session folder")->required();
-  command->add_option("--out", arguments->out, "write thread.json here as well");
-  command->add_option("--model", arguments->model, "scattering model")->check(CLI::IsMember({"thread"}));
-  command->add_option("--solver", arguments->solver, "lm: Levenberg-Marquardt")->check(CLI::IsMember({"lm"}));
+  command->add_option("--out", arguments->out, "write the model's file here as well");
+  command->add_option("--model", arguments->model, "scattering model: the thread's, or a baseline")
+      ->check(CLI::IsMember({"thread", "fiber", "yarn"}));
+  command->add_option("--solver", arguments->solver, "lm: Levenberg-Marquardt on recorded paths; adam: the paper's")
+      ->check(CLI::IsMember({"lm", "adam"}));
   std::vector<std::string> groups;
   for (inversion::ParameterGroup group : inversion::kParameterGroups) groups.push_back(inversion::name_of(group));
   command->add_option("--hold", arguments->held, "leave this group of parameters at its start")
       ->check(CLI::IsMember(groups));
   command->add_option("--paths", arguments->request.fit.paths_per_block, "light paths per block, one number a round")
       ->check(CLI::Range(1, 100000));
+  command->add_option("--adam-steps", arguments->request.fit.adam_steps, "steps of --solver adam")
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--adam-paths", arguments->request.fit.adam_paths, "light paths per block for each of them")
+      ->check(CLI::Range(1, 100000));
+  command
+      ->add_option("--prior", arguments->request.fit.prior_weight, "weight of the simulated threads' prior; 0: none")
+      ->check(CLI::Range(0.0, 1000.0));
   command->add_option("--spp", arguments->request.samples_per_pixel, "samples per pixel of the fitted views")
       ->check(CLI::Range(1, 65536));
   command->add_option("--seed", arguments->request.fit.seed, "of the light paths");

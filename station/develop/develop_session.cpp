@@ -105,13 +105,14 @@ std::vector<calibration::SensorPicture> read_bracket(const std::filesystem::path
 
 // `patches`: readings of the views before this one, in the order of their pictures; this one's is added.
 void read_lamp(const RigFile& rig, const inversion::WrappedSpool& spool, const calibration::Developed& picture,
-               double time_s, const DevelopedView& developed, std::vector<PatchView>& patches) {
+               double time_s, const Eigen::Vector2d& droop, const DevelopedView& developed,
+               std::vector<PatchView>& patches) {
   if (!rig.reference_patch) return;
   const inversion::View& view = developed.view;
   patches.push_back({.behind = view.transmission,
                      .time_s = time_s,
                      .reading = read_patch(picture.radiance, picture.saturated, view.camera, *rig.reference_patch,
-                                           spool, developed.mounting, view.light)});
+                                           spool, developed.mounting, view.light, droop)});
 }
 
 // Divides every view by the lamp's strength in it.
@@ -147,7 +148,7 @@ void develop_view(const std::filesystem::path& session, const SessionFile& asked
   const calibration::Developed picture = calibration::develop(bracket, develop_options(calibration, dark, view.id));
   developed.exposure_s = bracket.front().exposure_s;
   const double time_s = 86400 * days_between(asked.utc, picture_of(pictures, view.id).utc);
-  read_lamp(asked.rig, spool, picture, time_s, developed, patches);
+  read_lamp(asked.rig, spool, picture, time_s, calibration.light.droop, developed, patches);
   view.image = picture.radiance;
   view.mask = inversion::thread_mask(spool, view.camera, view.light, kMaskSamples);
   developed.masked_pixels = cv::countNonZero(view.mask);

@@ -21,4 +21,14 @@ renderer::FiberParameters read_fiber(const std::filesystem::path& file) {
   return parse_fiber(read_json_file(file), file.string());
 }
 
+nlohmann::json to_json(const renderer::FiberParameters& fiber) {
+  return {{"format", "threadstation/fiber"},
+          {"version", 1},
+          {"eta", fiber.eta},
+          {"sigma_a", to_json(fiber.sigma_a)},
+          {"beta_m", fiber.beta_m},
+          {"beta_n", fiber.beta_n},
+          {"tilt_deg", fiber.tilt_rad * 180 / renderer::kPi}};
+}
+
 }  // namespace station

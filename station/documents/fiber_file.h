@@ -13,5 +13,6 @@ namespace station {
 
 renderer::FiberParameters parse_fiber(const nlohmann::json& document, const std::string& source);
 renderer::FiberParameters read_fiber(const std::filesystem::path& file);
+nlohmann::json to_json(const renderer::FiberParameters& fiber);
 
 }  // namespace station

@@ -181,6 +181,66 @@ SimulatedRig parse_simulation(ObjectReader simulation) {
   return result;
 }
 
+// Which port: its name or the serial number of its USB adapter, one of the two.
+rig::SerialPortChoice parse_port(ObjectReader& reader, TurntableWire::Line line) {
+  rig::SerialPortChoice choice;
+  if (line == TurntableWire::Line::simulated) return choice;
+  if (line == TurntableWire::Line::serial && reader.has("usb_serial")) {
+    choice.usb_serial = reader.text("usb_serial");
+    if (reader.has("port")) reader.refuse("port", "stands beside \"usb_serial\"; keep one of the two");
+  } else {
+    choice.port = reader.text("port");
+    if (!choice.port.starts_with("/dev/"))
+      reader.refuse("port", "found \"" + choice.port + "\", expected a device such as /dev/ttyUSB0");
+  }
+  if (line == TurntableWire::Line::serial) choice.baud = reader.integer("baud", 1200, 4000000);
+  return choice;
+}
+
+CameraWire parse_camera(ObjectReader reader) {
+  CameraWire wire;
+  wire.setup.port = reader.text("port");
+  wire.simulated = wire.setup.port == "simulated";
+  if (!wire.simulated) {
+    if (!wire.setup.port.starts_with("usb:") && !wire.setup.port.starts_with("ptpip:"))
+      reader.refuse("port", "found \"" + wire.setup.port +
+                                "\", expected \"usb:\" (the only camera), \"usb:001,004\", \"ptpip:192.168.1.5\" or "
+                                "\"simulated\"");
+    wire.setup.width_px = reader.integer("width_px", 16, 20000);
+    wire.setup.height_px = reader.integer("height_px", 16, 20000);
+  }
+  wire.setup.shortest_shutter_s = reader.number("shortest_shutter_s", 1e-5, 1);
+  wire.setup.least_battery_percent = reader.integer("least_battery_percent", 0, 100);
+  reader.finish();
+  return wire;
+}
+
+TurntableWire parse_turntable(ObjectReader reader, const std::string& driver) {
+  TurntableWire wire;
+  const std::string line = reader.choice("line", {"serial", "pty", "simulated"});
+  wire.line = line == "serial" ? TurntableWire::Line::serial
+              : line == "pty"  ? TurntableWire::Line::pty
+                               : TurntableWire::Line::simulated;
+  wire.port = parse_port(reader, wire.line);
+  wire.controller.steps_per_deg = reader.number("steps_per_deg", 0.1, 40000);
+  wire.controller.home_by =
+      reader.choice("home", {"here", "switch"}) == "here" ? rig::HomeBy::here : rig::HomeBy::home_switch;
+  wire.stepper.home_by = wire.controller.home_by;
+  if (driver == "zaber" && wire.controller.home_by == rig::HomeBy::here)
+    reader.refuse("home", "a Zaber stage finds its home by itself; expected \"switch\"");
+  wire.stepper.limit_rad = reader.number("limit_deg", 90, 360) * kRadPerDeg;
+  wire.stepper.backlash_rad = reader.number("backlash_deg", 0, 20) * kRadPerDeg;
+  wire.controller.reply_timeout_s = reader.number("reply_timeout_s", 0.1, 30);
+  wire.stepper.move_timeout_s = reader.number("move_timeout_s", 1, 3600);
+  if (driver == "zaber") {
+    wire.controller.zaber_device = reader.integer("device", 1, 99);
+    wire.controller.zaber_axis = reader.integer("axis", 1, 9);
+    wire.controller.zaber_resolution = reader.integer("resolution", 1, 256);
+  }
+  reader.finish();
+  return wire;
+}
+
 void parse_capture(ObjectReader capture, RigFile& rig) {
   rig.reflection_angles_deg = capture.numbers("reflection_angles_deg");
   rig.transmission_angles_deg = capture.numbers("transmission_angles_deg");
@@ -205,8 +265,11 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
   ObjectReader reader(document, source, "rig", 1);
   RigFile rig;
   rig.name = reader.text("name");
-  rig.camera_driver = reader.choice("camera", {"simulated"});
-  rig.turntable_driver = reader.choice("turntable", {"simulated"});
+  rig.camera_driver = reader.choice("camera", {"simulated", "gphoto2"});
+  if (rig.camera_driver == "gphoto2") rig.camera_wire = parse_camera(reader.object("camera_connection"));
+  rig.turntable_driver = reader.choice("turntable", {"simulated", "grbl", "zaber", "manual"});
+  if (rig.turntable_driver == "grbl" || rig.turntable_driver == "zaber")
+    rig.turntable_wire = parse_turntable(reader.object("turntable_setup"), rig.turntable_driver);
   rig.operator_driver = reader.choice("operator", {"simulated", "console"});
   ObjectReader setup = reader.object("camera_setup");
   rig.lens_name = setup.text("lens");
@@ -259,8 +322,14 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
   if (reader.has("simulation")) {
     rig.simulation = parse_simulation(reader.object("simulation"));
     rig.simulation->truth.platform_from_ring.pretranslate(Eigen::Vector3d(0, 0, rig.platform_height_mm));
+    if (rig.camera_wire && rig.camera_wire->simulated) {
+      rig.camera_wire->setup.width_px = rig.simulation->truth.lens.width_px;
+      rig.camera_wire->setup.height_px = rig.simulation->truth.lens.height_px;
+    }
   }
-  if ((rig.camera_driver == "simulated" || rig.turntable_driver == "simulated") && !rig.simulation)
+  const bool simulated_line = (rig.turntable_wire && rig.turntable_wire->line == TurntableWire::Line::simulated) ||
+                              (rig.camera_wire && rig.camera_wire->simulated);
+  if ((rig.camera_driver == "simulated" || rig.turntable_driver == "simulated" || simulated_line) && !rig.simulation)
     reader.refuse("simulation", "is missing; a rig with simulated devices needs it");
   reader.finish();
   return rig;

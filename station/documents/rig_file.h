@@ -9,7 +9,11 @@
 #include <vector>
 
 #include "calibration/tags.h"
+#include "rig/cameras/gphoto_camera.h"
 #include "rig/simulated_bench.h"
+#include "rig/turntables/controllers.h"
+#include "rig/turntables/serial_line.h"
+#include "rig/turntables/stepper_turntable.h"
 #include "station/documents/board_file.h"
 #include "station/reference_patch.h"
 
@@ -41,9 +45,28 @@ struct SimulatedRig {
   int target_samples_per_pixel = 12;  // and of pictures without threads
 };
 
+// How a motorised turntable is reached; only for the drivers "grbl" and "zaber".
+struct TurntableWire {
+  enum class Line { serial, pty, simulated };  // simulated: this program starts the firmware too, on its bench
+  Line line = Line::serial;
+  rig::SerialPortChoice port;
+  rig::ControllerSetup controller;
+  rig::StepperSetup stepper;
+};
+
+// How a camera is reached; only for the driver "gphoto2".
+struct CameraWire {
+  bool simulated = false;  // this program starts the camera too, on its bench; the port comes with it
+  rig::GphotoSetup setup;
+};
+
 struct RigFile {
   std::string name;
-  std::string camera_driver, turntable_driver, operator_driver;              // "simulated"; operator also "console"
+  std::string camera_driver;     // "simulated", "gphoto2"
+  std::string turntable_driver;  // "simulated", "grbl", "zaber", "manual"
+  std::string operator_driver;   // "simulated", "console"
+  std::optional<TurntableWire> turntable_wire;
+  std::optional<CameraWire> camera_wire;
   std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major; for display only
   std::string lens_name, focus;                                              // as people tell them apart
   double calibration_valid_days = 0;

@@ -27,4 +27,16 @@ renderer::YarnParameters read_yarn(const std::filesystem::path& file) {
   return parse_yarn(read_json_file(file), file.string());
 }
 
+nlohmann::json to_json(const renderer::YarnParameters& yarn) {
+  return {{"format", "threadstation/yarn"},
+          {"version", 1},
+          {"fiber_count", yarn.fiber_count},
+          {"radius_ratio", yarn.radius_ratio},
+          {"eta", yarn.eta},
+          {"sigma_a", to_json(yarn.sigma_a)},
+          {"beta_r", yarn.beta_r},
+          {"beta_tt", yarn.beta_tt},
+          {"gamma_tt", yarn.gamma_tt}};
+}
+
 }  // namespace station

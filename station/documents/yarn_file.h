@@ -14,5 +14,6 @@ namespace station {
 
 renderer::YarnParameters parse_yarn(const nlohmann::json& document, const std::string& source);
 renderer::YarnParameters read_yarn(const std::filesystem::path& file);
+nlohmann::json to_json(const renderer::YarnParameters& yarn);
 
 }  // namespace station

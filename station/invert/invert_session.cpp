@@ -1,12 +1,16 @@
 #include "station/invert/invert_session.h"
 
+#include <cmath>
 #include <stdexcept>
 
 #include "renderer/image_file.h"
 #include "station/capture/stored_file.h"
+#include "station/documents/fiber_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
+#include "station/documents/thread_file.h"
 #include "station/documents/views_file.h"
+#include "station/documents/yarn_file.h"
 #include "station/interrupt.h"
 #include "station/report/html.h"
 
@@ -17,33 +21,6 @@ using nlohmann::json;
 
 constexpr std::uint64_t kViewSeed = 424242;  // of the fitted views: paths that the fit has not seen
 constexpr double kFitShare = 0.6;            // of the progress bar; the fitted views take the rest
-
-json fit_json(const inversion::ThreadFit& fit, const InvertRequest& request, const InvertResult& result) {
-  json rounds = json::array(), views = json::array(), held = json::array();
-  for (const inversion::FitRound& round : fit.rounds)
-    rounds.push_back({{"paths_per_block", round.paths_per_block},
-                      {"steps", round.steps},
-                      {"loss_before", round.loss_before},
-                      {"loss_after", round.loss_after},
-                      {"converged", round.converged}});
-  for (const FittedView& view : result.views)
-    views.push_back({{"id", view.id},
-                     {"relative_rmse", view.agreement.relative_rmse()},
-                     {"relative_bias", view.agreement.relative_bias},
-                     {"mean_over_diffuser", view.agreement.mean_reference}});
-  for (inversion::ParameterGroup group : request.fit.held) held.push_back(name_of(group));
-  return {{"model", "thread"},
-          {"solver", "lm"},
-          {"seed", request.fit.seed},
-          {"held", held},
-          {"block_px", fit.block_px},
-          {"blocks", fit.blocks},
-          {"start", fit.start},
-          {"rounds", rounds},
-          {"relative_rmse", result.relative_rmse},
-          {"samples_per_pixel", request.samples_per_pixel},
-          {"views", views}};
-}
 
 json provenance_json(const std::filesystem::path& session, const SessionFile& asked) {
   const std::filesystem::path folder = std::filesystem::absolute(session).lexically_normal();
@@ -58,10 +35,32 @@ json provenance_json(const std::filesystem::path& session, const SessionFile& as
           {"paper", "Xia et al. 2025, Predicting Fabric Appearance Through Thread Scattering and Inversion"}};
 }
 
+// The thread's results are the session's; those of the baselines lie in folders of their own.
+std::filesystem::path results_of(const InvertRequest& request) {
+  const std::filesystem::path results = request.session / "result";
+  return request.fit.model == inversion::ModelKind::thread ? results : results / name_of(request.fit.model);
+}
+
+std::filesystem::path model_file(const InvertRequest& request) {
+  return results_of(request) / (name_of(request.fit.model) + ".json");
+}
+
+json model_document(const inversion::ViewFit& fit, const SessionFile& asked, const DevelopedViews& developed,
+                    const json& fit_part, const json& provenance) {
+  if (const auto* fiber = std::get_if<renderer::FiberParameters>(&fit.model)) return to_json(*fiber);
+  if (const auto* yarn = std::get_if<renderer::YarnParameters>(&fit.model)) return to_json(*yarn);
+  return to_json(ThreadFile{.name = asked.spool.name,
+                            .diameter_mm = asked.spool.wrapping.thread_diameter_mm,
+                            .parameters = fit.thread(),
+                            .linear_srgb_from_camera = developed.linear_srgb_from_camera,
+                            .fit = fit_part,
+                            .provenance = provenance});
+}
+
 // Renders one view with the fitted thread, compares it, and writes both pictures.
 FittedView write_fitted_view(const InvertRequest& request, const inversion::WrappedSpool& spool,
-                             const inversion::View& view, const inversion::ThreadFit& fit, std::uint64_t seed) {
-  const cv::Mat3f fitted = inversion::fitted_view(spool, view, fit.parameters, request.samples_per_pixel, seed,
+                             const inversion::View& view, const inversion::ViewFit& fit, std::uint64_t seed) {
+  const cv::Mat3f fitted = inversion::fitted_view(spool, view, fit.model, request.samples_per_pixel, seed,
                                                   [](double) { return !interrupted(); });
   cv::Mat3f residual(fitted.size(), cv::Vec3f(0, 0, 0));
   cv::subtract(fitted, view.image, residual, view.mask);
@@ -69,10 +68,12 @@ FittedView write_fitted_view(const InvertRequest& request, const inversion::Wrap
                                {"threadstation/samples_per_pixel", std::to_string(request.samples_per_pixel)}};
   std::string& content = header["threadstation/content"];
   content = "linear camera RGB, radiance unit; rendered with the fitted thread inside the mask";
-  renderer::write_exr(fitted_file_of(request.session, view.id), fitted, header);
+  renderer::write_exr(results_of(request) / "fitted" / (view.id + ".exr"), fitted, header);
   content = "linear camera RGB, radiance unit; fitted minus photographed inside the mask";
-  renderer::write_exr(request.session / "result" / "residual" / (view.id + ".exr"), residual, header);
-  return {.id = view.id, .agreement = inversion::agreement(view, fitted, fit.block_px)};
+  renderer::write_exr(results_of(request) / "residual" / (view.id + ".exr"), residual, header);
+  return {.id = view.id,
+          .transmission = view.transmission,
+          .agreement = inversion::agreement(view, fitted, fit.block_px)};
 }
 
 // Before the work, not after it: what cannot be written is found out now.
@@ -80,14 +81,14 @@ void prepare_results(const InvertRequest& request) {
   FileSystem disk;
   if (request.out) check_can_store(disk, *request.out);
   for (const char* name : {"fitted", "residual"}) {
-    const std::filesystem::path folder = request.session / "result" / name;
+    const std::filesystem::path folder = results_of(request) / name;
     std::error_code code;
     std::filesystem::create_directories(folder, code);
     if (code)
       throw std::runtime_error("cannot make " + folder.string() + ": " + code.message() +
                                "; is the session's folder writable?");
   }
-  check_can_store(disk, thread_file_of(request.session));
+  check_can_store(disk, model_file(request));
 }
 
 }  // namespace
@@ -117,52 +118,90 @@ InvertResult invert_session(const InvertRequest& request) {
     if (percent / 5 != shown / 5 || shown < 0) progress.show(shown = percent, 100, what);
     return !interrupted();
   };
-  const inversion::ThreadFit fit = inversion::fit_thread(asked.spool.wrapping, views, options);
+  const inversion::ViewFit fit = inversion::fit_views(asked.spool.wrapping, views, options);
 
-  InvertResult result;
-  std::filesystem::remove(thread_file_of(request.session));  // it no longer belongs to the pictures beside it
-  std::vector<inversion::ViewAgreement> agreements;
+  InvertResult result{.model = fit.model, .file = model_file(request)};
+  std::filesystem::remove(result.file);  // it no longer belongs to the pictures beside it
   for (const inversion::View& view : views) {
     const double share = static_cast<double>(result.views.size()) / static_cast<double>(views.size());
     progress.show(static_cast<int>(100 * (kFitShare + (1 - kFitShare) * share)), 100, "view " + view.id);
     result.views.push_back(
         write_fitted_view(request, asked.spool.wrapping, view, fit, kViewSeed + result.views.size()));
-    agreements.push_back(result.views.back().agreement);
   }
-  result.relative_rmse = inversion::overall_relative_rmse(agreements);
-  result.thread.name = asked.spool.name;
-  result.thread.diameter_mm = asked.spool.wrapping.thread_diameter_mm;
-  result.thread.parameters = fit.parameters;
-  result.thread.linear_srgb_from_camera = developed.linear_srgb_from_camera;
-  result.thread.fit = fit_json(fit, request, result);
-  result.thread.provenance = provenance_json(request.session, asked);
-  result.thread_file = thread_file_of(request.session);
-  write_json_file(result.thread_file, to_json(result.thread));
-  if (request.out) write_json_file(*request.out, to_json(result.thread));
+  result.fit = fit_document(fit, request.fit, result.views, request.samples_per_pixel);
+  result.relative_rmse = result.fit.at("relative_rmse");
+  const json document = model_document(fit, asked, developed, result.fit, provenance_json(request.session, asked));
+  write_json_file(result.file, document);
+  if (request.fit.model != inversion::ModelKind::thread)
+    write_json_file(results_of(request) / "fit.json", result.fit);
+  if (request.out) write_json_file(*request.out, document);
   progress.finish("relative RMSE " + number_text(100 * result.relative_rmse, 1) + " %");
   return result;
 }
+
+namespace {
+
+// "0.512 +- 0.013" for unknowns from `first` on.
+std::string uncertain_text(const json& unknowns, std::size_t first, std::size_t count) {
+  std::string text;
+  for (std::size_t k = first; k < first + count; ++k) {
+    const json& unknown = unknowns.at(k);
+    text += (k > first ? ", " : "") + number_text(unknown.at("value"), 3) +
+            (unknown.at("at_bound").get<bool>() ? " (at its bound)" : " +- " + number_text(unknown.at("sigma"), 3));
+  }
+  return text;
+}
+
+std::string thread_text(const renderer::ThreadParameters& p, const json& fit) {
+  const json& unknowns = fit.at("certainty").at("unknowns");
+  std::string text = "sigma_a " + uncertain_text(unknowns, 0, 3) + " per thread radius (R G B)\n";
+  text += "alpha   " + uncertain_text(unknowns, 3, 3) + " (R TT TRT)\n";
+  text += "beta    " + uncertain_text(unknowns, 6, 3) + "\n";
+  text += "r0 " + numbers_text({p.r0a, p.r0b, p.r0c}, 3) + "   r1 " + number_text(p.r1a, 3) + "   r2 " +
+          numbers_text({p.r2a, p.r2b, p.r2c}, 3) + "\n";
+  for (const json& band : fit.at("bands"))
+    if (const double c = band.at("cosine"); c > 0.55 && std::lround(10 * c) % 2 == 0)
+      text += "energies at cos theta " + number_text(c, 1) + ": R " + number_text(band.at("lambda")[0], 3) + " +- " +
+              number_text(band.at("sigma")[0], 3) + ", TT " + number_text(band.at("lambda")[1], 3) + " +- " +
+              number_text(band.at("sigma")[1], 3) + ", TRT " + number_text(band.at("lambda")[2], 3) + " +- " +
+              number_text(band.at("sigma")[2], 3) + "\n";
+  return text;
+}
+
+std::string baseline_text(const json& fit) {
+  std::string text;
+  if (fit.contains("fiber_count")) text += "fibers  " + std::to_string(fit.at("fiber_count").get<int>()) + "\n";
+  const json& unknowns = fit.at("certainty").at("unknowns");
+  for (std::size_t k = 0; k < unknowns.size(); ++k)
+    text += unknowns.at(k).at("name").get<std::string>() + "  " + uncertain_text(unknowns, k, 1) + "\n";
+  return text;
+}
+
+}  // namespace
 
 std::string describe(const InvertResult& result) {
   std::string text;
   for (const FittedView& view : result.views)
     text += view.id + ": relative RMSE " + number_text(100 * view.agreement.relative_rmse(), 1) + " %, bias " +
             number_text(100 * view.agreement.relative_bias, 1) + " %\n";
-  const renderer::ThreadParameters& p = result.thread.parameters;
-  text += "overall: relative RMSE " + number_text(100 * result.relative_rmse, 1) + " %\n";
-  text += "sigma_a " + numbers_text({p.sigma_a[0], p.sigma_a[1], p.sigma_a[2]}, 3) + " per thread radius (R G B)\n";
-  text += "alpha   " + numbers_text({p.alpha[0], p.alpha[1], p.alpha[2]}, 3) + " (R TT TRT)\n";
-  text += "beta    " + numbers_text({p.beta[0], p.beta[1], p.beta[2]}, 3) + "\n";
-  text += "r0 " + numbers_text({p.r0a, p.r0b, p.r0c}, 3) + "   r1 " + number_text(p.r1a, 3) + "   r2 " +
-          numbers_text({p.r2a, p.r2b, p.r2c}, 3) + "\n";
-  return text + "thread  " + result.thread_file.string() + "\n";
+  text += "overall: relative RMSE " + number_text(100 * result.relative_rmse, 1) + " %";
+  for (const char* part : {"reflection", "transmission"})
+    if (const auto found = result.fit.find(std::string("relative_rmse_") + part); found != result.fit.end())
+      text += std::string(", ") + part + " " + number_text(100 * found->get<double>(), 1) + " %";
+  text += "\n";
+  if (const auto* thread = std::get_if<renderer::ThreadParameters>(&result.model))
+    text += thread_text(*thread, result.fit);
+  else
+    text += baseline_text(result.fit);
+  return text + result.fit.at("model").get<std::string>() + "  " + result.file.string() + "\n";
 }
 
 json to_json(const InvertResult& result) {
-  return {{"thread", result.thread_file},
-          {"relative_rmse", result.relative_rmse},
-          {"parameters", to_json(result.thread).at("parameters")},
-          {"fit", result.thread.fit}};
+  json document{{"model", result.fit.at("model")}, {"relative_rmse", result.relative_rmse}, {"fit", result.fit}};
+  document[result.fit.at("model").get<std::string>()] = result.file;
+  document["parameters"] = read_json_file(result.file);
+  if (document["parameters"].contains("parameters")) document["parameters"] = document["parameters"]["parameters"];
+  return document;
 }
 
 }  // namespace station

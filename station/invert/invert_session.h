@@ -7,36 +7,31 @@
 #include <string>
 #include <vector>
 
-#include "inversion/agreement.h"
-#include "inversion/fit_thread.h"
-#include "station/documents/thread_file.h"
+#include "inversion/fit_views.h"
+#include "station/invert/fit_document.h"
 #include "station/progress.h"
 
 namespace station {
 
 struct InvertRequest {
   std::filesystem::path session;
-  std::optional<std::filesystem::path> out;  // thread.json goes there as well
+  std::optional<std::filesystem::path> out;  // the model's file goes there as well
   inversion::FitOptions fit;                 // its progress is replaced
   int samples_per_pixel = 16;                // of the fitted views
   ProgressStyle progress_style = ProgressStyle::automatic;
 };
 
-struct FittedView {
-  std::string id;
-  inversion::ViewAgreement agreement;
-};
-
 struct InvertResult {
-  ThreadFile thread;
-  std::filesystem::path thread_file;
-  std::vector<FittedView> views;
+  renderer::ScatteringModel model;
+  std::filesystem::path file;  // of the model: thread.json, fiber.json or yarn.json
+  std::vector<FittedView> views{};
+  nlohmann::json fit{};      // fit_document.h
   double relative_rmse = 0;  // overall (inversion/agreement.h)
 };
 
 // Writes result/thread.json, result/fitted/<view>.exr and result/residual/<view>.exr (fitted minus photographed; both
-// linear camera RGB, radiance unit, zero outside the mask). Ctrl-C stops it; thread.json is written last, so that it
-// always belongs to whole pictures. Errors: those of read_views and fit_thread, and of what cannot be written.
+// linear camera RGB, radiance unit, zero outside the mask); of the baselines the same, with fit.json, in result/fiber/ and
+// result/yarn/. Ctrl-C stops it; the model is written last, so that it always belongs to whole pictures. Errors: those of read_views and fit_views, and of what cannot be written.
 InvertResult invert_session(const InvertRequest& request);
 
 std::string describe(const InvertResult& result);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "inversion/fit_thread.h"
+#include "inversion/fit_views.h"
 #include "synthetic_spool.h"
 
 namespace inversion {

@@ -137,7 +137,7 @@ TEST(SimulatedCamera, TakesTheNearestTimeItOffersAndSaysSo) {
   UniformBench rig({0, 0, 0});
   EXPECT_EQ(rig.camera->configure({.exposure_s = 0.26}).exposure_s, 0.25);
   EXPECT_EQ(rig.camera->configure({.exposure_s = 1000}).exposure_s, 30);
-  EXPECT_EQ(rig.camera->configure({.exposure_s = 1e-6}).exposure_s, 1 / 4000.0);
+  EXPECT_EQ(rig.camera->configure({.exposure_s = 1e-6}).exposure_s, 1 / 8000.0);
   EXPECT_EQ(rig.camera->configure({.f_number = 8.1}).f_number, 8);
 }
 

@@ -92,6 +92,20 @@ TEST_F(LightFaults, TheRoomLightIsOnInAllPicturesOfTheFrontLamp) {
   expect_one_line(solve(folder), "not good enough: lamp output in one picture");
 }
 
+// The documented lamp burns on constant current; this one's driver switches it, and an exposure lasts a dozen periods only.
+TEST_F(LightFaults, ALampThatIsSwitchedOnAndOffIsRefusedForItsFlicker) {
+  const std::string folder = copy("switched");
+  json rig = station::read_json_file(path("rig.json"));
+  rig["simulation"]["target_samples_per_pixel"] = 1;
+  rig["simulation"]["lamp"]["changes"]["pwm_hz"] = 103;
+  rig["simulation"]["lamp"]["changes"]["pwm_duty"] = 0.5;
+  station::write_json_file(path("switched_rig.json"), rig);
+  const ProgramResult result = run_threadstation(
+      {"calibrate", "--rig", path("switched_rig.json"), "--out", folder, "--only", "response", "--quiet"});
+  expect_one_line(result, "lamp's flicker from picture to picture");
+  EXPECT_NE(result.error.find("20 of the lamp's switching periods"), std::string::npos) << result.error;
+}
+
 TEST_F(LightFaults, TheLampIsMovedBetweenPictures) {
   const std::string folder = copy("lamp_moved");
   take_again(folder, {"front_light-07", "front_light-08", "front_light-09", "front_light-10"},

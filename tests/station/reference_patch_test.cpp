@@ -3,6 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+
+#include "calibration/spectralon.h"
+#include "station/bench/bench_picture.h"
+#include "station/capture_checks.h"
+#include "station/documents/rig_file.h"
+#include "station/documents/spool.h"
+#include "station/views.h"
 
 namespace station {
 namespace {
@@ -27,9 +35,9 @@ renderer::Camera camera_above() {
 
 const inversion::NearLight kLamp{.position = {330, 110, 380}, .intensity = {2e6, 3e6, 2e6}, .radius_mm = 4};
 
-double expected_sum() {
+double expected_sum(const inversion::NearLight& lamp = kLamp) {
   const Eigen::Isometry3d chip = holder_from_patch(kPatch, kSpool, rig::Mounting::horizontal);
-  const Eigen::Vector3d to_light = kLamp.position - chip.translation();
+  const Eigen::Vector3d to_light = lamp.position - chip.translation();
   return 0.4 / M_PI * 7e6 * to_light.normalized().z() / to_light.squaredNorm();
 }
 
@@ -47,9 +55,66 @@ TEST(ReferencePatch, ALambertianChipUnderTheCalibratedLampReadsOne) {
   const double grey = expected_sum() / 3;
   const cv::Mat3f picture(400, 600, cv::Vec3f::all(static_cast<float>(0.97 * grey)));
   const auto reading = read_patch(picture, cv::Mat1b(400, 600, uchar{0}), camera_above(), kPatch, kSpool,
-                                  rig::Mounting::horizontal, kLamp);
+                                  rig::Mounting::horizontal, kLamp, {0, 0});
   ASSERT_TRUE(reading);
   EXPECT_NEAR(reading->strength, 0.97, 1e-5);  // single precision
+}
+
+// In front and behind the chip is lit at about 50 degrees and seen at 63: towards the lamp, away from it.
+TEST(ReferencePatch, AChipThatDroopsAsThePanelReadsOne) {
+  constexpr double kDroop = 0.14;
+  for (const double side : {1.0, -1.0}) {
+    inversion::NearLight lamp = kLamp;
+    lamp.position.x() *= side;
+    const Eigen::Isometry3d chip = holder_from_patch(kPatch, kSpool, rig::Mounting::horizontal);
+    const Eigen::Vector3d to_light = (lamp.position - chip.translation()).normalized(),
+                          to_camera =
+                              (camera_above().world_from_camera.translation() - chip.translation()).normalized();
+    const double cos_phi =
+        to_light.head<2>().normalized().dot(to_camera.head<2>().normalized());  // the normal is upright
+    const double factor = 1 + kDroop * calibration::droop_shape(to_light.z(), to_camera.z(), cos_phi);
+    EXPECT_GT(side * (1 - factor), 0.05);  // what is left out when the chip is taken for Lambertian
+    const double grey = factor * expected_sum(lamp) / 3;
+    const cv::Mat3f picture(400, 600, cv::Vec3f::all(static_cast<float>(grey)));
+    const auto reading = read_patch(picture, cv::Mat1b(400, 600, uchar{0}), camera_above(), kPatch, kSpool,
+                                    rig::Mounting::horizontal, lamp, {kDroop, 0});
+    ASSERT_TRUE(reading);
+    EXPECT_NEAR(reading->strength, 1, 1e-5);  // single precision
+  }
+}
+
+// The bench draws the chip as it draws the panel.
+TEST(ReferencePatch, OnTheBenchAChipOfADroopingPanelsKindReadsTheCalibratedLamp) {
+  RigFile rig = read_rig(std::string(FIXTURES_DIR) + "/rigs/simulated.json");
+  const Spool spool = read_spool(std::string(FIXTURES_DIR) + "/spools/silk_red.json");
+  SimulatedRig& simulation = *rig.simulation;
+  simulation.spectralon_droop = 0.14;
+  simulation.samples_per_pixel = 1;
+  simulation.target_samples_per_pixel = 8;
+  const rig::DrawPicture draw = make_bench_picture(rig, spool);
+  const Eigen::Isometry3d world_from_holder = nominal_holder_pose(rig, spool.wrapping, rig::Mounting::horizontal);
+  for (const rig::TrueLamp& lamp : {simulation.truth.front, simulation.truth.back}) {
+    rig::BenchState state{.lens = simulation.truth.lens, .world_from_object = world_from_holder, .lamp = lamp};
+    state.arrangement.object = rig::BenchObject::holder;
+    const cv::Mat3f picture = draw(state);
+    const Eigen::Isometry3d holder_from_world = world_from_holder.inverse();
+    const inversion::NearLight light{
+        .position = holder_from_world * lamp.position,
+        .intensity = lamp.intensity,
+        .radius_mm = lamp.radius_mm,
+        .beam_axis = holder_from_world.linear() * (lamp.aim - lamp.position).normalized(),
+        .beam_exponent = lamp.beam_exponent};
+    const auto read = [&](double droop) {
+      return read_patch(picture, cv::Mat1b(picture.size(), uchar{0}),
+                        camera_of(lens_of(state.lens), holder_from_world * state.lens.world_from_camera, false),
+                        *rig.reference_patch, spool.wrapping, rig::Mounting::horizontal, light, {droop, 0});
+    };
+    ASSERT_TRUE(read(0));
+    std::printf("lamp %s: the chip reads %.4f, taken for Lambertian %.4f\n",
+                lamp.position.x() > 0 ? "in front" : "behind", read(0.14)->strength, read(0)->strength);
+    EXPECT_NEAR(read(0.14)->strength, 1, 0.03);  // threads and frame send a little more light
+    EXPECT_GT(std::abs(read(0)->strength - 1), 0.05);
+  }
 }
 
 TEST(ReferencePatch, ASaturatedAnUnseenOrAnUnlitChipGivesNoReading) {
@@ -57,7 +122,7 @@ TEST(ReferencePatch, ASaturatedAnUnseenOrAnUnlitChipGivesNoReading) {
   const cv::Mat1b clear(400, 600, uchar{0}), saturated(400, 600, uchar{255});
   const auto read = [&](const cv::Mat1b& flags, const renderer::Camera& camera, rig::Mounting mounting,
                         const inversion::NearLight& light) {
-    return read_patch(picture, flags, camera, kPatch, kSpool, mounting, light).has_value();
+    return read_patch(picture, flags, camera, kPatch, kSpool, mounting, light, {0, 0}).has_value();
   };
   EXPECT_TRUE(read(clear, camera_above(), rig::Mounting::horizontal, kLamp));
   EXPECT_FALSE(read(saturated, camera_above(), rig::Mounting::horizontal, kLamp));

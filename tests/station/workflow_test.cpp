@@ -25,6 +25,7 @@
 #include "station/documents/thread_file.h"
 #include "station/documents/views_file.h"
 #include "station/views.h"
+#include "tests/station/calibration_errors.h"
 
 namespace station_test {
 namespace {
@@ -35,39 +36,22 @@ using nlohmann::json;
 TEST_F(Workflow, CalibrationFindsTheBenchAsItIs) {
   const station::RigCalibration found = station::read_calibration(path("calibration"));
   const rig::BenchTruth truth = station::read_rig(path("rig.json")).simulation->truth;
-  const calibration::Lens& lens = found.lens.lens;
-  // 0.5 %: focal length and distance trade off in a lens of 14 degrees; what counts at the spool is checked below.
-  EXPECT_NEAR(lens.fx_px, truth.lens.fx_px, 0.005 * truth.lens.fx_px);
+  const CalibrationErrors errors = calibration_errors(found, *station::read_rig(path("rig.json")).simulation);
+  // 0.5 %: focal length and distance trade off in a lens of 14 degrees; what counts is where points at the spool are seen.
+  EXPECT_NEAR(found.lens.lens.fx_px, truth.lens.fx_px, 0.005 * truth.lens.fx_px);
   EXPECT_LT(found.lens.rms_px, 0.3);
   EXPECT_NEAR(found.platform.scale, truth.turntable.scale, 5e-4);
-  // A point at the spool must fall where the true camera sees it: 1 px = 0.25 mm.
-  for (const Eigen::Vector3d& point :
-       {Eigen::Vector3d(0, 0, 64), Eigen::Vector3d(10, 30, 80), Eigen::Vector3d(-10, -30, 50)}) {
-    const Eigen::Vector2d seen =
-        renderer::project(station::camera_of(lens, found.platform.world_from_camera, false), point);
-    const Eigen::Vector2d true_seen = renderer::project(
-        station::camera_of(station::lens_of(truth.lens), truth.lens.world_from_camera, false), point);
-    EXPECT_LT((seen - true_seen).norm(), 1.5) << point.transpose();
-  }
+  EXPECT_LT(errors.points_px, 1);  // 0.25 mm
   // The chart's colours are drawn by the rig file's matrix; 0.03 in a matrix of about 1 is one unit of colour difference.
   const auto drawn = station::read_rig(path("rig.json")).linear_srgb_from_camera;
   ASSERT_TRUE(found.colour.has_value());
   EXPECT_LT(found.colour->mean_delta_e, 2.0);
   for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(found.linear_srgb_from_camera[i], drawn[i], 0.03) << i;
-  // Lamps: found within 0.5 mm here; asked are 2.5 and 5 mm, and the irradiance about the spool to 0.5 and 1 %.
-  EXPECT_LT((found.light.positions[0] - truth.front.position).norm(), 2.5);
-  EXPECT_LT((found.light.positions[1] - truth.back.position).norm(), 5);
-  for (std::size_t light = 0; light < 2; ++light) {
-    const rig::TrueLamp& lamp = light == 0 ? truth.front : truth.back;
-    for (const double y : {-40.0, 0.0, 40.0})
-      for (const double z : {24.0, 64.0, 104.0}) {
-        const Eigen::Vector3d point(0, y, z), to_point = point - lamp.position;
-        const double cosine = to_point.normalized().dot((lamp.aim - lamp.position).normalized());
-        const Eigen::Vector3d exact = lamp.intensity * std::pow(cosine, lamp.beam_exponent) / to_point.squaredNorm();
-        const Eigen::Vector3d ratio = calibration::facing_irradiance(found.light, light, point).cwiseQuotient(exact);
-        EXPECT_LT((ratio.array() - 1).abs().maxCoeff(), light == 0 ? 0.005 : 0.01) << light << ' ' << y << ' ' << z;
-      }
-  }
+  // Few samples a pixel; WholeBenches has more.
+  EXPECT_LT(errors.lamp_mm[0], 2.5);
+  EXPECT_LT(errors.lamp_mm[1], 5);
+  EXPECT_LT(errors.worst_irradiance[0], 0.005);
+  EXPECT_LT(errors.worst_irradiance[1], 0.01);
 }
 
 // The documented rig's sensor: bad pixels, dust, a bent response and shutter errors, all mild.

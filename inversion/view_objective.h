@@ -2,21 +2,23 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <functional>
 #include <vector>
 
 #include "inversion/blocks.h"
 #include "inversion/light_paths.h"
-#include "inversion/thread_unknowns.h"
+#include "inversion/scattering_family.h"
 
 namespace inversion {
 
-class ThreadObjective {
+class ViewObjective {
  public:
-  ThreadObjective(const WrappedSpool& spool, const std::vector<View>& views);
+  // Refers to the views and the family: they must outlive it.
+  ViewObjective(const WrappedSpool& spool, const std::vector<View>& views, const ScatteringFamily& family);
 
   // Records the light paths that residuals() shades from now on. Calls step(done, total) after each view.
-  void trace(const renderer::ThreadParameters& traced_with, int paths_per_block, std::uint64_t seed,
+  void trace(const Eigen::VectorXd& traced_with, int paths_per_block, std::uint64_t seed,
              const std::function<void(int, int)>& step);
 
   int residual_count() const { return static_cast<int>(3 * block_count_); }
@@ -25,12 +27,25 @@ class ThreadObjective {
 
   // residuals: sqrt(2 w_i n_b) (I - I_ref) / diffuser, so that half their squared norm is the loss; block after block,
   // RGB. jacobian: residuals x unknowns, row-major, or null. One call shades every path: the fit's whole cost.
-  void residuals(const ThreadUnknowns& unknowns, double* residuals, double* jacobian) const;
+  void residuals(const Eigen::VectorXd& unknowns, double* residuals, double* jacobian) const;
+
+  // The residuals from either half of the paths, whose errors are independent of each other.
+  struct Halves {
+    std::array<Eigen::VectorXd, 2> residuals;
+    std::array<Eigen::MatrixXd, 2> jacobians;
+  };
+  Halves halves(const Eigen::VectorXd& unknowns) const;
+
+  // Variance of each residual: the photographs' noise (View::variance) and that of the light paths.
+  Eigen::VectorXd residual_variances(const Eigen::VectorXd& unknowns) const;
+  // Number of the view that each residual belongs to.
+  std::vector<int> residual_views() const;
 
  private:
   struct ViewBlocks {
     const View* view;
     std::vector<Block> blocks;
+    std::vector<Eigen::Array3d> variances;   // of the references, 0 where the view says nothing
     std::vector<Eigen::Array3d> references;  // means of the photograph's blocks over the diffuser's radiance
     Eigen::Array3d scale;                    // block estimates times this are radiances over the diffuser's
     double weight;                           // w_i
@@ -38,6 +53,9 @@ class ThreadObjective {
     std::size_t first_block;
   };
 
+  static double residual_weight(const ViewBlocks& view, std::size_t block);
+
+  const ScatteringFamily& family_;
   renderer::RayScene rays_;
   int block_px_;
   std::size_t block_count_ = 0;

@@ -1,4 +1,4 @@
-#include "inversion/fit_thread.h"
+#include "inversion/fit_views.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ auto refuses_with(const std::string& part) {
   return ThrowsMessage<std::runtime_error>(AllOf(HasSubstr(part), Not(HasSubstr("\n"))));
 }
 
-class FitThreadTest : public testing::Test {
+class FitViewsTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     views_ = new std::vector<View>;
@@ -29,20 +29,20 @@ class FitThreadTest : public testing::Test {
   }
   static void TearDownTestSuite() { delete views_; }
 
-  static ThreadFit quick_fit(const std::vector<View>& views, FitOptions options = {}) {
+  static ViewFit quick_fit(const std::vector<View>& views, FitOptions options = {}) {
     options.paths_per_block = {32, 64};
-    return fit_thread(kSpool, views, options);
+    return fit_views(kSpool, views, options);
   }
 
   static ThreadUnknowns quick_unknowns(FitOptions options = {}) {
-    return unknowns_of(quick_fit(*views_, std::move(options)).parameters);
+    return unknowns_of(quick_fit(*views_, std::move(options)).thread());
   }
 
   inline static const WrappedSpool kSpool{};
   inline static std::vector<View>* views_ = nullptr;
 };
 
-TEST_F(FitThreadTest, TheSameSeedGivesTheSameThreadOnAnyNumberOfThreads) {
+TEST_F(FitViewsTest, TheSameSeedGivesTheSameThreadOnAnyNumberOfThreads) {
   const ThreadUnknowns first = quick_unknowns();
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   EXPECT_EQ(quick_unknowns(), first);
@@ -51,8 +51,8 @@ TEST_F(FitThreadTest, TheSameSeedGivesTheSameThreadOnAnyNumberOfThreads) {
   EXPECT_NE(quick_unknowns(other), first);
 }
 
-TEST_F(FitThreadTest, TheLossFallsInEveryRoundAndTheRoundsAreThoseAskedFor) {
-  const ThreadFit fit = quick_fit(*views_);
+TEST_F(FitViewsTest, TheLossFallsInEveryRoundAndTheRoundsAreThoseAskedFor) {
+  const ViewFit fit = quick_fit(*views_);
   ASSERT_EQ(fit.rounds.size(), 2U);
   EXPECT_EQ(fit.rounds[0].paths_per_block, 32);
   EXPECT_EQ(fit.rounds[1].paths_per_block, 64);
@@ -61,10 +61,10 @@ TEST_F(FitThreadTest, TheLossFallsInEveryRoundAndTheRoundsAreThoseAskedFor) {
   EXPECT_GT(fit.rounds[0].steps, 1);
 }
 
-TEST_F(FitThreadTest, EnergyBeyondOneIsTakenBackEvenWhereNoViewSeesIt) {
+TEST_F(FitViewsTest, EnergyBeyondOneIsTakenBackEvenWhereNoViewSeesIt) {
   FitOptions options;
   options.start.r2a = 2000, options.start.r2b = 0.1;  // lambda_2 is 10 at c = 0 and below 0.1 from c = 0.005 on
-  const renderer::ThreadParameters fitted = quick_fit(*views_, options).parameters;
+  const renderer::ThreadParameters fitted = quick_fit(*views_, options).thread();
   EXPECT_TRUE(fitted.limit_energy);
   for (int k = 0; k <= 1000; ++k) {
     const auto lambda = energies_at(fitted, k / 1000.0);
@@ -73,7 +73,7 @@ TEST_F(FitThreadTest, EnergyBeyondOneIsTakenBackEvenWhereNoViewSeesIt) {
   }
 }
 
-TEST_F(FitThreadTest, HeldGroupsStayAtTheirStart) {
+TEST_F(FitViewsTest, HeldGroupsStayAtTheirStart) {
   const ThreadUnknowns start = unknowns_of(starting_thread());
   for (ParameterGroup group : kParameterGroups) {
     FitOptions options;
@@ -88,14 +88,14 @@ TEST_F(FitThreadTest, HeldGroupsStayAtTheirStart) {
   }
 }
 
-TEST_F(FitThreadTest, AFitWithEverythingHeldKeepsTheStart) {
+TEST_F(FitViewsTest, AFitWithEverythingHeldKeepsTheStart) {
   FitOptions options;
   options.held = {kParameterGroups.begin(), kParameterGroups.end()};
   options.start = known_thread();
   EXPECT_TRUE(quick_unknowns(options).isApprox(unknowns_of(known_thread()), 1e-12));
 }
 
-TEST_F(FitThreadTest, ProgressNeverGoesBackAndNamesTheRound) {
+TEST_F(FitViewsTest, ProgressNeverGoesBackAndNamesTheRound) {
   FitOptions options;
   double last = 0;
   std::string words;
@@ -110,7 +110,7 @@ TEST_F(FitThreadTest, ProgressNeverGoesBackAndNamesTheRound) {
   EXPECT_THAT(words, AllOf(HasSubstr("start 1, round 1 of 2, tracing"), HasSubstr("round 2 of 2, step 1")));
 }
 
-TEST_F(FitThreadTest, AFitIsStoppedOnRequestWhileTracingAndBetweenSteps) {
+TEST_F(FitViewsTest, AFitIsStoppedOnRequestWhileTracingAndBetweenSteps) {
   for (const std::string moment :
        {"start 1, round 1 of 2, tracing", "start 1, round 1 of 2, step 1", "start 1, round 2 of 2, step 0"}) {
     FitOptions options;
@@ -120,25 +120,25 @@ TEST_F(FitThreadTest, AFitIsStoppedOnRequestWhileTracingAndBetweenSteps) {
   }
 }
 
-TEST_F(FitThreadTest, NoRoundsAndARoundWithoutPathsAreRefused) {
+TEST_F(FitViewsTest, NoRoundsAndARoundWithoutPathsAreRefused) {
   for (const std::vector<int>& paths : {std::vector<int>{}, {32, 0}}) {
     FitOptions options;
     options.paths_per_block = paths;
-    EXPECT_THROW(fit_thread(kSpool, *views_, options), std::invalid_argument);
+    EXPECT_THROW(fit_views(kSpool, *views_, options), std::invalid_argument);
   }
 }
 
-TEST_F(FitThreadTest, NoViewsAreRefused) {
+TEST_F(FitViewsTest, NoViewsAreRefused) {
   EXPECT_THAT([&] { quick_fit({}); }, refuses_with("there is no view to fit a thread to"));
 }
 
-TEST_F(FitThreadTest, AnEmptyMaskIsRefusedByTheViewsName) {
+TEST_F(FitViewsTest, AnEmptyMaskIsRefusedByTheViewsName) {
   std::vector<View> views = *views_;
   views[1].mask = cv::Mat1b(views[1].image.size(), std::uint8_t{0});
   EXPECT_THAT([&] { quick_fit(views); }, refuses_with("view through-0: the mask is empty"));
 }
 
-TEST_F(FitThreadTest, APictureThatIsMissingOrOfAnotherSizeIsRefused) {
+TEST_F(FitViewsTest, APictureThatIsMissingOrOfAnotherSizeIsRefused) {
   for (const cv::Mat3f& picture : {cv::Mat3f(), cv::Mat3f(3, 4, cv::Vec3f(1, 1, 1))}) {
     std::vector<View> views = *views_;
     views[0].image = picture;
@@ -147,7 +147,7 @@ TEST_F(FitThreadTest, APictureThatIsMissingOrOfAnotherSizeIsRefused) {
   }
 }
 
-TEST_F(FitThreadTest, ALampWithoutIntensityInAnyColourIsRefused) {
+TEST_F(FitViewsTest, ALampWithoutIntensityInAnyColourIsRefused) {
   std::vector<View> views = *views_;
   views[0].light.intensity[2] = 0;
   EXPECT_THAT([&] { quick_fit(views); }, refuses_with("view lying-0: the lamp has no intensity"));

@@ -1,0 +1,420 @@
+#include "inversion/fit_views.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <stdexcept>
+
+#include "inversion/adam.h"
+#include "inversion/bias_free.h"
+#include "inversion/view_objective.h"
+#include "renderer/scattering/thread_prior.h"
+
+namespace inversion {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr int kMostSteps = 40;
+// With fewer the product of two halves' errors is larger than what it is to find.
+constexpr int kFewestPathsWithoutBias = 512;
+constexpr const char* kStopped = "the fit was stopped on request; start it again for a thread";
+
+class DataTerm : public ceres::CostFunction {
+ public:
+  DataTerm(const ViewObjective& objective, int unknowns) : objective_(objective), unknowns_(unknowns) {
+    set_num_residuals(objective.residual_count());
+    mutable_parameter_block_sizes()->push_back(unknowns);
+  }
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    objective_.residuals(Eigen::Map<const VectorXd>(parameters[0], unknowns_), residuals,
+                         jacobians ? jacobians[0] : nullptr);
+    return true;
+  }
+
+ private:
+  const ViewObjective& objective_;
+  int unknowns_;
+};
+
+// The simulated threads' mean and covariance as terms of the loss: ||scale (u - mean)||^2 / 2.
+class PriorTerm : public ceres::CostFunction {
+ public:
+  // weight: of the prior's chi square in the loss.
+  explicit PriorTerm(double weight) {
+    const renderer::ThreadPrior& prior = renderer::simulated_thread_prior();
+    jacobian_.setZero();
+    const renderer::PriorMatrix root = prior.covariance.llt().matrixL();
+    jacobian_.rightCols<renderer::kPriorUnknownCount>() =
+        std::sqrt(weight) * root.triangularView<Eigen::Lower>().solve(renderer::PriorMatrix::Identity());
+    mean_.setZero();
+    mean_.tail<renderer::kPriorUnknownCount>() = prior.mean;
+    set_num_residuals(renderer::kPriorUnknownCount);
+    mutable_parameter_block_sizes()->push_back(renderer::kThreadParameterCount);
+  }
+  using Rows = Eigen::Matrix<double, renderer::kPriorUnknownCount, renderer::kThreadParameterCount, Eigen::RowMajor>;
+  const Rows& jacobian() const { return jacobian_; }
+  double loss(const VectorXd& u) const { return 0.5 * (jacobian_ * (u - mean_)).squaredNorm(); }
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    Eigen::Map<Eigen::Matrix<double, renderer::kPriorUnknownCount, 1>> values(residuals);
+    values = jacobian_ * (Eigen::Map<const ThreadUnknowns>(parameters[0]) - mean_);
+    if (jacobians && jacobians[0]) std::copy_n(jacobian_.data(), jacobian_.size(), jacobians[0]);
+    return true;
+  }
+
+ private:
+  Rows jacobian_;
+  ThreadUnknowns mean_;
+};
+// The prior's unknowns are a thread's last ones, in its order.
+static_assert(kBeta + 3 == kL0 && kBeta + renderer::kPriorUnknownCount == renderer::kThreadParameterCount);
+
+struct FollowLoss : ceres::IterationCallback {
+  std::function<bool(int)> go_on;
+  std::vector<double>* losses = nullptr;
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& step) override {
+    losses->push_back(step.cost);
+    return go_on(step.iteration) ? ceres::SOLVER_CONTINUE : ceres::SOLVER_ABORT;
+  }
+};
+
+// What is searched, and how.
+struct Search {
+  const ScatteringFamily* family;
+  const FitOptions* options;
+  std::vector<int> held;  // unknowns
+};
+
+void set_bounds(ceres::Problem& problem, const Search& search, VectorXd& unknowns) {
+  const VectorXd low = search.family->lower_bounds(), high = search.family->upper_bounds();
+  const auto count = static_cast<int>(unknowns.size());
+  for (int k = 0; k < count; ++k) {
+    problem.SetParameterLowerBound(unknowns.data(), k, low[k]);
+    problem.SetParameterUpperBound(unknowns.data(), k, high[k]);
+  }
+  if (static_cast<int>(search.held.size()) == count)
+    problem.SetParameterBlockConstant(unknowns.data());
+  else if (!search.held.empty())
+    problem.SetManifold(unknowns.data(), new ceres::SubsetManifold(count, search.held));
+}
+
+FitRound solve(const ViewObjective& objective, const Search& search, double prior_scale,
+               const std::function<bool(int)>& go_on, VectorXd& unknowns) {
+  ceres::Problem problem;
+  problem.AddResidualBlock(new DataTerm(objective, static_cast<int>(unknowns.size())), nullptr, unknowns.data());
+  search.family->add_penalties(problem, unknowns.data());
+  const PriorTerm prior(prior_scale);
+  if (prior_scale > 0) problem.AddResidualBlock(new PriorTerm(prior_scale), nullptr, unknowns.data());
+  set_bounds(problem, search, unknowns);
+
+  FitRound round;
+  FollowLoss callback;
+  callback.go_on = go_on;
+  callback.losses = &round.losses;
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = kMostSteps;
+  options.function_tolerance = 1e-6;
+  options.initial_trust_region_radius = 1;  // the start is far: full Gauss-Newton steps end at the bounds
+  options.logging_type = ceres::SILENT;
+  options.callbacks = {&callback};
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  if (summary.termination_type == ceres::USER_FAILURE) throw std::runtime_error(kStopped);
+  if (!summary.IsSolutionUsable())
+    throw std::runtime_error("the fit found no thread: " + summary.message + "; look at the views and their masks");
+  round.steps = static_cast<int>(summary.iterations.size()) - 1;
+  round.loss_before = summary.initial_cost, round.loss_after = summary.final_cost;
+  if (prior_scale > 0) round.prior_share = prior.loss(unknowns) / std::max(round.loss_after, 1e-300);
+  round.converged = summary.termination_type == ceres::CONVERGENCE;
+  return round;
+}
+
+// One search from one start, round after round.
+struct Attempt {
+  int start = 0;
+  VectorXd unknowns;
+  std::vector<FitRound> rounds{};
+  double loss() const { return rounds.empty() ? 0 : rounds.back().loss_after; }
+};
+
+// The prior's chi square counts as much as that of residuals of the size that the round before left.
+double prior_scale(const ViewObjective& objective, const Search& search, const std::vector<FitRound>& before) {
+  if (search.options->model != ModelKind::thread) return 0;
+  const auto last =
+      std::find_if(before.rbegin(), before.rend(), [](const FitRound& round) { return !round.bias_free; });
+  if (last == before.rend()) return 0;
+  return search.options->prior_weight * 2 * last->loss_after / objective.residual_count();
+}
+
+class RoundRunner {
+ public:
+  RoundRunner(ViewObjective& objective, const Search& search, std::size_t starts)
+      : objective_(objective), search_(search) {
+    const std::vector<int>& paths = search.options->paths_per_block;
+    for (std::size_t round = 0; round < paths.size(); ++round)
+      whole_ += paths[round] * (round + 1 < paths.size() ? static_cast<double>(starts) : 1.0);
+  }
+
+  void run(Attempt& attempt, std::size_t round) {
+    constexpr double kTracingShare = 0.4;
+    const FitOptions& options = *search_.options;
+    const int paths = options.paths_per_block[round];
+    const std::string name = "start " + std::to_string(attempt.start + 1) + ", round " + std::to_string(round + 1) +
+                             " of " + std::to_string(options.paths_per_block.size());
+    const auto go_on = [&](const std::string& what, double share) {
+      return !options.progress || options.progress(name + ", " + what, (done_ + share * paths) / whole_);
+    };
+    // The same seed for every start, whose losses are compared: pixels and random numbers alike, though the paths part
+    // where they are traced with other parameters.
+    objective_.trace(attempt.unknowns, paths, options.seed + 1000003 * round, [&](int views_done, int total) {
+      if (!go_on("tracing", kTracingShare * views_done / total)) throw std::runtime_error(kStopped);
+    });
+    attempt.rounds.push_back(solve(
+        objective_, search_, prior_scale(objective_, search_, attempt.rounds),
+        [&](int step) {
+          return go_on("step " + std::to_string(step), kTracingShare + (1 - kTracingShare) * step / kMostSteps);
+        },
+        attempt.unknowns));
+    attempt.rounds.back().paths_per_block = paths;
+    done_ += paths;
+  }
+
+ private:
+  ViewObjective& objective_;
+  const Search& search_;
+  double whole_ = 0, done_ = 0;
+};
+
+Attempt search_by_rounds(ViewObjective& objective, const Search& search, const std::vector<VectorXd>& starts) {
+  std::vector<Attempt> attempts;
+  for (const VectorXd& start : starts)
+    attempts.push_back({.start = static_cast<int>(attempts.size()), .unknowns = start});
+  RoundRunner runner(objective, search, attempts.size());
+  const std::size_t last = search.options->paths_per_block.size() - 1;
+  for (Attempt& attempt : attempts)
+    for (std::size_t round = 0; round < last; ++round) runner.run(attempt, round);
+  Attempt& best = *std::min_element(attempts.begin(), attempts.end(),
+                                    [](const Attempt& a, const Attempt& b) { return a.loss() < b.loss(); });
+  runner.run(best, last);
+  return best;
+}
+
+// Penalties and prior.
+class OtherTerms {
+ public:
+  OtherTerms(const Search& search, double prior_scale, Eigen::Index unknowns) : at_(unknowns) {
+    problem_.AddParameterBlock(at_.data(), static_cast<int>(unknowns));
+    search.family->add_penalties(problem_, at_.data());
+    if (prior_scale > 0) problem_.AddResidualBlock(new PriorTerm(prior_scale), nullptr, at_.data());
+  }
+  // As they are at the unknowns, with the Gauss-Newton approximation of the Hessian.
+  BiasFreeTerms at(const VectorXd& unknowns) {
+    at_ = unknowns;
+    BiasFreeTerms terms;
+    terms.gradient = VectorXd::Zero(unknowns.size());
+    terms.hessian = Eigen::MatrixXd::Zero(unknowns.size(), unknowns.size());
+    if (problem_.NumResiduals() == 0) return terms;
+    std::vector<double> gradient;
+    problem_.Evaluate({}, &terms.loss, nullptr, &gradient, nullptr);
+    terms.gradient = Eigen::Map<const VectorXd>(gradient.data(), unknowns.size());
+    const Eigen::MatrixXd rows = jacobian();
+    terms.hessian = rows.transpose() * rows;
+    return terms;
+  }
+
+ private:
+  Eigen::MatrixXd jacobian() {
+    ceres::CRSMatrix sparse;
+    problem_.Evaluate({}, nullptr, nullptr, nullptr, &sparse);
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(sparse.num_rows, at_.size());
+    for (int row = 0; row < sparse.num_rows; ++row)
+      for (auto i = static_cast<std::size_t>(sparse.rows[static_cast<std::size_t>(row)]);
+           i < static_cast<std::size_t>(sparse.rows[static_cast<std::size_t>(row) + 1]); ++i)
+        dense(row, sparse.cols[i]) = sparse.values[i];
+    return dense;
+  }
+
+  VectorXd at_;
+  ceres::Problem problem_;
+};
+
+BiasFreeTerms data_terms(const ViewObjective& objective, const VectorXd& unknowns) {
+  const ViewObjective::Halves both = objective.halves(unknowns);
+  const auto& [a, b] = both.residuals;
+  const auto& [by_a, by_b] = both.jacobians;
+  const Eigen::MatrixXd product = by_a.transpose() * by_b;
+  return {.loss = 0.5 * a.dot(b),
+          .gradient = 0.5 * (by_a.transpose() * b + by_b.transpose() * a),
+          .hessian = 0.5 * (product + product.transpose())};
+}
+
+// From where the search has ended. The last step's paths remain recorded.
+void remove_bias(ViewObjective& objective, const Search& search, Attempt& attempt) {
+  const FitOptions& options = *search.options;
+  const int paths = options.paths_per_block.back();
+  OtherTerms others(search, prior_scale(objective, search, attempt.rounds), attempt.unknowns.size());
+  const auto loss = [&](int step, const VectorXd& unknowns) {
+    const std::string name = "without bias, step " + std::to_string(step + 1);
+    const auto number = options.paths_per_block.size() + static_cast<std::size_t>(step);
+    objective.trace(unknowns, paths, options.seed + 1000003 * number, [&](int, int) {
+      if (options.progress && !options.progress(name, 1)) throw std::runtime_error(kStopped);
+    });
+    BiasFreeTerms terms = others.at(unknowns);
+    const BiasFreeTerms data = data_terms(objective, unknowns);
+    return BiasFreeTerms{terms.loss + data.loss, terms.gradient + data.gradient, terms.hessian + data.hessian};
+  };
+  FitRound round{.paths_per_block = paths, .bias_free = true, .converged = true};
+  round.losses = minimise_bias_free(
+      loss, {.lower = search.family->lower_bounds(), .upper = search.family->upper_bounds(), .held = search.held},
+      attempt.unknowns);
+  round.steps = static_cast<int>(round.losses.size());
+  round.loss_before = round.losses.front(), round.loss_after = round.losses.back();
+  attempt.rounds.push_back(std::move(round));
+}
+
+Attempt search_by_adam(ViewObjective& objective, const Search& search, const VectorXd& start) {
+  const FitOptions& options = *search.options;
+  Attempt attempt{.unknowns = start};
+  VectorXd low = search.family->lower_bounds(), high = search.family->upper_bounds();
+  for (int k : search.held) low[k] = high[k] = start[k];
+  ceres::Problem problem;
+  problem.AddResidualBlock(new DataTerm(objective, static_cast<int>(start.size())), nullptr, attempt.unknowns.data());
+  search.family->add_penalties(problem, attempt.unknowns.data());
+  const auto evaluate = [&](int step, const VectorXd& unknowns, VectorXd& gradient) {
+    const double share = (step - 1.0) / options.adam_steps;
+    if (options.progress && !options.progress("step " + std::to_string(step), share))
+      throw std::runtime_error(kStopped);
+    objective.trace(unknowns, options.adam_paths, options.seed + 1000003 * static_cast<std::uint64_t>(step),
+                    [](int, int) {});
+    double loss = 0;
+    std::vector<double> slopes;
+    problem.Evaluate({}, &loss, nullptr, &slopes, nullptr);
+    gradient = Eigen::Map<const VectorXd>(slopes.data(), unknowns.size());
+    return loss;
+  };
+  FitRound round{.paths_per_block = options.adam_paths, .steps = options.adam_steps};
+  round.losses = minimise_by_adam(evaluate, {.steps = options.adam_steps}, low, high, attempt.unknowns);
+  round.loss_before = round.losses.front();
+  VectorXd gradient(start.size());
+  round.loss_after = evaluate(options.adam_steps + 1, attempt.unknowns, gradient);
+  round.losses.push_back(round.loss_after);
+  attempt.rounds.push_back(std::move(round));
+  return attempt;
+}
+
+std::vector<bool> fixed_unknowns(const Search& search, const VectorXd& unknowns) {
+  constexpr double kTouching = 1e-9;
+  const VectorXd low = search.family->lower_bounds(), high = search.family->upper_bounds();
+  std::vector<bool> fixed;
+  for (Eigen::Index k = 0; k < unknowns.size(); ++k)
+    fixed.push_back(unknowns[k] <= low[k] + kTouching || unknowns[k] >= high[k] - kTouching);
+  for (int k : search.held) fixed[static_cast<std::size_t>(k)] = true;
+  return fixed;
+}
+
+// At the unknowns, with the paths that were recorded last.
+Certainty certainty_at(const ViewObjective& objective, const Search& search, double prior_scale, VectorXd unknowns) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  LinearisedFit fit;
+  RowMajor jacobian(objective.residual_count(), unknowns.size());
+  fit.residuals.resize(objective.residual_count());
+  objective.residuals(unknowns, fit.residuals.data(), jacobian.data());
+  fit.jacobian = jacobian;
+  fit.hessian = data_terms(objective, unknowns).hessian;
+  fit.variances = objective.residual_variances(unknowns);
+  fit.views = objective.residual_views();
+  fit.fixed = fixed_unknowns(search, unknowns);
+  fit.scales = VectorXd::Ones(unknowns.size());
+  ceres::Problem penalties;
+  penalties.AddParameterBlock(unknowns.data(), static_cast<int>(unknowns.size()));
+  search.family->add_penalties(penalties, unknowns.data());
+  fit.penalty_jacobian.resize(penalties.NumResiduals(), unknowns.size());
+  if (penalties.NumResiduals() > 0) {
+    ceres::CRSMatrix sparse;
+    penalties.Evaluate({}, nullptr, nullptr, nullptr, &sparse);
+    fit.penalty_jacobian.setZero();
+    for (int row = 0; row < sparse.num_rows; ++row)
+      for (int i = sparse.rows[static_cast<std::size_t>(row)]; i < sparse.rows[static_cast<std::size_t>(row) + 1];
+           ++i)
+        fit.penalty_jacobian(row, sparse.cols[static_cast<std::size_t>(i)]) =
+            sparse.values[static_cast<std::size_t>(i)];
+  }
+  if (prior_scale > 0) fit.prior_jacobian = PriorTerm(prior_scale).jacobian();
+  return certainty_of(fit);
+}
+
+ViewFit fit_family(const WrappedSpool& spool, const std::vector<View>& views, const FitOptions& options,
+                   const ScatteringFamily& family, const std::vector<VectorXd>& starts) {
+  ViewObjective objective(spool, views, family);
+  Search search{.family = &family, .options = &options, .held = {}};
+  if (options.model == ModelKind::thread)
+    for (int k = 0; k < family.unknown_count(); ++k)
+      if (std::find(options.held.begin(), options.held.end(), group_of(k)) != options.held.end())
+        search.held.push_back(k);
+  Attempt best = options.solver == Solver::adam ? search_by_adam(objective, search, starts.front())
+                                                : search_by_rounds(objective, search, starts);
+  if (options.solver == Solver::levenberg_marquardt && options.without_bias &&
+      options.paths_per_block.back() >= kFewestPathsWithoutBias)
+    remove_bias(objective, search, best);
+  ViewFit fit{
+      .model = family.model(best.unknowns),
+      .unknowns = best.unknowns,
+      .unknown_names = family.unknown_names(),
+      .certainty = certainty_at(objective, search, prior_scale(objective, search, best.rounds), best.unknowns),
+      .rounds = best.rounds,
+      .start = best.start,
+      .block_px = objective.block_px(),
+      .blocks = objective.block_count()};
+  if (auto* thread = std::get_if<renderer::ThreadParameters>(&fit.model)) thread->limit_energy = true;
+  return fit;
+}
+
+ViewFit fit_best_yarn(const WrappedSpool& spool, const std::vector<View>& views, const FitOptions& options) {
+  std::optional<ViewFit> best;
+  for (std::size_t i = 0; i < kYarnFiberCounts.size(); ++i) {
+    FitOptions one = options;
+    const std::string name = std::to_string(kYarnFiberCounts[i]) + " fibers, ";
+    if (options.progress)
+      one.progress = [&](const std::string& what, double share) {
+        return options.progress(name + what, (static_cast<double>(i) + share) / kYarnFiberCounts.size());
+      };
+    const auto family = yarn_family(kYarnFiberCounts[i]);
+    ViewFit fit = fit_family(spool, views, one, *family, family->starts());
+    if (!best || fit.loss() < best->loss()) best = std::move(fit);
+  }
+  return *std::move(best);
+}
+
+}  // namespace
+
+double ViewFit::loss() const {
+  const auto last =
+      std::find_if(rounds.rbegin(), rounds.rend(), [](const FitRound& round) { return !round.bias_free; });
+  return last == rounds.rend() ? rounds.back().loss_after : last->loss_after;
+}
+
+ViewFit fit_views(const WrappedSpool& spool, const std::vector<View>& views, const FitOptions& options) {
+  const std::vector<int>& paths = options.paths_per_block;
+  if (paths.empty() || *std::min_element(paths.begin(), paths.end()) < 1)
+    throw std::invalid_argument("a fit was asked for without rounds or with a round without light paths");
+  if (options.adam_steps < 1 || options.adam_paths < 1)
+    throw std::invalid_argument("a fit by Adam was asked for without steps or without light paths");
+  switch (options.model) {
+    case ModelKind::yarn:
+      return fit_best_yarn(spool, views, options);
+    case ModelKind::fiber: {
+      const auto family = fiber_family();
+      return fit_family(spool, views, options, *family, family->starts());
+    }
+    case ModelKind::thread:
+      break;
+  }
+  std::vector<VectorXd> starts{unknowns_of(options.start)};
+  if (options.held.empty())
+    for (const renderer::ThreadParameters& start : options.other_starts) starts.emplace_back(unknowns_of(start));
+  return fit_family(spool, views, options, *thread_family(), starts);
+}
+
+}  // namespace inversion

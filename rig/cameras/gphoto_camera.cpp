@@ -1,0 +1,408 @@
+#include "rig/cameras/gphoto_camera.h"
+
+#include <gphoto2/gphoto2.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <deque>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include "rig/clock.h"
+
+namespace rig {
+namespace {
+
+constexpr int kDrainMs = 50;
+constexpr int kMostDrained = 50;         // events in a row; a camera that never ends is broken
+constexpr std::size_t kRemembered = 64;  // pictures whose hash is kept
+constexpr int kMostTries = 2;            // of a picture that was a stale one
+
+using Context = std::unique_ptr<GPContext, void (*)(GPContext*)>;
+using Handle = std::unique_ptr<::Camera, int (*)(::Camera*)>;
+using Widget = std::unique_ptr<CameraWidget, int (*)(CameraWidget*)>;
+using File = std::unique_ptr<CameraFile, int (*)(CameraFile*)>;
+
+std::string what_to_do(int status) {
+  switch (status) {
+    case GP_ERROR_IO_USB_CLAIM:
+    case GP_ERROR_IO_LOCK:
+      return "another program holds the camera; close file manager windows that show it (or run: gio mount -u "
+             "gphoto2://*) and try again";
+    case GP_ERROR_MODEL_NOT_FOUND:
+    case GP_ERROR_UNKNOWN_PORT:
+    case GP_ERROR_IO_USB_FIND:
+    case GP_ERROR_BAD_PARAMETERS:
+      return "plug it in, switch it on, set MENU > Setup > USB Connection to PC Remote, and check the camera's "
+             "\"port\" "
+             "in the rig file";
+    case GP_ERROR_CAMERA_BUSY:
+      return "it is busy; wait until its red light is off and try again";
+    case GP_ERROR_NO_SPACE:
+      return "its card is full; empty the card";
+    case GP_ERROR_IO:
+    case GP_ERROR_IO_READ:
+    case GP_ERROR_IO_WRITE:
+    case GP_ERROR_TIMEOUT:
+      return "the connection is lost; check its cable and battery, switch it off and on, then resume";
+    default:
+      return "switch the camera off and on, then resume";
+  }
+}
+
+[[noreturn]] void refuse(const std::string& asked, int status) {
+  throw std::runtime_error("the camera was to " + asked + " and libgphoto2 answered \"" +
+                           gp_result_as_string(status) + "\"; " + what_to_do(status));
+}
+
+void check(const std::string& asked, int status) {
+  if (status < GP_OK) {
+    refuse(asked, status);
+  }
+}
+
+std::optional<double> number(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc{} && end == text.data() + text.size();
+  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+// "1/125", "5/10", "30"; nothing for Bulb.
+std::optional<double> seconds_from(std::string_view text) {
+  const std::size_t slash = text.find('/');
+  if (slash == std::string_view::npos) {
+    return number(text);
+  }
+  const auto above = number(text.substr(0, slash)), below = number(text.substr(slash + 1));
+  return above && below && *below > 0 ? std::optional(*above / *below) : std::nullopt;
+}
+
+// "f/5.6"
+std::optional<double> f_number_from(std::string_view text) {
+  return number(text.starts_with("f/") ? text.substr(2) : text);
+}
+
+bool same_number(double a, double b) {
+  return std::abs(a - b) <= 1e-6 * std::abs(b);
+}
+
+class GphotoCamera final : public Camera {
+ public:
+  explicit GphotoCamera(const GphotoSetup& setup)
+      : setup_(setup), context_(gp_context_new(), gp_context_unref), handle_(nullptr, gp_camera_unref) {
+    connect();
+    require_manual_mode();
+    require_battery();
+    require_space();
+    set_text("imagequality", "RAW");
+    require_text("imagequality", "RAW", "MENU > Image Quality > RAW");
+    drain();
+  }
+  ~GphotoCamera() override { gp_camera_exit(handle_.get(), context_.get()); }
+  GphotoCamera(const GphotoCamera&) = delete;
+  GphotoCamera& operator=(const GphotoCamera&) = delete;
+
+  CameraIdentity identity() override {
+    return {.make = text_of("manufacturer"),
+            .model = text_of("cameramodel"),
+            .serial = text_of("serialnumber"),
+            .width_px = setup_.width_px,
+            .height_px = setup_.height_px};
+  }
+
+  std::vector<double> shutter_times_s() override {
+    std::vector<double> times_s;
+    for (const std::string& choice : choices_of("shutterspeed")) {
+      const auto time_s = seconds_from(choice);
+      if (time_s && *time_s >= setup_.shortest_shutter_s * (1 - 1e-6)) {
+        times_s.push_back(*time_s);
+      }
+    }
+    std::ranges::sort(times_s);
+    const auto repeated = std::ranges::unique(times_s, same_number);
+    times_s.erase(repeated.begin(), repeated.end());
+    return times_s;
+  }
+
+  ExposureSettings configure(const ExposureSettings& wanted) override {
+    const double exposure_s = nearest_shutter_s(shutter_times_s(), wanted.exposure_s);
+    if (!std::isfinite(wanted.f_number) || wanted.f_number <= 0) {
+      throw std::runtime_error("f/" + std::to_string(wanted.f_number) + " was asked; it must be a positive number");
+    }
+    choose("iso", wanted.iso, number);
+    choose("f-number", wanted.f_number, f_number_from);
+    choose("shutterspeed", exposure_s, seconds_from);
+    configured_ = settings();
+    return *configured_;
+  }
+
+  Picture capture() override {
+    if (!configured_) {
+      configured_ = settings();
+    }
+    for (int tries = 0; tries < kMostTries; ++tries) {
+      drain();
+      Picture picture = take();
+      require_kept_settings(picture.settings);
+      if (remember(picture.bytes)) {
+        return picture;
+      }
+    }
+    throw std::runtime_error("the camera delivered a picture that it had delivered before, " +
+                             std::to_string(kMostTries) +
+                             " times; switch it off and on so that it forgets old ones, then resume");
+  }
+
+ private:
+  void connect() {
+    ::Camera* handle = nullptr;
+    check("be prepared", gp_camera_new(&handle));
+    handle_.reset(handle);
+    choose_model();
+    choose_port();
+    const int status = gp_camera_init(handle_.get(), context_.get());
+    check("be connected at " + setup_.port, status);
+    // Some answer properly only after this question.
+    CameraText summary{};
+    check("tell about itself", gp_camera_get_summary(handle_.get(), &summary, context_.get()));
+  }
+
+  // On the network nobody says which camera it is; over USB the library sees it.
+  void choose_model() {
+    if (!setup_.port.starts_with("ptpip:")) {
+      return;
+    }
+    CameraAbilitiesList* list = nullptr;
+    check("be prepared", gp_abilities_list_new(&list));
+    const std::unique_ptr<CameraAbilitiesList, int (*)(CameraAbilitiesList*)> owner(list, gp_abilities_list_free);
+    check("be prepared", gp_abilities_list_load(list, context_.get()));
+    const int model = gp_abilities_list_lookup_model(list, "PTP/IP Camera");
+    check("be prepared", model);
+    CameraAbilities abilities{};
+    check("be prepared", gp_abilities_list_get_abilities(list, model, &abilities));
+    check("be prepared", gp_camera_set_abilities(handle_.get(), abilities));
+  }
+
+  void choose_port() {
+    if (setup_.port == "usb:") {
+      return;  // the only one there is
+    }
+    GPPortInfoList* list = nullptr;
+    check("be prepared", gp_port_info_list_new(&list));
+    const std::unique_ptr<GPPortInfoList, int (*)(GPPortInfoList*)> owner(list, gp_port_info_list_free);
+    check("be prepared", gp_port_info_list_load(list));
+    const int index = gp_port_info_list_lookup_path(list, setup_.port.c_str());
+    check("be found at " + setup_.port, index);
+    GPPortInfo info{};
+    check("be found at " + setup_.port, gp_port_info_list_get_info(list, index, &info));
+    check("be found at " + setup_.port, gp_camera_set_port_info(handle_.get(), info));
+  }
+
+  Widget widget(const std::string& name) const {
+    CameraWidget* found = nullptr;
+    const int status = gp_camera_get_single_config(handle_.get(), name.c_str(), &found, context_.get());
+    check("tell its " + name, status);
+    return {found, gp_widget_free};
+  }
+
+  std::string text_of(const std::string& name) const {
+    const Widget found = widget(name);
+    const char* text = nullptr;
+    check("tell its " + name, gp_widget_get_value(found.get(), &text));
+    return text == nullptr ? "" : text;
+  }
+
+  std::vector<std::string> choices_of(const std::string& name) const {
+    const Widget found = widget(name);
+    std::vector<std::string> choices;
+    for (int i = 0; i < gp_widget_count_choices(found.get()); ++i) {
+      const char* choice = nullptr;
+      check("tell its " + name, gp_widget_get_choice(found.get(), i, &choice));
+      choices.emplace_back(choice);
+    }
+    return choices;
+  }
+
+  void set_text(const std::string& name, const std::string& value) const {
+    const Widget found = widget(name);
+    check("set its " + name + " to " + value, gp_widget_set_value(found.get(), value.c_str()));
+    const int status = gp_camera_set_single_config(handle_.get(), name.c_str(), found.get(), context_.get());
+    check("set its " + name + " to " + value, status);
+  }
+
+  // The choice whose number is nearest to the wanted one in proportion; read back, because a setting that was accepted
+  // is not always done.
+  template <typename Parse>
+  void choose(const std::string& name, double wanted, const Parse& parse) const {
+    std::string best;
+    double least = 1e9;
+    for (const std::string& choice : choices_of(name)) {
+      const auto value = parse(choice);
+      if (value && *value > 0 && std::abs(std::log2(*value / wanted)) < least) {
+        least = std::abs(std::log2(*value / wanted));
+        best = choice;
+      }
+    }
+    if (best.empty() || (name == "iso" && least > 1e-6)) {
+      throw std::runtime_error("the camera was to set its " + name + " to " + std::to_string(wanted) +
+                               " and does not offer it; set its dial to M and switch ISO AUTO off");
+    }
+    const double chosen = *parse(best);
+    if (const auto now = parse(text_of(name)); now && same_number(*now, chosen)) {
+      return;
+    }
+    set_text(name, best);
+    const std::string found = text_of(name);
+    if (const auto now = parse(found); !now || !same_number(*now, chosen)) {
+      throw std::runtime_error("the camera was to set its " + name + " to " + best + " and stays at " + found +
+                               "; set its dial to M (and the lens's ring to A), then try again");
+    }
+  }
+
+  ExposureSettings settings() const {
+    const auto exposure_s = seconds_from(text_of("shutterspeed"));
+    const auto iso = number(text_of("iso"));
+    const auto aperture = f_number_from(text_of("f-number"));
+    if (!exposure_s || !iso || !aperture) {
+      throw std::runtime_error("the camera was asked for its exposure and answered shutter " +
+                               text_of("shutterspeed") + ", ISO " + text_of("iso") + ", aperture " +
+                               text_of("f-number") + "; set its dial to M, switch ISO AUTO off, and check the lens");
+    }
+    return {.exposure_s = *exposure_s, .iso = static_cast<int>(std::lround(*iso)), .f_number = *aperture};
+  }
+
+  void require_text(const std::string& name, const std::string& wanted, const std::string& where) const {
+    if (const std::string found = text_of(name); found != wanted) {
+      throw std::runtime_error("the camera's " + name + " is \"" + found + "\" and has to be \"" + wanted +
+                               "\"; set " + where);
+    }
+  }
+
+  void require_manual_mode() const {
+    require_text("expprogram", "M", "the mode dial on its top to M");
+    require_text("focusmode", "Manual", "MENU > Focus Mode > MF (or the switch on the lens)");
+  }
+
+  void require_battery() const {
+    std::string level = text_of("batterylevel");
+    level = level.substr(0, level.find('%'));
+    const auto percent = number(level);
+    if (percent && *percent < setup_.least_battery_percent) {
+      throw std::runtime_error("the camera's battery is at " + level +
+                               " %; charge it, or use the mains adapter, then resume");
+    }
+  }
+
+  void require_space() const {
+    CameraStorageInformation* stores = nullptr;
+    int count = 0;
+    const int status = gp_camera_get_storageinfo(handle_.get(), &stores, &count, context_.get());
+    if (status == GP_ERROR_NOT_SUPPORTED) {
+      return;
+    }
+    check("tell about its card", status);
+    const std::unique_ptr<CameraStorageInformation, void (*)(void*)> owner(stores, std::free);
+    for (int i = 0; i < count; ++i) {
+      if ((stores[i].fields & GP_STORAGEINFO_FREESPACEKBYTES) != 0 && stores[i].freekbytes == 0) {
+        throw std::runtime_error("the camera's card is full; empty the card, then resume");
+      }
+    }
+  }
+
+  // Takes out of the camera what nobody asked for: what waits there would come in the place of the next picture.
+  void drain() {
+    for (int events = 0; events < kMostDrained; ++events) {
+      CameraEventType type = GP_EVENT_UNKNOWN;
+      void* data = nullptr;
+      const int status = gp_camera_wait_for_event(handle_.get(), kDrainMs, &type, &data, context_.get());
+      const std::unique_ptr<void, void (*)(void*)> owner(data, std::free);
+      check("say whether old pictures wait in it", status);
+      if (type == GP_EVENT_FILE_ADDED) {
+        const auto* path = static_cast<const CameraFilePath*>(data);
+        remember(download(*path));
+      } else if (type == GP_EVENT_TIMEOUT) {
+        return;
+      }
+    }
+  }
+
+  Picture take() {
+    SystemClock clock;
+    Picture picture;
+    picture.utc = clock.utc();
+    CameraFilePath path{};
+    const int status = gp_camera_capture(handle_.get(), GP_CAPTURE_IMAGE, &path, context_.get());
+    if (status < GP_OK) {
+      require_battery();  // either says more than the library does
+      require_space();
+      refuse("take a picture", status);
+    }
+    picture.bytes = download(path);
+    const std::string_view name = path.name;
+    picture.extension = name.substr(name.rfind('.') == std::string_view::npos ? name.size() : name.rfind('.') + 1);
+    picture.settings = settings();  // fresh: taking the picture asked the camera for everything
+    if (picture.bytes.empty() || picture.extension != "arw") {
+      throw std::runtime_error("the camera was to deliver a raw picture and delivered \"" + std::string(name) +
+                               "\" of " + std::to_string(picture.bytes.size()) +
+                               " bytes; set MENU > Image Quality > RAW, then resume");
+    }
+    return picture;
+  }
+
+  std::vector<std::byte> download(const CameraFilePath& path) const {
+    CameraFile* made = nullptr;
+    check("deliver a picture", gp_file_new(&made));
+    const File file(made, gp_file_unref);
+    const int status =
+        gp_camera_file_get(handle_.get(), path.folder, path.name, GP_FILE_TYPE_NORMAL, file.get(), context_.get());
+    check("deliver " + std::string(path.name), status);
+    const char* data = nullptr;
+    unsigned long size = 0;
+    check("deliver " + std::string(path.name), gp_file_get_data_and_size(file.get(), &data, &size));
+    const auto* bytes = reinterpret_cast<const std::byte*>(data);
+    std::vector<std::byte> copy(bytes, bytes + size);
+    gp_camera_file_delete(handle_.get(), path.folder, path.name, context_.get());  // only kept in memory there
+    return copy;
+  }
+
+  void require_kept_settings(const ExposureSettings& found) const {
+    if (!same_number(found.exposure_s, configured_->exposure_s) || found.iso != configured_->iso ||
+        !same_number(found.f_number, configured_->f_number)) {
+      throw std::runtime_error("the camera's exposure was changed since it was set (shutter " +
+                               std::to_string(found.exposure_s) + " s, ISO " + std::to_string(found.iso) + ", f/" +
+                               std::to_string(found.f_number) + "); leave its dials alone, then resume");
+    }
+  }
+
+  // False when the same bytes came before. Equal hashes of different pictures would cost a picture, no more.
+  bool remember(const std::vector<std::byte>& bytes) {
+    const std::size_t hash =
+        std::hash<std::string_view>{}({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    if (std::ranges::find(delivered_, hash) != delivered_.end()) {
+      return false;
+    }
+    delivered_.push_back(hash);
+    if (delivered_.size() > kRemembered) {
+      delivered_.pop_front();
+    }
+    return true;
+  }
+
+  GphotoSetup setup_;
+  Context context_;
+  Handle handle_;
+  std::optional<ExposureSettings> configured_;
+  std::deque<std::size_t> delivered_;
+};
+
+}  // namespace
+
+std::unique_ptr<Camera> make_gphoto_camera(const GphotoSetup& setup) {
+  return std::make_unique<GphotoCamera>(setup);
+}
+
+}  // namespace rig

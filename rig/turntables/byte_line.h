@@ -1,0 +1,23 @@
+// A line that carries bytes to and from a motor controller: a serial port, a pseudo-terminal, or no wire at all.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace rig {
+
+// The other end is gone: plug pulled, power off, port closed. Never used for a device that is only silent.
+struct Unplugged : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Errors: Unplugged, and std::runtime_error when the line does not take what is written.
+class ByteLine {
+ public:
+  virtual ~ByteLine() = default;
+  virtual std::string read(double timeout_s) = 0;  // what has come, as soon as anything has; empty: nothing came
+  virtual void write(std::string_view bytes) = 0;  // all or nothing, at once; from any thread, while another reads
+};
+
+}  // namespace rig

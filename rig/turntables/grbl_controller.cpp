@@ -1,0 +1,362 @@
+// GRBL 1.1 as a motion controller. Moves are "G53 G0": absolute in machine coordinates whatever the modal state is, so
+// the position survives the reset that ends a stop (a work offset would not). The "ok" of a move only says that it was
+// planned; a late or repeated one can therefore not be mistaken for anything: what counts is the position reported.
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "rig/turntables/controllers.h"
+#include "rig/turntables/grbl_reply.h"
+#include "rig/turntables/line_frames.h"
+
+namespace rig {
+namespace {
+
+constexpr int kMostTries = 4;        // of a question: asked once and repeated three times
+constexpr double kQuietS = 0.1;      // nothing more is coming
+constexpr double kHoldTimeoutS = 3;  // from the hold to standing still
+constexpr double kLookS = 0.02;      // for an answer that may come much later
+constexpr double kPollS = 0.05;
+constexpr double kSameRatio = 1e-4;  // steps per degree as two people write them
+constexpr char kReset = '\x18';
+
+using Take = std::function<bool(const GrblReply&)>;
+
+template <typename Kind>
+bool is(const GrblReply& reply) {
+  return std::holds_alternative<Kind>(reply);
+}
+
+bool is_garbled_command(int code) {
+  return code == 1 || code == 2 || code == 3 || code == 20;
+}
+
+class GrblController final : public MotionController {
+ public:
+  GrblController(std::shared_ptr<ByteLine> line, Clock& clock, const ControllerSetup& setup)
+      : line_(std::move(line)), clock_(clock), setup_(setup) {
+    reset();
+    identify();
+    check_settings();
+    on_guard_ = true;
+  }
+
+  ControllerIdentity identity() override { return identity_; }
+
+  void start_home() override {
+    on_guard_ = false;  // an alarm that is to be cleared is no news
+    const bool locked = ask_status().state == GrblState::alarm;
+    if (setup_.home_by == HomeBy::here) {
+      if (locked) {
+        ask("$X");
+      }
+      on_guard_ = true;
+      return;
+    }
+    on_guard_ = true;
+    home_seen_ = false;
+    homing_ = true;
+    line_->write("$H\n");
+  }
+
+  void start_move(std::int64_t steps) override {
+    std::array<char, 64> command{};
+    std::snprintf(command.data(), command.size(), "G21 G53 G0 X%.4f\n",
+                  static_cast<double>(steps) / identity_.steps_per_deg);
+    line_->write(command.data());
+  }
+
+  MotionStatus status() override {
+    if (homing_) {
+      return homing_status();
+    }
+    const GrblStatus status = ask_status();
+    return {motion_of(status.state), std::llround(position_deg(status) * identity_.steps_per_deg)};
+  }
+
+  // A hold keeps the position; while it looks for its switch only a reset is heard.
+  void stop() override { line_->write(homing_ ? std::string_view("\x18") : std::string_view("!\x85")); }
+
+  void clear_stop() override {
+    if (homing_.exchange(false)) {
+      throw PositionLost("the turntable was stopped while it looked for its home; home it again");
+    }
+    const double until_s = clock_.monotonic_s() + kHoldTimeoutS;
+    for (Motion motion = Motion::moving; motion == Motion::moving;) {
+      motion = motion_of(ask_status().state);
+      if (motion == Motion::moving) {
+        if (clock_.monotonic_s() > until_s) {
+          line_->write(std::string_view(&kReset, 1));
+          throw PositionLost(
+              "the turntable did not stop when asked and was switched off the hard way; home it again");
+        }
+        line_->write("!");
+        clock_.sleep_s(kPollS);
+      }
+    }
+    reset();                        // drops what was left of the move
+    motion_of(ask_status().state);  // an alarm says that it was still moving
+  }
+
+ private:
+  bool listen(double timeout_s, const Take& take) {
+    return rig::listen(*line_, frames_, clock_, timeout_s, [&](const std::string& text) {
+      const GrblReply reply = parse_grbl_line(text);
+      remember(reply);
+      return take(reply);
+    });
+  }
+
+  void remember(const GrblReply& reply) {
+    if (const auto* status = std::get_if<GrblStatus>(&reply)) {
+      work_offset_deg_ = status->work_offset_deg ? status->work_offset_deg : work_offset_deg_;
+    } else if (const auto* noise = std::get_if<GrblNoise>(&reply)) {
+      noise_ = noise->text;
+    } else if (const auto* alarm = std::get_if<GrblAlarm>(&reply)) {
+      alarm_code_ = alarm->code;
+      if (on_guard_) {
+        throw_alarm();
+      }
+    } else if (is<GrblBanner>(reply)) {
+      alarm_code_.reset();
+      if (!on_guard_) {
+        return;
+      }
+      throw PositionLost(
+          "the turntable's controller started anew in the middle of its work (its power or USB cable?) and no longer "
+          "knows where the platform is; check its supply, then home it");
+    }
+  }
+
+  [[noreturn]] void throw_alarm() const {
+    throw PositionLost("the turntable reports " + grbl_alarm_words(*alarm_code_) + "; then home it");
+  }
+
+  // After some alarms nothing is answered any more until a reset.
+  [[noreturn]] void throw_no_reply(const std::string& message) const {
+    if (alarm_code_) {
+      throw_alarm();
+    }
+    throw NoReply(message);
+  }
+
+  // Ends motion, clears alarms; the position is kept when it stood still.
+  void reset() {
+    const bool guarded = std::exchange(on_guard_, false);
+    frames_.clear();
+    noise_.clear();
+    std::string banner;
+    for (int tries = 0; tries < kMostTries && banner.empty(); ++tries) {
+      identity_.repeated += tries > 0;
+      // A line beside it makes a device that is none of this kind say something, too.
+      line_->write(tries == 0 ? std::string(1, kReset) : std::string(1, kReset) + "\n$I\n");
+      listen(setup_.banner_timeout_s / kMostTries, [&](const GrblReply& reply) {
+        if (const auto* found = std::get_if<GrblBanner>(&reply)) {
+          banner = found->text;
+        }
+        return !banner.empty();
+      });
+    }
+    if (banner.empty()) {
+      throw NoReply(noise_.empty()
+                        ? "the turntable was reset and said nothing; switch its power on, and check \"port\" and "
+                          "\"baud\" in the rig file (\"threadstation devices\" lists the ports)"
+                        : "the device was reset and answered \"" + printable(noise_) +
+                              "\", which is not what GRBL says; choose the turntable's port in the rig file "
+                              "(\"threadstation devices\" lists the ports) and check its \"baud\"");
+    }
+    if (identity_.firmware.empty()) {
+      identity_.firmware = banner;
+    }
+    listen(kQuietS, [](const GrblReply&) { return false; });
+    on_guard_ = guarded;
+  }
+
+  // Sends a line and waits for its ok; returns everything that came before it.
+  std::vector<GrblReply> ask(const std::string& command) {
+    for (int tries = 0; tries < kMostTries; ++tries) {
+      identity_.repeated += tries > 0;
+      listen(0, [](const GrblReply&) { return false; });  // what came late belongs to what was asked before
+      std::vector<GrblReply> replies;
+      line_->write(command + "\n");
+      const bool answered = listen(setup_.reply_timeout_s, [&](const GrblReply& reply) {
+        replies.push_back(reply);
+        return is<GrblOk>(reply) || is<GrblError>(reply);
+      });
+      const auto* error = answered ? std::get_if<GrblError>(&replies.back()) : nullptr;
+      if (error != nullptr && !is_garbled_command(error->code)) {
+        throw std::runtime_error("the turntable was asked \"" + command + "\" and answered " +
+                                 grbl_error_words(error->code));
+      }
+      if (answered && error == nullptr) {
+        return replies;
+      }
+    }
+    throw_no_reply("the turntable was asked \"" + command + "\" " + std::to_string(kMostTries) +
+                   " times and did not answer; check its cable and its power, then home it");
+  }
+
+  void identify() {
+    for (int tries = 0; tries < kMostTries; ++tries) {
+      for (const GrblReply& reply : ask("$I")) {
+        if (const auto* message = std::get_if<GrblMessage>(&reply); message && message->text.starts_with("VER:")) {
+          return;
+        }
+      }
+    }
+    throw std::runtime_error(
+        "the device on the turntable's port started like GRBL and did not say its version; it "
+        "needs GRBL 1.1, grblHAL or FluidNC");
+  }
+
+  // A setting that got lost on the wire is asked for again; one that firmware does not have stays away.
+  void check_settings() {
+    std::map<int, double> found;
+    for (int tries = 0; tries < kMostTries && !found.contains(100); ++tries) {
+      for (const GrblReply& reply : ask("$$")) {
+        if (const auto* setting = std::get_if<GrblSetting>(&reply)) {
+          found.insert_or_assign(setting->number, setting->value);
+        }
+      }
+    }
+    if (!found.contains(100)) {
+      throw std::runtime_error(
+          "the turntable does not say its steps per degree ($100); it needs GRBL 1.1, grblHAL or "
+          "FluidNC");
+    }
+    identity_.steps_per_deg = found.at(100);
+    // Positions come with three decimals.
+    identity_.reading_tolerance_steps = static_cast<int>(std::floor(0.0005 * found.at(100) + 0.5));
+    if (!(std::abs(found.at(100) / setup_.steps_per_deg - 1) <= kSameRatio)) {
+      throw std::runtime_error("the turntable is set to " + std::to_string(found.at(100)) +
+                               " steps per degree ($100) and the rig file says " +
+                               std::to_string(setup_.steps_per_deg) +
+                               "; steps per turn x microsteps x gear / 360 is right for both");
+    }
+    require(found, 13, 0, "reports in inches ($13=1); set $13=0");
+    require(found, 20, 0, "has soft limits ($20=1), a platform turns endlessly; set $20=0");
+    require(found, 32, 0, "is in laser mode ($32=1); set $32=0");
+    if (setup_.home_by == HomeBy::home_switch) {
+      require(found, 22, 1, "has homing switched off ($22=0); set $22=1, or \"home\": \"here\" in the rig file");
+    }
+    // Other firmware has other meanings for $1; there its own manual says how the motor is kept powered.
+    if (identity_.firmware.starts_with("Grbl 1.1")) {
+      require(found, 1, 255, "lets its motor go between moves ($1), and the platform would drift; set $1=255");
+    }
+  }
+
+  static void require(const std::map<int, double>& found, int number, double wanted, const std::string& problem) {
+    const auto setting = found.find(number);
+    if (setting != found.end() && setting->second != wanted) {
+      throw std::runtime_error("the turntable " + problem);
+    }
+  }
+
+  GrblStatus ask_status() {
+    std::optional<GrblStatus> found;
+    for (int tries = 0; tries < kMostTries; ++tries) {
+      identity_.repeated += tries > 0;
+      listen(0, [](const GrblReply&) { return false; });  // an answer that comes late says where it was
+      line_->write("?");
+      std::optional<GrblError> refused;
+      listen(setup_.reply_timeout_s / kMostTries, [&](const GrblReply& reply) {
+        if (const auto* status = std::get_if<GrblStatus>(&reply)) {
+          found = *status;
+        } else if (const auto* error = std::get_if<GrblError>(&reply); error && !is_garbled_command(error->code)) {
+          refused = *error;
+        }
+        return found.has_value() || refused.has_value();
+      });
+      if (refused && on_guard_) {
+        throw std::runtime_error("the turntable was to turn and answered " + grbl_error_words(refused->code));
+      }
+      if (found && (found->machine_deg || work_offset_deg_)) {
+        return *found;
+      }
+    }
+    throw_no_reply(
+        "the turntable was asked where it is and did not answer; its cable may be loose or its power off: check "
+        "them, "
+        "then home it");
+  }
+
+  double position_deg(const GrblStatus& status) const {
+    return status.machine_deg ? *status.machine_deg : *status.work_deg + *work_offset_deg_;
+  }
+
+  Motion motion_of(GrblState state) const {
+    switch (state) {
+      case GrblState::idle:
+      case GrblState::check:
+        return Motion::idle;
+      case GrblState::hold:
+        return Motion::held;
+      case GrblState::alarm:
+        throw PositionLost("the turntable is locked by an alarm; see that the platform turns freely, then home it");
+      case GrblState::door:
+        throw std::runtime_error("the turntable's safety door input is open; close it, then home it");
+      case GrblState::sleep:
+        throw PositionLost("the turntable's controller sleeps and its motor is off; home it");
+      default:
+        return Motion::moving;
+    }
+  }
+
+  // While it looks for its switch the firmware answers late or not at all; the ok comes at the end. Should that one be
+  // lost, standing idle after having been seen at it says the same.
+  MotionStatus homing_status() {
+    bool done = false;
+    std::optional<GrblError> refused;
+    std::optional<GrblStatus> seen;
+    listen(kLookS, [&](const GrblReply& reply) {
+      done = done || is<GrblOk>(reply);
+      if (const auto* error = std::get_if<GrblError>(&reply)) {
+        refused = *error;
+      } else if (const auto* status = std::get_if<GrblStatus>(&reply)) {
+        seen = *status;
+        home_seen_ = home_seen_ || status->state == GrblState::home;
+        done = done || (home_seen_ && status->state == GrblState::idle);
+      }
+      return done || refused || seen;
+    });
+    if (refused) {
+      homing_ = false;
+      throw std::runtime_error("the turntable was asked to home and answered " + grbl_error_words(refused->code));
+    }
+    if (!done) {
+      line_->write("?");
+      return {Motion::moving, 0};
+    }
+    homing_ = false;
+    return status();
+  }
+
+  std::shared_ptr<ByteLine> line_;
+  Clock& clock_;
+  ControllerSetup setup_;
+  ControllerIdentity identity_;
+  LineFrames frames_;
+  std::optional<double> work_offset_deg_;
+  std::string noise_;              // the last of it
+  std::optional<int> alarm_code_;  // since the last reset
+  bool on_guard_ = false;          // an alarm or a banner now means that the position is lost
+  bool home_seen_ = false;
+  std::atomic<bool> homing_ = false;  // stop() reads it from other threads
+};
+
+}  // namespace
+
+std::unique_ptr<MotionController> connect_grbl(std::shared_ptr<ByteLine> line, Clock& clock,
+                                               const ControllerSetup& setup) {
+  return std::make_unique<GrblController>(std::move(line), clock, setup);
+}
+
+}  // namespace rig

@@ -1,0 +1,102 @@
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/file.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <mutex>
+
+#include "rig/turntables/serial_line.h"
+
+namespace rig {
+namespace {
+
+class PtyLine final : public ByteLine {
+ public:
+  explicit PtyLine(std::string path)
+      : path_(std::move(path)), descriptor_(::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
+    const bool opened = descriptor_ >= 0;
+    if (!opened || flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      const std::string why = opened ? "is used by another program; close that one"
+                                     : std::string("could not be opened (") + std::strerror(errno) +
+                                           "); start \"threadstation simulate-hardware\" and use the port it prints";
+      if (opened) {
+        ::close(descriptor_);
+      }
+      throw std::runtime_error("the simulated turntable's port " + path_ + " " + why);
+    }
+    termios settings{};
+    if (tcgetattr(descriptor_, &settings) == 0) {
+      cfmakeraw(&settings);
+      tcsetattr(descriptor_, TCSANOW, &settings);
+    }
+  }
+  ~PtyLine() override { ::close(descriptor_); }
+  PtyLine(const PtyLine&) = delete;
+  PtyLine& operator=(const PtyLine&) = delete;
+
+  std::string read(double timeout_s) override {
+    if (!wait(timeout_s)) {
+      return {};
+    }
+    std::array<char, 4096> bytes{};
+    const ssize_t got = ::read(descriptor_, bytes.data(), bytes.size());
+    if (got > 0) {
+      return {bytes.data(), static_cast<std::size_t>(got)};
+    }
+    if (got < 0 && (errno == EAGAIN || errno == EINTR)) {
+      return {};
+    }
+    throw Unplugged(unplugged());
+  }
+
+  // One at a time: a terminal turns away who does not wait while another thread writes (a stop does).
+  void write(std::string_view bytes) override {
+    const std::lock_guard one_at_a_time(writing_);
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno != EAGAIN) {
+      throw Unplugged(unplugged());
+    }
+    if (written != static_cast<ssize_t>(bytes.size())) {
+      throw std::runtime_error("the simulated turntable on " + path_ +
+                               " takes no more commands; start it again, then home it");
+    }
+  }
+
+ private:
+  // A signal does not end the wait: an empty read says that the whole time has passed.
+  bool wait(double timeout_s) const {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
+    for (;;) {
+      const double left_s = std::chrono::duration<double>(deadline - std::chrono::steady_clock::now()).count();
+      pollfd watched{.fd = descriptor_, .events = POLLIN, .revents = 0};
+      const int ready = ::poll(&watched, 1, std::max(0, static_cast<int>(std::ceil(left_s * 1e3))));
+      if (ready >= 0 || errno != EINTR) {
+        return ready > 0;
+      }
+    }
+  }
+
+  std::string unplugged() const {
+    return "the turntable on " + path_ +
+           " was unplugged or switched off; plug it in, put its mark to the front and home it again";
+  }
+
+  std::string path_;
+  int descriptor_;
+  std::mutex writing_;
+};
+
+}  // namespace
+
+std::unique_ptr<ByteLine> open_pty_line(const std::string& path) {
+  return std::make_unique<PtyLine>(path);
+}
+
+}  // namespace rig

@@ -1,0 +1,106 @@
+#include "rig/turntables/pty_server.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+namespace rig {
+namespace {
+
+constexpr int kLookEveryMs = 2;  // of real time: what the firmware says by itself waits so long
+
+class Server final : public PtyServer {
+ public:
+  explicit Server(std::shared_ptr<SimulatedPort> port)
+      : port_(std::move(port)), master_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK)) {
+    std::array<char, 128> name{};
+    if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0 ||
+        ptsname_r(master_, name.data(), name.size()) != 0) {
+      const std::string why = std::strerror(errno);
+      if (master_ >= 0) {
+        ::close(master_);
+      }
+      throw std::runtime_error("a pseudo-terminal was needed for the simulated turntable and there is none (" + why +
+                               "); check that /dev/pts is mounted");
+    }
+    path_ = name.data();
+    make_raw();
+    thread_ = std::thread([this] { serve(); });
+  }
+  ~Server() override {
+    ending_ = true;
+    thread_.join();
+  }
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  std::string path() const override { return path_; }
+
+ private:
+  // No echo even before whoever opens it has set it up. Opening and closing it once also makes "nobody has it open"
+  // visible from this side.
+  void make_raw() const {
+    const int slave = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    termios settings{};
+    if (slave >= 0 && tcgetattr(slave, &settings) == 0) {
+      cfmakeraw(&settings);
+      tcsetattr(slave, TCSANOW, &settings);
+    }
+    if (slave >= 0) {
+      ::close(slave);
+    }
+  }
+
+  void serve() {
+    bool open = false;
+    while (!ending_ && port_->plugged()) {
+      pollfd watched{.fd = master_, .events = POLLIN, .revents = 0};
+      ::poll(&watched, 1, kLookEveryMs);
+      if ((watched.revents & POLLHUP) != 0) {
+        open = false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(kLookEveryMs));
+        continue;
+      }
+      if (!std::exchange(open, true)) {
+        port_->power_on();
+      }
+      std::array<char, 4096> bytes{};
+      if (const ssize_t got = ::read(master_, bytes.data(), bytes.size()); got > 0) {
+        port_->receive({bytes.data(), static_cast<std::size_t>(got)});
+      }
+      say(port_->transmit());
+    }
+    ::close(master_);
+  }
+
+  // What nobody reads is lost, as on a wire.
+  void say(const std::string& bytes) const {
+    if (!bytes.empty()) {
+      [[maybe_unused]] const ssize_t written = ::write(master_, bytes.data(), bytes.size());
+    }
+  }
+
+  std::shared_ptr<SimulatedPort> port_;
+  int master_;
+  std::string path_;
+  std::atomic<bool> ending_ = false;
+  std::thread thread_;
+};
+
+}  // namespace
+
+std::unique_ptr<PtyServer> serve_on_pty(std::shared_ptr<SimulatedPort> port) {
+  return std::make_unique<Server>(std::move(port));
+}
+
+}  // namespace rig

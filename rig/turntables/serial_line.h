@@ -1,0 +1,24 @@
+// The two lines to a device file: a serial port through libserialport, and a plain pseudo-terminal for simulated
+// firmware, which that library refuses. Both are opened for this program alone.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "rig/turntables/byte_line.h"
+
+namespace rig {
+
+// Which port: a device file, or the serial number of its USB adapter, which stays when the file's name changes.
+struct SerialPortChoice {
+  std::string port;        // "/dev/ttyUSB0"; empty when the serial number chooses
+  std::string usb_serial;  // empty when the port's name chooses
+  int baud = 115200;
+};
+
+// 8 data bits, no parity, 1 stop bit, no flow control. Errors: std::runtime_error when there is no such port, it is in
+// use, or it may not be opened.
+std::unique_ptr<ByteLine> open_serial_line(const SerialPortChoice& choice);
+std::unique_ptr<ByteLine> open_pty_line(const std::string& path);
+
+}  // namespace rig

@@ -1,0 +1,600 @@
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <deque>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "rig/turntables/number_text.h"
+#include "rig/turntables/simulated_firmware.h"
+
+namespace rig {
+namespace {
+
+constexpr std::size_t kPlannerBlocks = 15;
+constexpr std::size_t kLongestLine = 80;
+constexpr int kOffsetEvery = 10, kOverridesEvery = 20;  // reports
+
+// Status codes of the firmware.
+constexpr int kExpectedLetter = 1, kBadNumber = 2, kUnknownStatement = 3, kNegativeValue = 4, kHomingDisabled = 5,
+              kNotIdle = 8, kLocked = 9, kSoftLimitsNeedHoming = 10, kLineTooLong = 14, kUnknownCode = 20,
+              kNoFeed = 22, kAxisMissing = 26;
+
+struct Word {
+  char letter;
+  double value;
+};
+
+struct Block {
+  double target_steps;
+  double speed_deg_s;
+  bool jog;
+};
+
+// A line of G-code that was understood.
+struct Motions {
+  bool moves = false, rapid = false, machine = false, jog = false;
+  std::optional<double> x, dwell_s;
+  bool sets_offset = false;
+};
+
+enum class State { idle, run, hold, jog, alarm, home };
+
+class SimulatedGrbl final : public SimulatedFirmware {
+ public:
+  SimulatedGrbl(SimulatedMotor motor, Clock& clock, bool with_switch)
+      : motor_(motor), clock_(clock), with_switch_(with_switch) {
+    const double deg_min = motor_.full_speed_deg_s() * 60;
+    settings_ = {{0, 10},
+                 {1, 255},
+                 {2, 0},
+                 {3, 0},
+                 {4, 0},
+                 {5, 0},
+                 {6, 0},
+                 {10, 1},
+                 {11, 0.01},
+                 {12, 0.002},
+                 {13, 0},
+                 {20, 0},
+                 {21, 0},
+                 {22, with_switch ? 1.0 : 0.0},
+                 {23, 0},
+                 {24, deg_min / 10},
+                 {25, deg_min},
+                 {26, 250},
+                 {27, 2},
+                 {30, 1000},
+                 {31, 0},
+                 {32, 0},
+                 {100, motor_.steps_per_deg()},
+                 {101, 250},
+                 {102, 250},
+                 {110, deg_min},
+                 {111, 500},
+                 {112, 500},
+                 {120, motor_.full_speed_deg_s() / 0.2},
+                 {121, 10},
+                 {122, 10},
+                 {130, 360},
+                 {131, 200},
+                 {132, 200}};
+    power_on();
+  }
+
+  void power_on() override {
+    motor_.halt();
+    motor_.count_from(0);
+    motor_.halt();
+    wait_for_reset_ = false;
+    start(settings_.at(22) != 0);
+  }
+
+  void receive(std::string_view bytes) override {
+    update();
+    for (const char byte : bytes) {
+      if (!real_time(byte)) {
+        collect(byte);
+      }
+    }
+    update();
+  }
+
+  std::string transmit() override {
+    update();
+    return std::exchange(said_, {});
+  }
+
+  void break_down(Breakdown breakdown) override {
+    update();
+    switch (breakdown) {
+      case Breakdown::reset:
+        power_on();
+        break;
+      case Breakdown::alarm:
+        hard_limit();
+        break;
+      case Breakdown::jam:
+        motor_.jam(true);
+        break;
+    }
+  }
+
+ private:
+  void say(const std::string& line) { said_ += line + "\r\n"; }
+
+  double machine_deg() const { return std::round(motor_.counted_steps()) / settings_.at(100); }
+
+  // The firmware's start after power-on or reset.
+  void start(bool locked) {
+    line_.clear();
+    waiting_.clear();
+    planner_.clear();
+    dwell_until_s_.reset();
+    homing_ = false;
+    incremental_ = false;
+    feed_deg_min_ = 0;
+    motion_is_rapid_ = true;
+    offset_deg_ = 0;
+    reports_to_offset_ = 0;
+    reports_to_overrides_ = 1;
+    state_ = locked ? State::alarm : State::idle;
+    say("");
+    say("Grbl 1.1h ['$' for help]");
+    if (locked) {
+      say("[MSG:'$H'|'$X' to unlock]");
+    }
+  }
+
+  void soft_reset() {
+    const bool was_homing = homing_, was_turning = motor_.speed_deg_s() != 0;
+    motor_.halt();
+    bool locked = state_ == State::alarm || wait_for_reset_;
+    if (was_homing || was_turning) {
+      say(was_homing ? "ALARM:6" : "ALARM:3");
+      locked = true;
+    }
+    wait_for_reset_ = false;
+    start(locked);
+  }
+
+  void hard_limit() {
+    motor_.halt();
+    planner_.clear();
+    state_ = State::alarm;
+    say("ALARM:1");
+    say("[MSG:Reset to continue]");
+    wait_for_reset_ = true;
+  }
+
+  // True when the byte was one of those that are taken out of the stream.
+  bool real_time(char byte) {
+    switch (byte) {
+      case '\x18':
+        soft_reset();
+        return true;
+      case '?':
+        if (!wait_for_reset_) {
+          report();
+        }
+        return true;
+      case '!':
+        hold();
+        return true;
+      case '~':
+        resume();
+        return true;
+      case '\x85':
+        if (state_ == State::jog) {
+          planner_.clear();
+          motor_.slow_down();
+        }
+        return true;
+      default:
+        return false;
+    }
+  }
+
+  void hold() {
+    if (state_ == State::run) {
+      motor_.slow_down();
+      state_ = State::hold;
+    } else if (state_ == State::idle) {
+      state_ = State::hold;
+    } else if (state_ == State::jog) {
+      planner_.clear();
+      motor_.slow_down();
+    }
+  }
+
+  void resume() {
+    if (state_ == State::hold && motor_.speed_deg_s() == 0) {
+      state_ = planner_.empty() ? State::idle : State::run;
+      begun_ = false;
+    }
+  }
+
+  std::string state_name() const {
+    switch (state_) {
+      case State::idle:
+        return "Idle";
+      case State::run:
+        return "Run";
+      case State::hold:
+        return motor_.speed_deg_s() != 0 ? "Hold:1" : "Hold:0";
+      case State::jog:
+        return "Jog";
+      case State::alarm:
+        return "Alarm";
+      case State::home:
+        return "Home";
+    }
+    return "Idle";
+  }
+
+  // While it looks for its switch the answer comes late.
+  void report() {
+    if (homing_) {
+      report_asked_ = true;
+      return;
+    }
+    const bool machine = (static_cast<int>(settings_.at(10)) & 1) != 0;
+    std::array<char, 200> text{};
+    std::snprintf(text.data(), text.size(), "<%s|%s:%.3f,0.000,0.000|FS:%.0f,0", state_name().c_str(),
+                  machine ? "MPos" : "WPos", machine_deg() - (machine ? 0 : offset_deg_),
+                  std::abs(motor_.speed_deg_s()) * 60);
+    std::string line = text.data();
+    if (reports_to_offset_-- <= 0) {
+      reports_to_offset_ = kOffsetEvery - 1;
+      std::snprintf(text.data(), text.size(), "|WCO:%.3f,0.000,0.000", offset_deg_);
+      line += text.data();
+    } else if (reports_to_overrides_-- <= 0) {
+      reports_to_overrides_ = kOverridesEvery - 1;
+      line += "|Ov:100,100,100";
+    }
+    say(line + ">");
+  }
+
+  void collect(char byte) {
+    if (wait_for_reset_) {
+      return;
+    }
+    if (byte != '\n' && byte != '\r') {
+      line_ += byte;
+      return;
+    }
+    waiting_.push_back(std::exchange(line_, {}));
+    update();
+  }
+
+  // Everything that time has brought: the motor's way, lines that waited for it, the end of homing.
+  void update() {
+    for (;;) {
+      motor_.update();
+      if (homing_ && !motor_.turning()) {
+        finish_homing();
+      }
+      run_planner();
+      if (dwell_until_s_ && planner_.empty() && clock_.monotonic_s() >= *dwell_until_s_) {
+        dwell_until_s_.reset();
+        say("ok");
+      }
+      if (waiting_.empty() || dwell_until_s_ || homing_ || planner_.size() >= kPlannerBlocks || wait_for_reset_) {
+        return;
+      }
+      const std::string line = waiting_.front();
+      waiting_.pop_front();
+      answer(line);
+    }
+  }
+
+  void run_planner() {
+    if (state_ == State::jog && planner_.empty() && !motor_.turning()) {
+      state_ = State::idle;
+    }
+    while (!planner_.empty() && (state_ == State::idle || state_ == State::run || state_ == State::jog)) {
+      state_ = planner_.front().jog ? State::jog : State::run;
+      if (!begun_) {
+        motor_.go_to(planner_.front().target_steps, planner_.front().speed_deg_s);
+        begun_ = true;
+      }
+      if (motor_.turning()) {
+        return;
+      }
+      planner_.pop_front();
+      begun_ = false;
+      if (planner_.empty()) {
+        state_ = State::idle;
+      }
+    }
+  }
+
+  void answer(const std::string& line) {
+    if (line.size() > kLongestLine) {
+      say("error:" + std::to_string(kLineTooLong));
+      return;
+    }
+    const std::optional<int> status = line.starts_with('$') ? system_line(line) : code_line(line, false);
+    if (status) {
+      say(*status == 0 ? "ok" : "error:" + std::to_string(*status));
+    }
+  }
+
+  // Status to say now; nothing when it comes later.
+  std::optional<int> system_line(const std::string& line) {
+    if (line == "$I") {
+      say("[VER:1.1h.20190830:]");
+      say("[OPT:V,15,128]");
+      return 0;
+    }
+    if (line == "$X") {
+      if (state_ == State::alarm) {
+        state_ = State::idle;
+        say("[MSG:Caution: Unlocked]");
+      }
+      return 0;
+    }
+    if (line.starts_with("$J=")) {
+      if (state_ == State::alarm) return kLocked;
+      return state_ == State::idle || state_ == State::jog ? code_line(line.substr(3), true) : kNotIdle;
+    }
+    if (state_ != State::idle && state_ != State::alarm) {
+      return kNotIdle;
+    }
+    if (line == "$$") {
+      print_settings();
+      return 0;
+    }
+    if (line == "$H") {
+      return begin_homing();
+    }
+    if (line == "$#") {
+      print_offsets();
+      return 0;
+    }
+    if (line == "$G") {
+      say("[GC:" + std::string(motion_is_rapid_ ? "G0" : "G1") + " G54 G17 G21 " + (incremental_ ? "G91" : "G90") +
+          " G94 M5 M9 T0 F" + std::to_string(std::lround(feed_deg_min_)) + " S0]");
+      return 0;
+    }
+    return set(line);
+  }
+
+  void print_settings() {
+    for (const auto& [number, value] : settings_) {
+      const bool decimals = number == 11 || number == 12 || number == 24 || number == 25 || number == 27 ||
+                            number == 30 || number == 31 || number >= 100;
+      std::array<char, 64> text{};
+      std::snprintf(text.data(), text.size(), decimals ? "$%d=%.3f" : "$%d=%.0f", number, value);
+      say(text.data());
+    }
+  }
+
+  void print_offsets() {
+    for (int system = 54; system < 60; ++system) {
+      say("[G" + std::to_string(system) + ":0.000,0.000,0.000]");
+    }
+    say("[G28:0.000,0.000,0.000]");
+    say("[G30:0.000,0.000,0.000]");
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "[G92:%.3f,0.000,0.000]", offset_deg_);
+    say(text.data());
+    say("[TLO:0.000]");
+    say("[PRB:0.000,0.000,0.000:0]");
+  }
+
+  std::optional<int> set(const std::string& line) {
+    const std::size_t equals = line.find('=');
+    if (equals == std::string::npos) {
+      return kUnknownStatement;
+    }
+    const auto number = number_from<int>(std::string_view(line).substr(1, equals - 1));
+    const auto value = number_from<double>(std::string_view(line).substr(equals + 1));
+    if (!number || !value) {
+      return kBadNumber;
+    }
+    if (*value < 0) {
+      return kNegativeValue;
+    }
+    if (!settings_.contains(*number)) {
+      return kUnknownStatement;
+    }
+    if (*number == 20 && *value != 0 && settings_.at(22) == 0) {
+      return kSoftLimitsNeedHoming;
+    }
+    settings_[*number] = *value;
+    return 0;
+  }
+
+  std::optional<int> begin_homing() {
+    if (settings_.at(22) == 0) {
+      return kHomingDisabled;
+    }
+    if (!with_switch_) {
+      state_ = State::alarm;
+      say("ALARM:9");
+      return std::nullopt;
+    }
+    state_ = State::home;
+    homing_ = true;
+    motor_.go_to(motor_.counted_at_true_zero(), motor_.full_speed_deg_s());
+    return std::nullopt;
+  }
+
+  void finish_homing() {
+    if (report_asked_) {
+      homing_ = false;
+      report();
+      report_asked_ = false;
+    }
+    homing_ = false;
+    state_ = State::idle;
+    motor_.count_from(-settings_.at(27) * settings_.at(100));
+    motor_.halt();
+    say("ok");
+  }
+
+  // Words of letter and number; a status code when it is none.
+  static std::optional<int> read_words(const std::string& line, std::vector<Word>& words) {
+    std::string text;
+    for (const char c : line) {
+      if (c != ' ') {
+        text += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+      }
+    }
+    for (std::size_t at = 0; at < text.size();) {
+      const char letter = text[at++];
+      if (letter < 'A' || letter > 'Z') {
+        return kExpectedLetter;
+      }
+      std::size_t end = at;
+      while (end < text.size() &&
+             (text[end] == '-' || text[end] == '+' || text[end] == '.' || (text[end] >= '0' && text[end] <= '9'))) {
+        ++end;
+      }
+      const auto value = number_from<double>(std::string_view(text).substr(at, end - at));
+      if (!value) {
+        return kBadNumber;
+      }
+      words.push_back({letter, *value});
+      at = end;
+    }
+    return std::nullopt;
+  }
+
+  std::optional<int> code_line(const std::string& line, bool jog) {
+    if (state_ == State::alarm) {
+      return kLocked;
+    }
+    std::vector<Word> words;
+    if (const auto status = read_words(line, words)) {
+      return status;
+    }
+    Motions motions{.jog = jog};
+    bool incremental = incremental_, dwell = false;
+    double feed_deg_min = feed_deg_min_;
+    if (jog) {
+      feed_deg_min = 0;
+    }
+    for (const Word& word : words) {
+      const int code = static_cast<int>(std::lround(word.value));
+      switch (word.letter) {
+        case 'G':
+          if (code == 0 || code == 1) {
+            motion_is_rapid_ = code == 0;
+          } else if (code == 4) {
+            dwell = true;
+          } else if (code == 53) {
+            motions.machine = true;
+          } else if (code == 90 || code == 91) {
+            incremental = code == 91;
+          } else if (code == 92) {
+            motions.sets_offset = true;
+          } else if (code != 21 && code != 94 && code != 54) {
+            return kUnknownCode;
+          }
+          break;
+        case 'X':
+          motions.x = word.value;
+          break;
+        case 'F':
+          feed_deg_min = word.value;
+          break;
+        case 'P':
+          motions.dwell_s = word.value;
+          break;
+        case 'M':
+        case 'S':
+        case 'T':
+        case 'N':
+          break;
+        default:
+          return kUnknownCode;
+      }
+    }
+    motions.rapid = motion_is_rapid_ && !jog;
+    motions.moves = motions.x.has_value() && !motions.sets_offset;
+    if (motions.moves && !motions.rapid && !(feed_deg_min > 0)) {
+      return kNoFeed;
+    }
+    if (jog && !motions.x) {
+      return kAxisMissing;
+    }
+    if (!jog) {
+      incremental_ = incremental;
+      feed_deg_min_ = feed_deg_min;
+    }
+    if (dwell) {
+      dwell_until_s_ = clock_.monotonic_s() + motions.dwell_s.value_or(0);
+      return std::nullopt;
+    }
+    if (motions.sets_offset) {
+      offset_deg_ = planned_deg() - motions.x.value_or(0);
+      reports_to_offset_ = 0;
+      return 0;
+    }
+    return motions.moves ? plan(motions, incremental, feed_deg_min) : std::optional<int>(0);
+  }
+
+  double planned_deg() const {
+    return planner_.empty() ? machine_deg() : planner_.back().target_steps / settings_.at(100);
+  }
+
+  std::optional<int> plan(const Motions& motions, bool incremental, double feed_deg_min) {
+    const double base_deg = motions.machine ? 0 : incremental ? planned_deg() : offset_deg_;
+    const double target_deg = base_deg + *motions.x;
+    if (settings_.at(20) != 0 && (target_deg > 0 || target_deg < -settings_.at(130))) {
+      state_ = State::alarm;
+      planner_.clear();
+      motor_.slow_down();
+      say("ALARM:2");
+      say("[MSG:Reset to continue]");
+      wait_for_reset_ = true;
+      return std::nullopt;
+    }
+    const double limit_deg_s = settings_.at(110) / 60;
+    planner_.push_back({.target_steps = std::round(target_deg * settings_.at(100)),
+                        .speed_deg_s = motions.rapid ? limit_deg_s : std::min(limit_deg_s, feed_deg_min / 60),
+                        .jog = motions.jog});
+    return 0;
+  }
+
+  SimulatedMotor motor_;
+  Clock& clock_;
+  bool with_switch_;
+  std::map<int, double> settings_;
+  State state_ = State::idle;
+  std::string line_, said_;
+  std::deque<std::string> waiting_;  // lines not yet taken
+  std::deque<Block> planner_;
+  bool begun_ = false;  // the planner's first block
+  std::optional<double> dwell_until_s_;
+  bool homing_ = false, report_asked_ = false, wait_for_reset_ = false;
+  bool incremental_ = false, motion_is_rapid_ = true;
+  double feed_deg_min_ = 0, offset_deg_ = 0;
+  int reports_to_offset_ = 0, reports_to_overrides_ = 1;
+};
+
+class Echo final : public SimulatedFirmware {
+ public:
+  void power_on() override {}
+  void receive(std::string_view bytes) override { said_ += bytes; }
+  std::string transmit() override { return std::exchange(said_, {}); }
+  void break_down(Breakdown) override {}
+
+ private:
+  std::string said_;
+};
+
+}  // namespace
+
+std::unique_ptr<SimulatedFirmware> make_simulated_grbl(SimulatedMotor motor, Clock& clock, bool with_switch) {
+  return std::make_unique<SimulatedGrbl>(motor, clock, with_switch);
+}
+
+std::unique_ptr<SimulatedFirmware> make_echo() {
+  return std::make_unique<Echo>();
+}
+
+}  // namespace rig

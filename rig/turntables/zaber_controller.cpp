@@ -1,0 +1,188 @@
+// A Zaber rotary stage as a motion controller, ASCII protocol. Every question carries a number that its answer repeats,
+// so a late or repeated answer is told apart, and a check sum, so a garbled command is not obeyed.
+
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <utility>
+
+#include "rig/turntables/controllers.h"
+#include "rig/turntables/line_frames.h"
+#include "rig/turntables/number_text.h"
+#include "rig/turntables/zaber_reply.h"
+
+namespace rig {
+namespace {
+
+constexpr int kMostTries = 4;        // of a question: asked once and repeated three times
+constexpr double kStopTimeoutS = 3;  // from the stop to standing still
+constexpr double kPollS = 0.05;
+constexpr double kSameRatio = 1e-4;  // steps per degree as two people write them
+constexpr double kDegreesPerTurn = 360;
+
+class ZaberController final : public MotionController {
+ public:
+  ZaberController(std::shared_ptr<ByteLine> line, Clock& clock, const ControllerSetup& setup)
+      : line_(std::move(line)), clock_(clock), setup_(setup) {
+    if (setup.home_by != HomeBy::home_switch) {
+      throw std::runtime_error("a Zaber stage finds its home by itself; write \"home\": \"switch\" in the rig file");
+    }
+    identify();
+    ask("stop");  // it may still be turning from before
+    wait_to_stand();
+  }
+
+  ControllerIdentity identity() override { return identity_; }
+
+  void start_home() override {
+    ask("home");
+    homing_ = true;
+  }
+
+  void start_move(std::int64_t steps) override { ask("move abs " + std::to_string(steps)); }
+
+  MotionStatus status() override {
+    const ZaberReply reply = ask("get pos");
+    if (homing_ && !reply.busy) {
+      homing_ = false;
+    }
+    const bool fault = reply.warning.starts_with('F') || reply.warning == "WS";
+    const bool lost = reply.warning == "WR" || reply.warning == "WH" || reply.warning == "WM";
+    if (fault || (lost && !homing_)) {
+      throw PositionLost("the turntable reports " + zaber_warning_words(reply.warning));
+    }
+    const auto steps = number_from<std::int64_t>(reply.data);
+    if (!steps) {
+      throw std::runtime_error("the turntable was asked for its position and answered \"" + printable(reply.data) +
+                               "\"; check \"axis\" in the rig file");
+    }
+    return {reply.busy ? Motion::moving : Motion::idle, *steps};
+  }
+
+  void stop() override { line_->write(framed("stop", std::nullopt)); }
+
+  void clear_stop() override {
+    wait_to_stand();
+    if (homing_.exchange(false)) {
+      throw PositionLost("the turntable was stopped while it looked for its home; home it again");
+    }
+  }
+
+ private:
+  std::string framed(const std::string& command, std::optional<int> message) const {
+    std::string text = std::to_string(setup_.zaber_device) + " " + std::to_string(setup_.zaber_axis) + " ";
+    if (message) {
+      text += (*message < 10 ? "0" : "") + std::to_string(*message) + " ";
+    }
+    text += command;
+    return "/" + text + ":" + zaber_check_sum(text) + "\n";
+  }
+
+  // The answer that carries the question's number and comes from the stage that was asked.
+  std::optional<ZaberReply> exchange(const std::string& command, double timeout_s) {
+    const int message = message_;
+    message_ = (message_ + 1) % 100;
+    std::optional<ZaberReply> found;
+    line_->write(framed(command, message));
+    listen(*line_, frames_, clock_, timeout_s, [&](const std::string& text) {
+      const auto reply = parse_zaber_line(text);
+      if (!reply) {
+        noise_ = text;
+      } else if (reply->message == message && reply->device == setup_.zaber_device) {
+        found = reply;
+      }
+      return found.has_value();
+    });
+    return found;
+  }
+
+  // Questions may be repeated: moves are absolute.
+  ZaberReply try_to_ask(const std::string& command) {
+    for (int tries = 0; tries < kMostTries; ++tries) {
+      identity_.repeated += tries > 0;
+      if (auto reply = exchange(command, setup_.reply_timeout_s / kMostTries)) {
+        return *reply;
+      }
+    }
+    if (identity_.firmware.empty() && !noise_.empty()) {
+      throw NoReply("the device was asked for a Zaber stage's version and answered \"" + printable(noise_) +
+                    "\"; choose the turntable's port in the rig file (\"threadstation devices\" lists the ports) and "
+                    "check its \"baud\"");
+    }
+    throw NoReply(
+        "the turntable was asked \"" + command + "\" " + std::to_string(kMostTries) +
+        " times and did not answer; check its cable and its power, and \"device\" in the rig file, then home "
+        "it");
+  }
+
+  ZaberReply ask(const std::string& command) {
+    ZaberReply reply = try_to_ask(command);
+    if (!reply.accepted && (reply.warning == "WR" || reply.warning == "WH")) {
+      throw PositionLost("the turntable was asked \"" + command + "\" and reports " +
+                         zaber_warning_words(reply.warning));
+    }
+    if (!reply.accepted) {
+      throw std::runtime_error("the turntable was asked \"" + command + "\" and rejected it, " +
+                               zaber_rejection_words(reply.data));
+    }
+    return reply;
+  }
+
+  double ask_number(const std::string& setting) {
+    const ZaberReply reply = ask("get " + setting);
+    const auto value = number_from<double>(reply.data);
+    if (!value) {
+      throw std::runtime_error("the turntable was asked for its " + setting + " and answered \"" +
+                               printable(reply.data) + "\"; check \"axis\" in the rig file");
+    }
+    return *value;
+  }
+
+  void identify() {
+    const std::string version = ask("get version").data;
+    identity_.firmware =
+        "Zaber firmware " + version + ", device " + std::to_string(std::lround(ask_number("deviceid")));
+    const double resolution = ask_number("resolution");
+    if (resolution != setup_.zaber_resolution) {
+      throw std::runtime_error("the turntable is set to a resolution of " + std::to_string(std::lround(resolution)) +
+                               " microsteps per step and the rig file says " +
+                               std::to_string(setup_.zaber_resolution) + "; send \"set resolution " +
+                               std::to_string(setup_.zaber_resolution) + "\", or change the rig file");
+    }
+    identity_.steps_per_deg = ask_number("limit.cycle.dist") / kDegreesPerTurn;
+    if (!(std::abs(identity_.steps_per_deg / setup_.steps_per_deg - 1) <= kSameRatio)) {
+      throw std::runtime_error("the turntable has " + std::to_string(identity_.steps_per_deg) +
+                               " microsteps per degree (limit.cycle.dist / 360) and the rig file says " +
+                               std::to_string(setup_.steps_per_deg) + "; correct \"steps_per_deg\" in the rig file");
+    }
+  }
+
+  void wait_to_stand() {
+    const double until_s = clock_.monotonic_s() + kStopTimeoutS;
+    while (ask("get pos").busy) {
+      if (clock_.monotonic_s() > until_s) {
+        throw std::runtime_error("the turntable was stopped and goes on turning; switch its power off");
+      }
+      clock_.sleep_s(kPollS);
+    }
+  }
+
+  std::shared_ptr<ByteLine> line_;
+  Clock& clock_;
+  ControllerSetup setup_;
+  ControllerIdentity identity_;
+  LineFrames frames_;
+  std::string noise_;  // the last of it
+  int message_ = 0;
+  std::atomic<bool> homing_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<MotionController> connect_zaber(std::shared_ptr<ByteLine> line, Clock& clock,
+                                                const ControllerSetup& setup) {
+  return std::make_unique<ZaberController>(std::move(line), clock, setup);
+}
+
+}  // namespace rig

@@ -1,0 +1,42 @@
+#include <iostream>
+
+#include "station/commands/commands.h"
+#include "station/commands/output_options.h"
+#include "station/validate/validate_fits.h"
+
+namespace station {
+namespace {
+
+struct Arguments {
+  ValidateRequest request;
+  OutputOptions output;
+};
+
+void run(Arguments& arguments) {
+  arguments.request.progress_style = arguments.output.progress_style();
+  const std::vector<ValidatedSpool> spools = validate_fits(arguments.request);
+  if (arguments.output.json)
+    std::cout << to_json(spools).dump() << "\n";
+  else
+    std::cout << describe(spools);
+}
+
+}  // namespace
+
+void add_validate_command(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  ValidateRequest& request = arguments->request;
+  CLI::App* command = app.add_subcommand("validate", "fit simulated spools of fibers and predict views left out");
+  command->add_option("--rig", request.rig, "rig file with a simulation part: lens, lamps and sensor")->required();
+  command->add_option("--spool", request.spools, "spool files with simulated fibers, one or more")->required();
+  command->add_option("--out", request.out, "folder of photographs and results")->required();
+  command->add_option("--folds", request.folds, "how often two views are left out")->check(CLI::Range(1, 3));
+  command
+      ->add_option("--spp", request.samples_per_pixel, "samples per pixel of each of the two photographs of a view")
+      ->check(CLI::Range(1, 65536));
+  command->add_option("--seed", request.seed, "of photographs and fits");
+  arguments->output.add_to(*command);
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace station

@@ -1,0 +1,26 @@
+// What a fit says of itself, as JSON: solver, rounds, agreement view by view, unknowns with their covariance, bands of the
+// thread's energies. Keys in fixtures/threads/README.md.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "inversion/agreement.h"
+#include "inversion/fit_views.h"
+
+namespace station {
+
+struct FittedView {
+  std::string id;
+  bool transmission = false;
+  inversion::ViewAgreement agreement;
+};
+
+std::string name_of(inversion::ModelKind model);  // as on the command line
+std::string name_of(inversion::Solver solver);
+
+nlohmann::json fit_document(const inversion::ViewFit& fit, const inversion::FitOptions& options,
+                            const std::vector<FittedView>& views, int samples_per_pixel);
+
+}  // namespace station

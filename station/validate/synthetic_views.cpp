@@ -1,0 +1,105 @@
+#include "station/validate/synthetic_views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "renderer/path_tracer.h"
+#include "rig/noise.h"
+#include "station/capture/plan.h"
+#include "station/capture_checks.h"
+#include "station/views.h"
+
+namespace station {
+namespace {
+
+constexpr int kMaskSamples = 8;
+constexpr double kFrameAlbedo = 0;  // as the model takes it
+
+inversion::NearLight near_light(const rig::TrueLamp& lamp, const Eigen::Isometry3d& holder_from_world) {
+  return {.position = holder_from_world * lamp.position,
+          .intensity = lamp.intensity,
+          .radius_mm = lamp.radius_mm,
+          .beam_axis = holder_from_world.linear() * (lamp.aim - lamp.position).normalized(),
+          .beam_exponent = lamp.beam_exponent};
+}
+
+// Pinhole with the same field across, optical axis in the middle.
+renderer::Camera pooled_camera(const rig::TrueLens& lens, const Eigen::Isometry3d& holder_from_world, int width_px,
+                               int height_px) {
+  const double scale = static_cast<double>(width_px) / lens.width_px;
+  calibration::Lens pinhole = lens_of(lens);
+  pinhole.distortion = {};
+  renderer::Camera camera = camera_of(pinhole, holder_from_world * lens.world_from_camera, true);
+  camera.width = width_px, camera.height = height_px;
+  camera.fx *= scale, camera.fy *= scale;
+  camera.cx = (width_px - 1) / 2.0, camera.cy = (height_px - 1) / 2.0;
+  return camera;
+}
+
+}  // namespace
+
+std::vector<inversion::View> synthetic_views(const RigFile& rig, const inversion::WrappedSpool& spool, int width_px,
+                                             int height_px) {
+  if (!rig.simulation)
+    throw std::runtime_error("rig \"" + rig.name + "\" has no \"simulation\" part; there are no views to make");
+  const rig::BenchTruth& truth = rig.simulation->truth;
+  const Plan plan = make_capture_plan(
+      {.reflection_angles_deg = rig.reflection_angles_deg, .transmission_angles_deg = rig.transmission_angles_deg});
+  std::vector<inversion::View> views;
+  for (const PlanStep& step : plan.steps) {
+    if (step.kind != StepKind::view) continue;
+    const Eigen::Isometry3d holder_from_world =
+        (Eigen::AngleAxisd(step.platform_angle_rad, Eigen::Vector3d::UnitZ()) *
+         nominal_holder_pose(rig, spool, step.mounting))
+            .inverse();
+    inversion::View& view = views.emplace_back();
+    view.id = step.id;
+    view.transmission = is_transmission(step);
+    view.camera = pooled_camera(truth.lens, holder_from_world, width_px, height_px);
+    view.light = near_light(view.transmission ? truth.back : truth.front, holder_from_world);
+    view.mask = inversion::thread_mask(spool, view.camera, view.light, kMaskSamples);
+  }
+  return views;
+}
+
+cv::Mat3f photograph(const inversion::View& view, const inversion::WrappedSpool& spool,
+                     const renderer::CurveSet& curves, const PhotographOptions& options) {
+  renderer::Scene scene;
+  scene.curves.push_back(curves);
+  scene.meshes.push_back(inversion::holder_frame(spool, kFrameAlbedo));
+  scene.lights.push_back(inversion::sphere_light(view.light));
+  const renderer::PathTracer tracer(std::move(scene));
+  return tracer.render(view.camera, {.samples_per_pixel = options.samples_per_pixel,
+                                     .seed = options.seed,
+                                     .only = view.mask,
+                                     .progress = options.progress});
+}
+
+cv::Mat3f with_sensor_noise(const cv::Mat3f& radiance, const cv::Mat1b& mask, const rig::TrueSensor& sensor,
+                            double target_level, std::uint64_t seed) {
+  std::vector<float> levels;
+  for (int row = 0; row < mask.rows; ++row)
+    for (int column = 0; column < mask.cols; ++column)
+      if (mask(row, column))
+        levels.push_back(*std::max_element(radiance(row, column).val, radiance(row, column).val + 3));
+  if (levels.empty()) return radiance;
+  const auto brightest = levels.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(levels.size() - 1));
+  std::nth_element(levels.begin(), brightest, levels.end());
+  const double exposure_s = *brightest > 0 ? target_level / *brightest : 1.0;
+  const double range_dn = sensor.white_level_dn - sensor.black_level_dn;
+  const double dn_per_electron = range_dn / sensor.full_well_e;
+  rig::NoiseStream noise(seed, 0);
+  cv::Mat3f seen(radiance.size(), cv::Vec3f(0, 0, 0));
+  for (int row = 0; row < mask.rows; ++row)
+    for (int column = 0; column < mask.cols; ++column)
+      for (int c = 0; c < 3; ++c) {
+        const double electrons = radiance(row, column)[c] * exposure_s * sensor.full_well_e;
+        const double spread = std::sqrt(std::max(0.0, electrons) + sensor.read_noise_e * sensor.read_noise_e);
+        const double dn = std::round((electrons + spread * noise.normals().first) * dn_per_electron);
+        seen(row, column)[c] = static_cast<float>(std::min(dn, range_dn) / (range_dn * exposure_s));
+      }
+  return seen;
+}
+
+}  // namespace station

@@ -1,0 +1,244 @@
+#include "station/validate/validate_fits.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+#include "inversion/agreement.h"
+#include "renderer/image_file.h"
+#include "station/bench/bench_picture.h"
+#include "station/documents/reader.h"
+#include "station/interrupt.h"
+#include "station/invert/fit_document.h"
+#include "station/report/html.h"
+#include "station/validate/synthetic_views.h"
+
+namespace station {
+namespace {
+
+using inversion::View;
+using Pictures = std::array<cv::Mat3f, 2>;  // with noise of their own
+
+constexpr int kWidth_px = 256, kHeight_px = 192, kBlock_px = 8;
+constexpr double kTargetLevel = 0.5;
+constexpr const char* kStopped =
+    "the validation was interrupted; the same command goes on with the photographs it has";
+// Left out, among the reflections and among the transmissions: middle and oblique, both mountings.
+constexpr std::array<std::pair<std::size_t, std::size_t>, 3> kFolds{{{2, 2}, {7, 1}, {10, 3}}};
+
+struct Photographed {
+  std::vector<View> views;  // images: the mean of both photographs
+  std::vector<Pictures> pictures;
+};
+
+void check_running() {
+  if (interrupted()) throw std::runtime_error(kStopped);
+}
+
+// What the pictures depend on, in words.
+std::string made_from(const std::filesystem::path& rig, const std::filesystem::path& spool, int samples,
+                      std::uint64_t seed) {
+  return read_json_file(rig).dump() + read_json_file(spool).dump() + std::to_string(samples) + "/" +
+         std::to_string(seed);
+}
+
+Photographed photograph_spool(const ValidateRequest& request, const RigFile& rig, const Spool& spool,
+                              const std::filesystem::path& spool_file, const std::filesystem::path& folder,
+                              const std::function<void(const std::string&, double)>& step) {
+  Photographed made{.views = synthetic_views(rig, spool.wrapping, kWidth_px, kHeight_px), .pictures = {}};
+  std::filesystem::create_directories(folder);
+  const std::string origin = made_from(request.rig, spool_file, request.samples_per_pixel, request.seed);
+  const renderer::CurveSet fibers = spool_fibers(spool);
+  for (std::size_t i = 0; i < made.views.size(); ++i) {
+    View& view = made.views[i];
+    Pictures pictures;
+    for (std::size_t half = 0; half < 2; ++half) {
+      check_running();
+      step("photograph " + view.id,
+           (static_cast<double>(2 * i + half)) / (2.0 * static_cast<double>(made.views.size())));
+      const std::uint64_t seed = request.seed * 1000 + 2 * i + half;
+      const std::filesystem::path file = folder / (view.id + (half ? "-b.exr" : "-a.exr"));
+      renderer::ImageHeader header;
+      cv::Mat3f radiance;
+      if (std::filesystem::exists(file)) radiance = renderer::read_exr(file, &header);
+      if (header["threadstation/made_from"] != origin) {
+        radiance = photograph(view, spool.wrapping, fibers,
+                              {.samples_per_pixel = request.samples_per_pixel, .seed = seed, .progress = [](double) {
+                                 return !interrupted();
+                               }});
+        renderer::write_exr(file, radiance, {{"threadstation/made_from", origin}});
+      }
+      pictures[half] = with_sensor_noise(radiance, view.mask, rig.simulation->truth.sensor, kTargetLevel, seed);
+    }
+    view.image = 0.5 * (pictures[0] + pictures[1]);
+    made.pictures.push_back(std::move(pictures));
+  }
+  return made;
+}
+
+std::vector<bool> left_out(const std::vector<View>& views, std::size_t fold) {
+  std::size_t reflections = 0, transmissions = 0;
+  std::vector<bool> out;
+  for (const View& view : views)
+    out.push_back(view.transmission ? transmissions++ == kFolds[fold].second : reflections++ == kFolds[fold].first);
+  return out;
+}
+
+Pictures rendered(const inversion::WrappedSpool& spool, const View& view, const inversion::ViewFit& fit, int samples,
+                  std::uint64_t seed) {
+  Pictures pictures;
+  for (std::size_t half = 0; half < 2; ++half)
+    pictures[half] =
+        inversion::fitted_view(spool, view, fit.model, samples, seed + half, [](double) { return !interrupted(); });
+  return pictures;
+}
+
+// Photograph, then each model's rendering and its difference (grey: none; full scale a quarter of the brightest pixel).
+cv::Mat3b comparison_row(const View& view, const std::vector<cv::Mat3f>& renderings) {
+  double most = 0;
+  cv::minMaxIdx(view.image.reshape(1), nullptr, &most);
+  const double scale = most > 0 ? 1 / most : 1;
+  std::vector<cv::Mat3b> parts{renderer::encode_srgb(view.image, scale)};
+  for (const cv::Mat3f& rendering : renderings) {
+    cv::Mat3f difference;
+    cv::subtract(rendering, view.image, difference);
+    difference.convertTo(difference, CV_32F, 2 * scale, 0.5);
+    difference.setTo(cv::Scalar::all(0.5), view.mask == 0);
+    parts.push_back(renderer::encode_srgb(rendering, scale));
+    parts.push_back(renderer::encode_srgb(difference, 0.4));
+  }
+  cv::Mat3b row;
+  cv::hconcat(parts, row);
+  return row;
+}
+
+struct Gathered {
+  std::vector<inversion::ViewAgreement> all, reflection, transmission, fitted;
+  double seconds = 0;
+};
+
+ValidatedSpool validate_spool(const ValidateRequest& request, const RigFile& rig,
+                              const std::filesystem::path& spool_file,
+                              const std::function<void(const std::string&, double)>& step) {
+  const Spool spool = read_spool(spool_file);
+  if (!spool.simulation)
+    throw std::runtime_error("spool \"" + spool.name +
+                             "\" has no \"simulation\" part; there are no fibers to photograph");
+  const std::filesystem::path folder = request.out / spool_file.stem();
+  constexpr double kPhotographShare = 0.4;
+  const Photographed made =
+      photograph_spool(request, rig, spool, spool_file, folder / "photographs",
+                       [&](const std::string& what, double share) { step(what, kPhotographShare * share); });
+  std::vector<Gathered> gathered(request.models.size());
+  const auto parts = static_cast<double>(request.models.size()) * request.folds;
+  for (int fold = 0; fold < request.folds; ++fold) {
+    const std::vector<bool> out = left_out(made.views, static_cast<std::size_t>(fold));
+    std::vector<View> kept;
+    for (std::size_t i = 0; i < out.size(); ++i)
+      if (!out[i]) kept.push_back(made.views[i]);
+    std::vector<std::vector<cv::Mat3f>> shown(out.size());
+    for (std::size_t m = 0; m < request.models.size(); ++m) {
+      Gathered& of = gathered[m];
+      inversion::FitOptions options{.model = request.models[m], .seed = request.seed};
+      if (options.model == inversion::ModelKind::yarn) options.paths_per_block = {128, 512};
+      const double done =
+          (static_cast<double>(fold) * static_cast<double>(request.models.size()) + static_cast<double>(m)) / parts;
+      options.progress = [&](const std::string& what, double share) {
+        step(name_of(options.model) + ", " + what,
+             kPhotographShare + (1 - kPhotographShare) * (done + 0.8 * share / parts));
+        return !interrupted();
+      };
+      const auto started = std::chrono::steady_clock::now();
+      const inversion::ViewFit fit = inversion::fit_views(spool.wrapping, kept, options);
+      of.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count() / request.folds;
+      for (std::size_t i = 0; i < out.size(); ++i) {
+        if (!out[i] && fold > 0) continue;
+        const View& view = made.views[i];
+        const Pictures pictures = rendered(spool.wrapping, view, fit, request.fitted_samples,
+                                           7000 + 100 * static_cast<std::uint64_t>(fold) + 2 * i);
+        const auto agreement = inversion::noiseless_agreement(view, made.pictures[i], pictures, kBlock_px);
+        if (!out[i]) {
+          of.fitted.push_back(agreement);
+          continue;
+        }
+        of.all.push_back(agreement);
+        (view.transmission ? of.transmission : of.reflection).push_back(agreement);
+        cv::Mat3f& mean = shown[i].emplace_back();
+        cv::addWeighted(pictures[0], 0.5, pictures[1], 0.5, 0, mean);
+      }
+    }
+    for (std::size_t i = 0; i < out.size(); ++i)
+      if (out[i]) renderer::write_png(folder / (made.views[i].id + ".png"), comparison_row(made.views[i], shown[i]));
+  }
+  ValidatedSpool result{.name = spool.name, .fibers_per_thread = spool.simulation->fibers_per_thread, .models = {}};
+  for (std::size_t m = 0; m < request.models.size(); ++m)
+    result.models.push_back({.model = request.models[m],
+                             .relative_rmse = inversion::overall_relative_rmse(gathered[m].all),
+                             .reflection = inversion::overall_relative_rmse(gathered[m].reflection),
+                             .transmission = inversion::overall_relative_rmse(gathered[m].transmission),
+                             .fitted_views = inversion::overall_relative_rmse(gathered[m].fitted),
+                             .seconds = gathered[m].seconds});
+  return result;
+}
+
+}  // namespace
+
+std::vector<ValidatedSpool> validate_fits(const ValidateRequest& request) {
+  watch_interrupts();
+  const RigFile rig = read_rig(request.rig);
+  ProgressDisplay progress("validate", request.progress_style);
+  std::vector<ValidatedSpool> spools;
+  int shown = -1;
+  for (std::size_t i = 0; i < request.spools.size(); ++i)
+    spools.push_back(validate_spool(request, rig, request.spools[i], [&](const std::string& what, double share) {
+      const auto percent =
+          static_cast<int>(100 * (static_cast<double>(i) + share) / static_cast<double>(request.spools.size()));
+      if (percent != shown) progress.show(shown = percent, 100, request.spools[i].stem().string() + ": " + what);
+    }));
+  write_json_file(request.out / "validation.json", to_json(spools));
+  progress.finish(std::to_string(spools.size()) + " spools");
+  return spools;
+}
+
+std::string describe(const std::vector<ValidatedSpool>& spools) {
+  std::string text =
+      "Relative RMSE over 8 x 8-block averages, %, without the noise of photograph and rendering\n"
+      "spool                      fibers  model    left out  reflection  transmission  fitted views  seconds\n";
+  std::map<std::string, std::vector<double>> by_model;
+  for (const ValidatedSpool& spool : spools)
+    for (const ValidatedModel& m : spool.models) {
+      char line[160];
+      std::snprintf(line, sizeof line, "%-25s  %6d  %-7s  %8.1f  %10.1f  %12.1f  %12.1f  %7.1f\n", spool.name.c_str(),
+                    spool.fibers_per_thread, name_of(m.model).c_str(), 100 * m.relative_rmse, 100 * m.reflection,
+                    100 * m.transmission, 100 * m.fitted_views, m.seconds);
+      text += line;
+      by_model[name_of(m.model)].push_back(m.relative_rmse);
+    }
+  for (const auto& [model, errors] : by_model) {
+    double sum = 0, worst = 0;
+    for (double e : errors) sum += e, worst = std::max(worst, e);
+    text += model + ": " + number_text(100 * sum / static_cast<double>(errors.size()), 1) + " % on average, " +
+            number_text(100 * worst, 1) + " % at worst\n";
+  }
+  return text;
+}
+
+nlohmann::json to_json(const std::vector<ValidatedSpool>& spools) {
+  nlohmann::json document = nlohmann::json::array();
+  for (const ValidatedSpool& spool : spools) {
+    nlohmann::json models = nlohmann::json::object();
+    for (const ValidatedModel& m : spool.models)
+      models[name_of(m.model)] = {{"relative_rmse", m.relative_rmse},
+                                  {"reflection", m.reflection},
+                                  {"transmission", m.transmission},
+                                  {"fitted_views", m.fitted_views},
+                                  {"seconds", m.seconds}};
+    document.push_back({{"spool", spool.name}, {"fibers_per_thread", spool.fibers_per_thread}, {"models", models}});
+  }
+  return {{"spools", document}};
+}
+
+}  // namespace station

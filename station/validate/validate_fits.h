@@ -1,0 +1,55 @@
+// Synthetic validation [Xia 2025, figure 9]: spools of threads made of fibers are photographed by path tracing, fitted with
+// the thread model and both baselines, and predicted at views that the fits have not seen.
+//
+//   spool          | the bench's fibers of a spool file, 17 ideal views at 256 x 192 pixels (synthetic_views.h)
+//   photograph     | two of each view with paths of their own, with a 14-bit sensor's noise; fits see their mean
+//   left out       | two views a fold, one reflection and one transmission; three folds
+//   agreement      | relative RMSE over 8 x 8-block averages without the noise of either side (inversion/agreement.h)
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "inversion/fit_views.h"
+#include "station/progress.h"
+
+namespace station {
+
+struct ValidateRequest {
+  std::filesystem::path rig, out;
+  std::vector<std::filesystem::path> spools;
+  std::vector<inversion::ModelKind> models{inversion::ModelKind::thread, inversion::ModelKind::fiber,
+                                           inversion::ModelKind::yarn};
+  int folds = 3;               // 1 ... 3
+  int samples_per_pixel = 96;  // of each photograph
+  int fitted_samples = 48;     // of each rendering
+  std::uint64_t seed = 1;
+  ProgressStyle progress_style = ProgressStyle::automatic;
+};
+
+struct ValidatedModel {
+  inversion::ModelKind model;
+  // Over the left-out views; of all, reflections, transmissions.
+  double relative_rmse = 0, reflection = 0, transmission = 0;
+  double fitted_views = 0;  // over the views that were fitted, first fold
+  double seconds = 0;       // of one fit
+};
+
+struct ValidatedSpool {
+  std::string name;
+  int fibers_per_thread = 0;
+  std::vector<ValidatedModel> models;
+};
+
+// Photographs are kept in OUT/<spool>/photographs and used again when nothing that they depend on has changed; pictures of
+// the left-out views (photograph, models, differences) and validation.json are written beside them. Ctrl-C stops it.
+// Errors: std::runtime_error of files and of spools without simulated fibers.
+std::vector<ValidatedSpool> validate_fits(const ValidateRequest& request);
+
+std::string describe(const std::vector<ValidatedSpool>& spools);
+nlohmann::json to_json(const std::vector<ValidatedSpool>& spools);
+
+}  // namespace station

@@ -1,0 +1,63 @@
+// The predicted standard deviations against the spread of fits to many noisy copies of the same pictures.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "inversion/agreement.h"
+#include "inversion/energy_bands.h"
+#include "synthetic_spool.h"
+
+namespace inversion {
+namespace {
+
+TEST(FitCertaintyTest, PredictedDeviationsOfAbsorptionMatchTheSpreadOverFiftyDrawsOfNoise) {
+  constexpr int kDraws = 50, kWidth_px = 96, kSamples = 512;
+  constexpr std::uint64_t kSeed = 20261121;
+  const WrappedSpool spool;
+  std::vector<View> exact;
+  for (const Standpoint& at : six_standpoints())
+    exact.push_back(
+        photographed(unlit_view(spool, at, kWidth_px), spool, known_thread(), kSamples, 31 + exact.size()));
+  // Noise as a sensor's: a variance that grows with the light, 3 % of a pixel at the views' mean.
+  const auto variance_of = [](const View& view) {
+    const cv::Scalar mean = cv::mean(view.image, view.mask);
+    return cv::Mat3f(view.image * (0.001 * mean[1]));
+  };
+  std::mt19937 random(kSeed);
+  std::normal_distribution<float> normal;
+  std::vector<ThreadUnknowns> fits;
+  ThreadUnknowns predicted = ThreadUnknowns::Zero();
+  for (int draw = 0; draw < kDraws; ++draw) {
+    std::vector<View> noisy = exact;
+    for (View& view : noisy) {
+      view.variance = variance_of(view);
+      view.image = view.image.clone();
+      for (int i = 0; i < view.image.rows * view.image.cols; ++i)
+        for (int c = 0; c < 3; ++c)
+          view.image(i)[c] += std::sqrt(std::max(0.F, view.variance(i)[c])) * normal(random);
+    }
+    // Other paths for every draw: their noise counts too.
+    FitOptions options{
+        .start = known_thread(), .paths_per_block = {256, 2048}, .seed = kSeed + static_cast<std::uint64_t>(draw)};
+    options.other_starts.clear();
+    const ViewFit fit = fit_views(spool, noisy, options);
+    fits.emplace_back(fit.unknowns);
+    predicted += fit.certainty.noise_covariance.diagonal() / kDraws;
+  }
+  ThreadUnknowns mean = ThreadUnknowns::Zero(), variance = mean;
+  for (const ThreadUnknowns& fit : fits) mean += fit / kDraws;
+  for (const ThreadUnknowns& fit : fits) variance += (fit - mean).cwiseAbs2() / (kDraws - 1);
+  const auto names = thread_family()->unknown_names();
+  std::printf("seed %llu, %d draws\n", static_cast<unsigned long long>(kSeed), kDraws);
+  for (int k = 0; k < mean.size(); ++k)
+    std::printf("%-10s %8.4f  observed %.5f  predicted %.5f  ratio %.2f\n",
+                names[static_cast<std::size_t>(k)].c_str(), mean[k], std::sqrt(variance[k]), std::sqrt(predicted[k]),
+                std::sqrt(predicted[k] / variance[k]));
+  // Roughness and energies trade off along a curved valley that a linearised covariance does not follow: their predicted
+  // deviations are too small by up to five times (printed above), which is not asserted but open.
+  for (int k = 0; k < kAlpha; ++k)
+    EXPECT_NEAR(std::sqrt(predicted[k] / variance[k]), 1, 0.3) << names[static_cast<std::size_t>(k)];
+}
+
+}  // namespace
+}  // namespace inversion

@@ -1,0 +1,59 @@
+// The real camera driver, in its own process, connected to a simulated camera.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/types.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "rig/cameras/camera_process.h"
+#include "wired_camera.h"
+
+inline std::string refusal(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "(accepted)";
+}
+
+// The processes that this program started and that live.
+inline std::vector<pid_t> children() {
+  std::vector<pid_t> found;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::ifstream list(task.path() / "children");
+    for (pid_t one = 0; list >> one;) {
+      found.push_back(one);
+    }
+  }
+  return found;
+}
+
+inline std::size_t open_descriptors() {
+  const std::filesystem::directory_iterator all("/proc/self/fd");
+  return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+}
+
+struct GphotoCamera : testing::Test {
+  std::unique_ptr<rig::Camera> open(double answer_timeout_s = 40) const {
+    return rig::make_process_camera({.command = {"/proc/self/exe", "camera-process"},
+                                     .camera = {.port = wired.port(), .width_px = 60, .height_px = 40},
+                                     .answer_timeout_s = answer_timeout_s});
+  }
+  std::string said_with(const rig::SonyCondition& condition) {
+    wired.sony->set_condition(condition);
+    return refusal([this] { open(); });
+  }
+  bool delivers_what_was_made(rig::Camera& camera) const {
+    const rig::Picture picture = camera.capture();
+    return picture.bytes == wired.recorded.taken.back().bytes;
+  }
+  WiredCamera wired;
+};

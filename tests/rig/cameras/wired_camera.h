@@ -1,0 +1,52 @@
+// A small bench photographed by a simulated ILCE-7M2 on this computer's network.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <string>
+
+#include "rig/cameras/live_view.h"
+#include "rig/cameras/ptpip_server.h"
+#include "rig/cameras/simulated_sony.h"
+#include "rig/simulated_bench.h"
+
+// Keeps what the bench's camera drew, to be compared with what came over the wire.
+class RecordingCamera final : public rig::Camera {
+ public:
+  explicit RecordingCamera(rig::Camera& camera) : camera_(camera) {}
+  rig::CameraIdentity identity() override { return camera_.identity(); }
+  std::vector<double> shutter_times_s() override { return camera_.shutter_times_s(); }
+  rig::ExposureSettings configure(const rig::ExposureSettings& wanted) override { return camera_.configure(wanted); }
+  rig::Picture capture() override {
+    taken.push_back(camera_.capture());
+    return taken.back();
+  }
+  std::deque<rig::Picture> taken;
+
+ private:
+  rig::Camera& camera_;
+};
+
+struct WiredCamera {
+  static cv::Mat3f draw(const rig::BenchState& state) {
+    cv::Mat3f picture(state.lens.height_px, state.lens.width_px);
+    for (int row = 0; row < picture.rows; ++row) {
+      for (int column = 0; column < picture.cols; ++column) {
+        picture(row, column) = {0.01F * static_cast<float>(row), 0.01F * static_cast<float>(column), 0.2F};
+      }
+    }
+    return picture;
+  }
+  std::string port() const {
+    const std::string number = std::to_string(server->port());
+    return "ptpip:127.0.0.1:" + number + ":" + number;
+  }
+
+  rig::SimulatedBench bench{{.lens = {.width_px = 60, .height_px = 40}}, draw};
+  rig::SimulatedClock clock{1.8e9};
+  std::unique_ptr<rig::Camera> camera = rig::make_simulated_camera(bench, clock);
+  RecordingCamera recorded{*camera};
+  std::unique_ptr<rig::SimulatedSony> sony =
+      rig::make_simulated_sony(recorded, [this] { return rig::live_view_jpeg(bench.draw()); });
+  std::unique_ptr<rig::PtpipServer> server = rig::serve_on_ptpip(*sony);
+};

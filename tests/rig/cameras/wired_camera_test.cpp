@@ -1,0 +1,136 @@
+// The real camera driver, in its own process, against the simulated ILCE-7M2 by PTP/IP.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <limits>
+#include <thread>
+
+#include "gphoto_camera_fixture.h"
+#include "rig/cameras/camera_process.h"
+#include "rig/device_contract.h"
+
+namespace {
+
+using testing::HasSubstr;
+
+}  // namespace
+
+TEST_F(GphotoCamera, KeepsTheContractOfCameras) {
+  const auto camera = open();
+  for (const rig::ContractRow& row : rig::check_camera(*camera)) {
+    EXPECT_TRUE(row.passed) << row.name << ": " << row.what;
+  }
+}
+
+TEST_F(GphotoCamera, SaysWhoItIsAndWhichTimesItHas) {
+  const auto camera = open();
+  const rig::CameraIdentity found = camera->identity();
+  EXPECT_EQ(found.make, "Sony Corporation");
+  EXPECT_EQ(found.model, "ILCE-7M2");
+  EXPECT_EQ(found.serial, "SIM1");
+  const auto times_s = camera->shutter_times_s();
+  EXPECT_EQ(times_s, wired.camera->shutter_times_s());
+}
+
+TEST_F(GphotoCamera, DeliversTheBytesThatTheCameraMade) {
+  const auto camera = open();
+  for (const double exposure_s : {1 / 60.0, 0.5, 2.5}) {
+    const rig::ExposureSettings wanted{.exposure_s = exposure_s, .iso = 200, .f_number = 5.6};
+    camera->configure(wanted);
+    const rig::Picture picture = camera->capture();
+    EXPECT_EQ(picture.extension, "arw");
+    ASSERT_FALSE(wired.recorded.taken.empty());
+    const rig::Picture& made = wired.recorded.taken.back();
+    EXPECT_EQ(picture.bytes, made.bytes);
+    EXPECT_DOUBLE_EQ(made.settings.exposure_s, exposure_s);
+    EXPECT_EQ(made.settings.iso, 200);
+    EXPECT_EQ(made.settings.f_number, 5.6);
+  }
+}
+
+TEST_F(GphotoCamera, APreflightThatFailsNamesWhatToSet) {
+  EXPECT_THAT(said_with({.exposure_program = 3}), HasSubstr("mode dial on its top to M"));
+  EXPECT_THAT(said_with({.focus_mode = 2}), HasSubstr("MENU > Focus Mode > MF"));
+  EXPECT_THAT(said_with({.battery_percent = 4}), HasSubstr("charge it"));
+  EXPECT_THAT(said_with({.store_full = true}), HasSubstr("empty the card"));
+  EXPECT_EQ(said_with({}), "(accepted)");
+}
+
+TEST_F(GphotoCamera, ASettingThatIsAcceptedAndNotDoneIsSeen) {
+  const auto camera = open();
+  wired.sony->set_condition({.shutter_locked = true});
+  EXPECT_THAT(refusal([&] { camera->configure({.exposure_s = 2, .iso = 100, .f_number = 8}); }),
+              testing::AllOf(HasSubstr("set its shutterspeed to 2 and stays at 1/4"), HasSubstr("dial to M")));
+}
+
+TEST_F(GphotoCamera, ACardThatBecomesFullIsSaidAndTheNextPictureComesWhenItIsEmptied) {
+  const auto camera = open();
+  camera->capture();
+  wired.sony->set_condition({.store_full = true});
+  EXPECT_THAT(refusal([&] { camera->capture(); }), HasSubstr("card is full; empty the card, then resume"));
+  wired.sony->set_condition({});
+  EXPECT_TRUE(delivers_what_was_made(*camera));
+}
+
+TEST_F(GphotoCamera, AStalePictureIsRefused) {
+  const auto camera = open();
+  camera->capture();
+  wired.sony->set_condition({.repeats_last_picture = true});
+  EXPECT_THAT(refusal([&] { camera->capture(); }), HasSubstr("delivered before"));
+  wired.sony->set_condition({});
+  EXPECT_TRUE(delivers_what_was_made(*camera));
+}
+
+TEST_F(GphotoCamera, APictureThatWaitsFromBeforeIsDrainedAndNotTakenForTheNextOne) {
+  const auto camera = open();
+  camera->configure({.exposure_s = 0.25, .iso = 100, .f_number = 8});
+  wired.sony->handle({.code = 0x9207, .parameters = {0xd2c2}, .data = std::string("\2\0", 2)});  // somebody's finger
+  while (wired.sony->waiting_pictures() == 0) {
+    std::this_thread::yield();
+  }
+  const rig::Picture picture = camera->capture();
+  ASSERT_EQ(wired.recorded.taken.size(), 2u);
+  EXPECT_EQ(picture.bytes, wired.recorded.taken[1].bytes);
+}
+
+TEST_F(GphotoCamera, ACableThatIsPulledIsSaidAndTheNextPictureComesWhenItIsBack) {
+  const auto camera = open();
+  camera->capture();
+  wired.server->unplug();
+  EXPECT_THAT(refusal([&] { camera->capture(); }), HasSubstr("camera"));
+  EXPECT_THAT(refusal([&] { camera->capture(); }), HasSubstr("cable"));
+  wired.server->plug_in();
+  EXPECT_TRUE(delivers_what_was_made(*camera));
+}
+
+TEST_F(GphotoCamera, AFileThatBreaksOffIsNoPicture) {
+  const auto camera = open();
+  for (const long bytes : {0L, 1L, 4096L}) {
+    wired.server->cut_after(bytes);
+    EXPECT_THAT(refusal([&] { camera->capture(); }), HasSubstr("then resume")) << bytes;
+    EXPECT_TRUE(delivers_what_was_made(*camera));
+  }
+}
+
+TEST_F(GphotoCamera, NobodyThereIsSaidWithWhatToCheck) {
+  wired.server->unplug();
+  EXPECT_THAT(refusal([this] { open(); }), HasSubstr("check its cable"));
+}
+
+TEST_F(GphotoCamera, AProcessThatHangsIsEndedAndStartedAgain) {
+  const auto camera = open(6);
+  camera->capture();
+  for (const pid_t child : children()) {
+    kill(child, SIGSTOP);
+  }
+  EXPECT_TRUE(delivers_what_was_made(*camera));
+}
+
+TEST_F(GphotoCamera, ExposuresThatAreNoNumbersAreRefused) {
+  const auto camera = open();
+  for (const double exposure_s : {std::numeric_limits<double>::quiet_NaN(), -1.0, 0.0}) {
+    EXPECT_THAT(refusal([&] { camera->configure({.exposure_s = exposure_s, .iso = 100, .f_number = 8}); }),
+                HasSubstr("must be"));
+  }
+}

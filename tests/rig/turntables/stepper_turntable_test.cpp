@@ -1,0 +1,222 @@
+// The driver over simulated firmware on a line without a wire: what an angle becomes, and what stops it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "rig/device_contract.h"
+#include "wired_bench.h"
+
+namespace {
+
+using testing::HasSubstr;
+
+std::string refusal(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "(accepted)";
+}
+
+using Rig = WiredBench<EventfulClock>;
+
+struct StepperTurntable : testing::TestWithParam<Protocol> {
+  Rig rig{GetParam()};
+};
+
+INSTANTIATE_TEST_SUITE_P(OverTheWire, StepperTurntable, testing::Values(Protocol::grbl, Protocol::zaber),
+                         testing::PrintToStringParamName());
+
+}  // namespace
+
+TEST_P(StepperTurntable, KeepsTheContractOfTurntables) {
+  WiredBench<rig::SimulatedClock> own(GetParam());
+  const auto table = own.make_turntable();
+  for (const rig::ContractRow& row : rig::check_turntable(*table, own.kStepRad)) {
+    EXPECT_TRUE(row.passed) << row.name << ": " << row.what;
+  }
+}
+
+TEST_P(StepperTurntable, KnowsNoAngleUntilItIsHomed) {
+  const auto table = rig.make_turntable();
+  EXPECT_EQ(table->state(), rig::TurntableState::unknown_position);
+  const int before = rig.port->operations();
+  EXPECT_THAT(refusal([&] { table->move_to(0.1); }), HasSubstr("home it first"));
+  EXPECT_THAT(refusal([&] { table->angle_rad(); }), HasSubstr("home it first"));
+  EXPECT_EQ(rig.port->operations(), before);
+}
+
+TEST_P(StepperTurntable, StandsAtTheNearestStepAndReadsItBack) {
+  const auto table = rig.make_turntable();
+  table->home();
+  EXPECT_NEAR(rig.true_angle_rad(), 0, 1e-12);
+  for (const double wanted_deg : {30.01, -77.7, 359.99, 0.0, -360.0}) {
+    table->move_to(wanted_deg * kDegree);
+    const double expected_rad = std::round(wanted_deg * rig.kStepsPerDeg) * rig.kStepRad;
+    EXPECT_NEAR(table->angle_rad(), expected_rad, 1e-12);
+    EXPECT_NEAR(rig.true_angle_rad(), expected_rad, 1e-12);  // sums of doubles
+    EXPECT_EQ(table->state(), rig::TurntableState::idle);
+  }
+}
+
+TEST_P(StepperTurntable, RefusesAnglesThatAreNoneBeforeTheWire) {
+  const auto table = rig.make_turntable();
+  table->home();
+  const int before = rig.port->operations();
+  for (const double angle_rad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                                 361 * kDegree, -361 * kDegree, 1e300}) {
+    EXPECT_THAT(refusal([&] { table->move_to(angle_rad); }), HasSubstr("it turns between -360.000000 deg and"));
+  }
+  EXPECT_EQ(rig.port->operations(), before);
+  EXPECT_EQ(table->state(), rig::TurntableState::idle);
+}
+
+TEST_P(StepperTurntable, RefusesMoreStepsThanTheFirmwareCanCount) {
+  rig.stepper.limit_rad = 1e9;
+  const auto table = rig.make_turntable();
+  table->home();
+  const int before = rig.port->operations();
+  EXPECT_THAT(refusal([&] { table->move_to(1e8); }), HasSubstr("more steps"));
+  EXPECT_EQ(rig.port->operations(), before);
+}
+
+TEST_P(StepperTurntable, ApproachesFromOneSideWhenItHasBacklash) {
+  rig.stepper.backlash_rad = 3 * kDegree;
+  const auto table = rig.make_turntable();
+  table->home();
+  table->move_to(60 * kDegree);
+  double least_rad = 1e9;
+  std::function<void()> watch = [&] {
+    least_rad = std::min(least_rad, rig.true_angle_rad());
+    rig.clock.at_s = rig.clock.monotonic_s();
+    rig.clock.event = watch;
+  };
+  rig.clock.event = watch;
+  table->move_to(30 * kDegree);
+  EXPECT_NEAR(least_rad, 27 * kDegree, 1e-9);
+  EXPECT_NEAR(rig.true_angle_rad(), 30 * kDegree, 1e-12);
+  least_rad = 1e9;
+  table->move_to(45 * kDegree);
+  rig.clock.event = nullptr;
+  EXPECT_NEAR(least_rad, 30 * kDegree, 1e-9);
+}
+
+TEST_P(StepperTurntable, AStopEndsTheMoveKeepsThePositionAndTheNextMoveGoesOn) {
+  for (const double after_s : {0.06, 0.3, 1.0, 2.5, 3.1}) {
+    Rig own(GetParam());
+    const auto table = own.make_turntable();
+    table->home();
+    own.clock.at_s = own.clock.monotonic_s() + after_s;
+    own.clock.event = [&] {
+      EXPECT_EQ(table->state(), rig::TurntableState::moving);
+      table->stop();
+    };
+    EXPECT_THAT(refusal([&] { table->move_to(90 * kDegree); }), HasSubstr("was stopped at"));
+    EXPECT_EQ(table->state(), rig::TurntableState::stopped);
+    const double stood_rad = own.true_angle_rad();
+    // 30 deg/s, and 3 deg to slow down; a poll of 0.05 s later the stop is over.
+    EXPECT_LE(stood_rad, 30 * kDegree * after_s + 3 * kDegree);
+    EXPECT_NEAR(table->angle_rad(), stood_rad, 1e-12);
+    own.clock.sleep_s(5);
+    EXPECT_EQ(own.true_angle_rad(), stood_rad);
+    table->move_to(90 * kDegree);
+    EXPECT_NEAR(own.true_angle_rad(), 90 * kDegree, 1e-12);
+    EXPECT_EQ(table->state(), rig::TurntableState::idle);
+  }
+}
+
+TEST_P(StepperTurntable, AStopWhileStandingKeepsThePosition) {
+  const auto table = rig.make_turntable();
+  table->home();
+  table->move_to(20 * kDegree);
+  table->stop();
+  EXPECT_EQ(table->state(), rig::TurntableState::stopped);
+  EXPECT_NEAR(table->angle_rad(), 20 * kDegree, 1e-12);
+  table->move_to(0);
+  EXPECT_NEAR(rig.true_angle_rad(), 0, 1e-12);
+}
+
+TEST_P(StepperTurntable, AStopWhileHomingLeavesThePositionUnknown) {
+  const auto table = rig.make_turntable();
+  rig.clock.at_s = rig.clock.monotonic_s() + 0.5;
+  rig.clock.event = [&] { table->stop(); };
+  EXPECT_THAT(refusal([&] { table->home(); }), HasSubstr("home it again"));
+  EXPECT_EQ(table->state(), rig::TurntableState::unknown_position);
+  const double stood_rad = rig.true_angle_rad();
+  rig.clock.sleep_s(5);
+  EXPECT_EQ(rig.true_angle_rad(), stood_rad);
+  table->home();
+  EXPECT_NEAR(rig.true_angle_rad(), 0, 1e-12);
+}
+
+TEST_P(StepperTurntable, RefusesAControllerThatIsSetUpForOtherSteps) {
+  rig.setup.steps_per_deg = 44.4;
+  EXPECT_THAT(refusal([&] { rig.make_turntable(); }),
+              testing::AllOf(HasSubstr("40.0"), HasSubstr("44.4"), HasSubstr("rig file")));
+}
+
+TEST_P(StepperTurntable, SaysWhatAWrongDeviceAnswered) {
+  rig.port = rig::make_simulated_port(rig::make_echo());
+  const std::string said = refusal([&] { rig.make_turntable(); });
+  EXPECT_THAT(said,
+              testing::AllOf(HasSubstr("answered \""), HasSubstr("rig file"), HasSubstr("threadstation devices")))
+      << said;
+}
+
+TEST_P(StepperTurntable, IsFoundAgainByItsSerialNumberAtAnotherPort) {
+  const auto table = rig.make_turntable();
+  table->home();
+  rig.port->unplug();
+  EXPECT_THAT(refusal([&] { table->move_to(0.5); }), HasSubstr("unplugged"));
+  EXPECT_EQ(table->state(), rig::TurntableState::unknown_position);
+  // Opening by serial number now gives another port.
+  rig::SimulatedMotor motor(rig.bench, rig.clock, rig.kStepsPerDeg);
+  rig.port = rig::make_simulated_port(GetParam() == Protocol::grbl ? rig::make_simulated_grbl(motor, rig.clock, true)
+                                                                   : rig::make_simulated_zaber(motor));
+  table->home();
+  table->move_to(30 * kDegree);
+  EXPECT_NEAR(rig.true_angle_rad(), 30 * kDegree, 1e-12);
+}
+
+TEST(StepperTurntableHere, TakesThePlaceWhereItStandsForZeroAndReturnsThere) {
+  Rig rig(Protocol::grbl, rig::HomeBy::here);
+  const auto table = rig.make_turntable();
+  const double start_rad = rig.true_angle_rad();
+  table->home();
+  EXPECT_EQ(table->angle_rad(), 0);
+  table->move_to(30 * kDegree);
+  EXPECT_NEAR(rig.true_angle_rad() - start_rad, 30 * kDegree, 1e-12);
+  table->home();  // the position is known: no new zero
+  EXPECT_NEAR(rig.true_angle_rad(), start_rad, 1e-12);
+}
+
+TEST(GrblSettings, ThatWouldMeasureWrongAreRefusedWithWhatToSend) {
+  const auto refused = [](const std::string& commands, rig::HomeBy home_by = rig::HomeBy::here) {
+    Rig rig(Protocol::grbl, home_by);
+    rig.port->receive("$X\n" + commands);
+    rig.port->transmit();
+    return refusal([&] { rig.make_turntable(); });
+  };
+  EXPECT_THAT(refused("$13=1\n"), HasSubstr("set $13=0"));
+  EXPECT_THAT(refused("$1=25\n"), HasSubstr("set $1=255"));
+  EXPECT_THAT(refused("$22=1\n$20=1\n"), HasSubstr("set $20=0"));
+  EXPECT_THAT(refused("$32=1\n"), HasSubstr("set $32=0"));
+  EXPECT_THAT(refused("$22=0\n", rig::HomeBy::home_switch), HasSubstr("set $22=1"));
+}
+
+TEST(GrblSettings, ReportsInWorkCoordinatesGiveTheSamePosition) {
+  Rig rig(Protocol::grbl, rig::HomeBy::home_switch);
+  rig.port->receive("$X\n$10=0\nG92 X17\n");
+  const auto table = rig.make_turntable();
+  table->home();
+  table->move_to(30 * kDegree);
+  EXPECT_NEAR(rig.true_angle_rad(), 30 * kDegree, 1e-12);
+  EXPECT_NEAR(table->angle_rad(), 30 * kDegree, 1e-12);
+}
+
+TEST(ZaberSetup, NeedsTheStagesOwnHome) {
+  Rig rig(Protocol::zaber, rig::HomeBy::here);
+  EXPECT_THAT(refusal([&] { rig.make_turntable(); }), HasSubstr("\"home\": \"switch\""));
+}

@@ -1,0 +1,151 @@
+// The drivers over pseudo-terminals, by the plain line and by libserialport: what a wire adds to the line without one.
+// The firmware answers in real time, the platform turns in the injected clock's time.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "rig/device_contract.h"
+#include "rig/turntables/pty_server.h"
+#include "rig/turntables/serial_line.h"
+#include "wired_bench.h"
+
+namespace {
+
+using testing::HasSubstr;
+
+using Rig = WiredBench<rig::SimulatedClock>;
+enum class Line { pty, serial };
+
+std::unique_ptr<rig::ByteLine> open_line(Line kind, const std::string& path) {
+  return kind == Line::pty ? rig::open_pty_line(path) : rig::open_serial_line({.port = path, .usb_serial = ""});
+}
+
+std::string refusal(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "(accepted)";
+}
+
+struct Wire : testing::TestWithParam<std::tuple<Protocol, Line>> {
+  Wire() {
+    rig.setup.reply_timeout_s = 0.4;  // real time here; answers come within milliseconds
+    rig.setup.banner_timeout_s = 1;
+    rig.open_line = [this] { return open_line(line(), server->path()); };
+  }
+  static Protocol protocol() { return std::get<0>(GetParam()); }
+  static Line line() { return std::get<1>(GetParam()); }
+
+  Rig rig{protocol()};
+  std::unique_ptr<rig::PtyServer> server = rig::serve_on_pty(rig.port);
+};
+
+INSTANTIATE_TEST_SUITE_P(OverAPty, Wire,
+                         testing::Combine(testing::Values(Protocol::grbl, Protocol::zaber),
+                                          testing::Values(Line::pty, Line::serial)),
+                         [](const auto& wire) {
+                           return testing::PrintToString(std::get<0>(wire.param)) +
+                                  (std::get<1>(wire.param) == Line::pty ? "OnPty" : "OnSerial");
+                         });
+
+}  // namespace
+
+TEST_P(Wire, TheContractOfTurntablesIsKept) {
+  const auto table = rig.make_turntable();
+  for (const rig::ContractRow& row : rig::check_turntable(*table, rig.kStepRad)) {
+    EXPECT_TRUE(row.passed) << row.name << ": " << row.what;
+  }
+  EXPECT_NEAR(rig.true_angle_rad(), 0, 1e-12);
+}
+
+// Waiting for longer than the test may take, so that a time-out cannot be mistaken for it.
+TEST_P(Wire, APulledPlugIsToldApartFromSilenceWhileReading) {
+  const auto open = open_line(line(), server->path());
+  open->read(0.2);
+  std::thread puller([this] { rig.port->unplug(); });
+  EXPECT_THROW(while (true) open->read(3600), rig::Unplugged);
+  puller.join();
+}
+
+TEST_P(Wire, APulledPlugIsToldWhileWriting) {
+  const auto open = open_line(line(), server->path());
+  rig.port->unplug();
+  EXPECT_THROW(
+      while (true) {
+        open->write("?");
+        open->read(0.01);
+      },
+      rig::Unplugged);
+}
+
+TEST_P(Wire, SilenceIsAnEmptyRead) {
+  const auto open = open_line(line(), server->path());
+  while (!open->read(0.05).empty()) {
+  }
+  EXPECT_EQ(open->read(0), "");
+}
+
+TEST_P(Wire, ItIsTakenForOneProgramAlone) {
+  const auto open = open_line(line(), server->path());
+  EXPECT_THAT(refusal([this] { open_line(line(), server->path()); }), HasSubstr("used by another program; close"));
+}
+
+TEST_P(Wire, APlugPulledInTheMiddleOfAMoveIsSaidAndAnotherPortIsFoundForHoming) {
+  const auto table = rig.make_turntable();
+  table->home();
+  std::thread puller([this] {
+    while (rig.true_angle_rad() < 10 * kDegree) {
+      std::this_thread::yield();
+    }
+    rig.port->unplug();
+  });
+  EXPECT_THAT(refusal([&] { table->move_to(350 * kDegree); }), HasSubstr("was unplugged"));
+  puller.join();
+  EXPECT_EQ(table->state(), rig::TurntableState::unknown_position);
+  EXPECT_THAT(refusal([&] { table->home(); }), testing::AnyOf(HasSubstr("plug"), HasSubstr("start")));
+  table->stop();  // nothing is there to be stopped, and nothing fails
+  rig::SimulatedMotor motor(rig.bench, rig.clock, rig.kStepsPerDeg);
+  rig.port = rig::make_simulated_port(protocol() == Protocol::grbl ? rig::make_simulated_grbl(motor, rig.clock, true)
+                                                                   : rig::make_simulated_zaber(motor));
+  server = rig::serve_on_pty(rig.port);
+  table->home();
+  table->move_to(30 * kDegree);
+  EXPECT_NEAR(rig.true_angle_rad(), 30 * kDegree, 1e-12);
+}
+
+TEST_P(Wire, SilenceInTheMiddleOfAMoveIsATimeoutAndNoPulledPlug) {
+  const auto home_by = protocol() == Protocol::grbl ? rig::HomeBy::here : rig::HomeBy::home_switch;
+  Rig silent(protocol(), home_by, {{.at_operation = 60, .fault = rig::LineFault::silence}});
+  silent.setup.reply_timeout_s = 0.4;
+  silent.open_line = [this] { return open_line(line(), server->path()); };
+  server = rig::serve_on_pty(silent.port);
+  const auto table = silent.make_turntable();
+  table->home();
+  EXPECT_THAT(refusal([&] { table->move_to(300 * kDegree); }), HasSubstr("did not answer"));
+  EXPECT_EQ(table->state(), rig::TurntableState::unknown_position);
+}
+
+TEST_P(Wire, AStopFromAnotherThreadReachesTheMotorWhileTheMoverSleeps) {
+  const auto table = rig.make_turntable();
+  table->home();
+  std::thread stopper([&] {
+    while (rig.true_angle_rad() < 20 * kDegree) {
+      std::this_thread::yield();
+    }
+    table->stop();
+  });
+  EXPECT_THAT(refusal([&] { table->move_to(350 * kDegree); }), HasSubstr("was stopped at"));
+  stopper.join();
+  EXPECT_LT(rig.true_angle_rad(), 340 * kDegree);
+  EXPECT_NEAR(table->angle_rad(), rig.true_angle_rad(), 1e-12);
+}
+
+TEST(SerialLine, SaysThatAPortIsNotThere) {
+  EXPECT_THAT(refusal([] { rig::open_serial_line({.port = "/dev/ttyNONE7", .usb_serial = ""}); }),
+              testing::AllOf(HasSubstr("there is no port /dev/ttyNONE7"), HasSubstr("threadstation devices")));
+  EXPECT_THAT(refusal([] { rig::open_serial_line({.port = "", .usb_serial = "A50285BI"}); }),
+              HasSubstr("serial number A50285BI is not plugged in"));
+}

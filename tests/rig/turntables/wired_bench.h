@@ -1,0 +1,94 @@
+// A small bench whose platform is turned by simulated firmware, and the driver that speaks to it.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <numbers>
+#include <ostream>
+#include <string>
+
+#include "rig/clock.h"
+#include "rig/simulated_bench.h"
+#include "rig/turntables/controllers.h"
+#include "rig/turntables/simulated_port.h"
+#include "rig/turntables/stepper_turntable.h"
+
+inline constexpr double kDegree = std::numbers::pi / 180;
+
+enum class Protocol { grbl, zaber };
+
+inline std::ostream& operator<<(std::ostream& out, Protocol protocol) {
+  return out << (protocol == Protocol::grbl ? "Grbl" : "Zaber");
+}
+
+// A clock that lets a test act when it reaches a time.
+class EventfulClock final : public rig::Clock {
+ public:
+  double monotonic_s() override { return elapsed_s_; }
+  std::string utc() override { return "2026-11-21T10:20:30.123Z"; }
+  void sleep_s(double duration_s) override {
+    elapsed_s_ += duration_s;
+    if (event && elapsed_s_ >= at_s) {
+      const std::function<void()> now = std::exchange(event, nullptr);
+      now();
+    }
+  }
+  double at_s = 0;
+  std::function<void()> event;
+
+ private:
+  double elapsed_s_ = 0;
+};
+
+template <typename ClockKind>
+struct WiredBench {
+  static constexpr double kStepsPerDeg = 40;
+  static constexpr double kStepRad = kDegree / kStepsPerDeg;
+
+  explicit WiredBench(Protocol which, rig::HomeBy home_by = rig::HomeBy::home_switch, rig::LineFaultPlan faults = {})
+      : protocol(which),
+        bench({.turntable = {.scale = 1, .step_rad = kStepRad, .speed_rad_s = 30 * kDegree}},
+              [](const rig::BenchState& state) {
+                return cv::Mat3f(state.lens.height_px, state.lens.width_px, cv::Vec3f::all(0.1F));
+              }) {
+    setup.steps_per_deg = kStepsPerDeg;
+    setup.home_by = stepper.home_by = home_by;
+    bench.turn_platform(50 * kDegree);  // where somebody left it
+    rig::SimulatedMotor motor(bench, clock, kStepsPerDeg);
+    const bool with_switch = home_by == rig::HomeBy::home_switch;
+    port = rig::make_simulated_port(which == Protocol::grbl ? rig::make_simulated_grbl(motor, clock, with_switch)
+                                                            : rig::make_simulated_zaber(motor),
+                                    std::move(faults));
+  }
+
+  std::shared_ptr<rig::MotionController> connect(std::shared_ptr<rig::ByteLine> line) {
+    return protocol == Protocol::grbl ? rig::connect_grbl(std::move(line), clock, setup)
+                                      : rig::connect_zaber(std::move(line), clock, setup);
+  }
+
+  std::unique_ptr<rig::Turntable> make_turntable() {
+    return rig::make_stepper_turntable([this] { return connect(open_line()); }, clock, stepper);
+  }
+
+  double true_angle_rad() const { return bench.state().platform_angle_rad; }
+
+  Protocol protocol;
+  ClockKind clock = make_clock();
+  rig::ControllerSetup setup;
+  rig::StepperSetup stepper;
+  rig::SimulatedBench bench;
+  std::shared_ptr<rig::SimulatedPort> port;
+  std::function<std::unique_ptr<rig::ByteLine>()> open_line = [this] {
+    return rig::open_simulated_line(port, clock);
+  };
+
+ private:
+  static ClockKind make_clock() {
+    if constexpr (std::is_same_v<ClockKind, rig::SimulatedClock>) {
+      return rig::SimulatedClock(1.8e9);
+    } else {
+      return {};
+    }
+  }
+};
