@@ -19,9 +19,7 @@ namespace fs = std::filesystem;
 
 struct Gphoto2Command : testing::Test {
   void SetUp() override {
-    if (std::system("command -v gphoto2 >/dev/null") != 0) {
-      GTEST_SKIP() << "the gphoto2 package is not installed";
-    }
+    ASSERT_EQ(std::system("command -v gphoto2 >/dev/null"), 0) << "install gphoto2, as station/packages.txt says";
     fs::create_directories(folder);
   }
   ~Gphoto2Command() override { fs::remove_all(folder); }
