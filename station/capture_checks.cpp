@@ -97,10 +97,12 @@ class Inspection {
                                             double reading_rad) {
     if (!asked_.rig.reference_patch) return std::nullopt;
     if (!mounted_.contains(step.mounting)) mounted_[step.mounting] = holder_of(step.mounting);
+    const std::optional<Eigen::Isometry3d>& mounted = mounted_.at(step.mounting);
+    if (!mounted) return std::nullopt;
     const BenchReading bench = read_bench(calibration_, asked_.rig, tags_in(raw));
     const double angle_rad = bench.angle ? bench.angle->angle_rad : calibration_.platform.scale * reading_rad;
     const Eigen::Isometry3d holder_from_world =
-        (Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()) * mounted_.at(step.mounting)).inverse();
+        (Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()) * *mounted).inverse();
     calibration::DevelopOptions options{.vignetting = calibration_.light.vignetting};
     if (calibration_.sensor) options.response = &calibration_.sensor->response;
     const calibration::Developed picture = calibration::develop(raw, options);
@@ -114,7 +116,7 @@ class Inspection {
   }
 
   // From this run's pose pictures; a session that goes on has those of an earlier run.
-  Eigen::Isometry3d holder_of(rig::Mounting mounting) const {
+  std::optional<Eigen::Isometry3d> holder_of(rig::Mounting mounting) const {
     std::vector<PosePicture> pictures;
     if (const auto posed = posed_.find(mounting); posed != posed_.end()) pictures = posed->second;
     for (const auto& [id, record] : taken_pictures(session_.records())) {
@@ -124,15 +126,17 @@ class Inspection {
       const calibration::SensorPicture raw = calibration::read_sensor_file(session_.path() / record.file);
       pictures.push_back({id, record.read_angle_rad, tags_in(raw)});
     }
+    const auto shown = [&](const PosePicture& picture) { return shows_holder(picture, asked_.rig.holder_tags); };
+    if (pictures.empty() || !std::ranges::all_of(pictures, shown)) return std::nullopt;
     return measure_holder(pictures, calibration_, asked_.rig).platform_from_holder;
   }
 
   const SessionFolder& session_;
   const SessionFile& asked_;
   RigCalibration calibration_;
-  std::map<rig::Mounting, std::vector<PosePicture>> posed_;  // this run's
-  std::map<rig::Mounting, Eigen::Isometry3d> mounted_;       // platform_from_holder
-  std::optional<LastView> last_;                             // of this run
+  std::map<rig::Mounting, std::vector<PosePicture>> posed_;            // this run's
+  std::map<rig::Mounting, std::optional<Eigen::Isometry3d>> mounted_;  // platform_from_holder
+  std::optional<LastView> last_;                                       // of this run
 };
 
 }  // namespace

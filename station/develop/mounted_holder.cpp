@@ -11,12 +11,16 @@ namespace {
 
 constexpr long kFewestTags = 2;
 
-void require_tags(const PosePicture& picture, const calibration::TagLayout& holder) {
+long tags_of_holder(const PosePicture& picture, const calibration::TagLayout& holder) {
   const auto of_holder = [&](const calibration::TagDetection& seen) {
     return std::any_of(holder.tags.begin(), holder.tags.end(),
                        [&](const calibration::Tag& tag) { return tag.id == seen.id; });
   };
-  const auto count = std::count_if(picture.seen.begin(), picture.seen.end(), of_holder);
+  return std::count_if(picture.seen.begin(), picture.seen.end(), of_holder);
+}
+
+void require_tags(const PosePicture& picture, const calibration::TagLayout& holder) {
+  const long count = tags_of_holder(picture, holder);
   if (count < kFewestTags)
     throw std::runtime_error("step " + picture.step + ": " + std::to_string(count) +
                              " of the holder's tags were found, " + std::to_string(kFewestTags) +
@@ -24,6 +28,10 @@ void require_tags(const PosePicture& picture, const calibration::TagLayout& hold
 }
 
 }  // namespace
+
+bool shows_holder(const PosePicture& picture, const calibration::TagLayout& holder) {
+  return tags_of_holder(picture, holder) >= kFewestTags;
+}
 
 MountedHolder measure_holder(const std::vector<PosePicture>& pictures, const RigCalibration& calibration,
                              const RigFile& rig) {

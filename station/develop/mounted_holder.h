@@ -22,6 +22,9 @@ struct MountedHolder {
   double rms_px = 0.0;
 };
 
+// Whether enough of the holder's tags are in the picture for measure_holder.
+bool shows_holder(const PosePicture& picture, const calibration::TagLayout& holder);
+
 // Throws std::runtime_error when fewer than two of the holder's tags are seen in a picture, a tag is out of place, or
 // the bench does not stand as it was calibrated.
 MountedHolder measure_holder(const std::vector<PosePicture>& pictures, const RigCalibration& calibration,

@@ -320,7 +320,13 @@ TEST_F(Workflow, APulledPlugAtTwentyRandomMomentsLosesAndDoublesNothing) {
 TEST_F(Workflow, CtrlCStopsThePlatformAndLeavesASessionThatResumes) {
   const std::string session = path("interrupted");
   const pid_t process = start_threadstation(hasty_capture_arguments(session));
-  while (!fs::exists(session + "/raw/reflection-horizontal-1.arw"))
+  // Until the first view is stored, or the session has ended without it.
+  const auto ended = [&] {
+    std::ifstream file(session + "/journal.jsonl");
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    return text.find("\"event\":\"stop\"") != std::string::npos;
+  };
+  while (!fs::exists(session + "/raw/reflection-horizontal-1.arw") && !ended())
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   ::kill(process, SIGINT);
   EXPECT_EQ(wait_for(process), 1);
