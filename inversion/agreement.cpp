@@ -11,25 +11,6 @@ double ViewAgreement::relative_rmse() const {
   return std::copysign(std::sqrt(std::abs(mean_square)), mean_square) / mean_reference;
 }
 
-ViewAgreement agreement(const View& view, const cv::Mat3f& rendered, int block_px) {
-  const double diffuser = diffuser_radiance(view.light).mean();
-  ViewAgreement result;
-  double pixels = 0, difference_sum = 0;
-  for (const Block& block : mask_blocks(view.mask, block_px)) {
-    const auto weight = static_cast<double>(block.pixels.size());
-    const Eigen::Array3d reference = block_mean(block, view.image) / diffuser;
-    const Eigen::Array3d difference = block_mean(block, rendered) / diffuser - reference;
-    result.mean_square += weight * difference.square().mean();
-    result.mean_reference += weight * reference.mean();
-    difference_sum += weight * difference.mean();
-    pixels += weight;
-  }
-  result.relative_bias = difference_sum / result.mean_reference;
-  result.mean_square /= pixels;
-  result.mean_reference /= pixels;
-  return result;
-}
-
 ViewAgreement noiseless_agreement(const View& view, const std::array<cv::Mat3f, 2>& photographs,
                                   const std::array<cv::Mat3f, 2>& rendered, int block_px) {
   const double diffuser = diffuser_radiance(view.light).mean();
@@ -51,6 +32,10 @@ ViewAgreement noiseless_agreement(const View& view, const std::array<cv::Mat3f, 
   result.mean_square /= pixels;
   result.mean_reference /= pixels;
   return result;
+}
+
+ViewAgreement agreement(const View& view, const cv::Mat3f& rendered, int block_px) {
+  return noiseless_agreement(view, {view.image, view.image}, {rendered, rendered}, block_px);
 }
 
 double overall_relative_rmse(const std::vector<ViewAgreement>& views) {

@@ -219,13 +219,15 @@ class OtherTerms {
     std::vector<double> gradient;
     problem_.Evaluate({}, &terms.loss, nullptr, &gradient, nullptr);
     terms.gradient = Eigen::Map<const VectorXd>(gradient.data(), unknowns.size());
-    const Eigen::MatrixXd rows = jacobian();
+    const Eigen::MatrixXd rows = jacobian(unknowns);
     terms.hessian = rows.transpose() * rows;
     return terms;
   }
 
- private:
-  Eigen::MatrixXd jacobian() {
+  // Terms x unknowns; no rows where there are no terms.
+  Eigen::MatrixXd jacobian(const VectorXd& unknowns) {
+    if (problem_.NumResiduals() == 0) return Eigen::MatrixXd(0, unknowns.size());
+    at_ = unknowns;
     ceres::CRSMatrix sparse;
     problem_.Evaluate({}, nullptr, nullptr, nullptr, &sparse);
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(sparse.num_rows, at_.size());
@@ -236,6 +238,7 @@ class OtherTerms {
     return dense;
   }
 
+ private:
   VectorXd at_;
   ceres::Problem problem_;
 };
@@ -315,7 +318,8 @@ std::vector<bool> fixed_unknowns(const Search& search, const VectorXd& unknowns)
 }
 
 // At the unknowns, with the paths that were recorded last.
-Certainty certainty_at(const ViewObjective& objective, const Search& search, double prior_scale, VectorXd unknowns) {
+Certainty certainty_at(const ViewObjective& objective, const Search& search, double prior_scale,
+                       const VectorXd& unknowns) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   LinearisedFit fit;
   RowMajor jacobian(objective.residual_count(), unknowns.size());
@@ -327,20 +331,7 @@ Certainty certainty_at(const ViewObjective& objective, const Search& search, dou
   fit.views = objective.residual_views();
   fit.fixed = fixed_unknowns(search, unknowns);
   fit.scales = VectorXd::Ones(unknowns.size());
-  ceres::Problem penalties;
-  penalties.AddParameterBlock(unknowns.data(), static_cast<int>(unknowns.size()));
-  search.family->add_penalties(penalties, unknowns.data());
-  fit.penalty_jacobian.resize(penalties.NumResiduals(), unknowns.size());
-  if (penalties.NumResiduals() > 0) {
-    ceres::CRSMatrix sparse;
-    penalties.Evaluate({}, nullptr, nullptr, nullptr, &sparse);
-    fit.penalty_jacobian.setZero();
-    for (int row = 0; row < sparse.num_rows; ++row)
-      for (int i = sparse.rows[static_cast<std::size_t>(row)]; i < sparse.rows[static_cast<std::size_t>(row) + 1];
-           ++i)
-        fit.penalty_jacobian(row, sparse.cols[static_cast<std::size_t>(i)]) =
-            sparse.values[static_cast<std::size_t>(i)];
-  }
+  fit.penalty_jacobian = OtherTerms(search, 0, unknowns.size()).jacobian(unknowns);
   if (prior_scale > 0) fit.prior_jacobian = PriorTerm(prior_scale).jacobian();
   return certainty_of(fit);
 }
