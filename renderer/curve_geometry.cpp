@@ -72,7 +72,8 @@ CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u
   const Vector3f from_center = ray.origin + distance * ray.direction - center.head<3>();
   if (const auto exact = cylinder_normal(from_center, ray.direction, point.tangent, center.w()))
     point.normal = *exact;
-  point.position = center.head<3>() + center.w() * (1 - kStartDepth) * point.normal;
+  point.radius = center.w() * (1 - kStartDepth);
+  point.position = center.head<3>() + point.radius * point.normal;
   return point;
 }
 

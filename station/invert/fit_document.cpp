@@ -70,16 +70,16 @@ json rounds_json(const inversion::ViewFit& fit) {
 
 }  // namespace
 
+std::map<std::string, inversion::ModelKind> names_of_models() {
+  return {{"thread", inversion::ModelKind::thread},
+          {"fiber", inversion::ModelKind::fiber},
+          {"yarn", inversion::ModelKind::yarn}};
+}
+
 std::string name_of(inversion::ModelKind model) {
-  switch (model) {
-    case inversion::ModelKind::fiber:
-      return "fiber";
-    case inversion::ModelKind::yarn:
-      return "yarn";
-    case inversion::ModelKind::thread:
-      break;
-  }
-  return "thread";
+  for (const auto& [name, kind] : names_of_models())
+    if (kind == model) return name;
+  throw std::logic_error("a kind of model without a name");
 }
 
 std::string name_of(inversion::Solver solver) {

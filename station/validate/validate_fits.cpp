@@ -118,6 +118,7 @@ cv::Mat3b comparison_row(const View& view, const std::vector<cv::Mat3f>& renderi
 struct Gathered {
   std::vector<inversion::ViewAgreement> all, reflection, transmission, fitted;
   double seconds = 0;
+  std::vector<ValidatedModel::OfView> views;
 };
 
 ValidatedSpool validate_spool(const ValidateRequest& request, const RigFile& rig,
@@ -160,6 +161,7 @@ ValidatedSpool validate_spool(const ValidateRequest& request, const RigFile& rig
         const Pictures pictures = rendered(spool.wrapping, view, fit, request.fitted_samples,
                                            7000 + 100 * static_cast<std::uint64_t>(fold) + 2 * i);
         const auto agreement = inversion::noiseless_agreement(view, made.pictures[i], pictures, kBlock_px);
+        if (fold == 0) of.views.push_back({view.id, out[i], agreement.relative_rmse(), agreement.relative_bias});
         if (!out[i]) {
           of.fitted.push_back(agreement);
           continue;
@@ -180,7 +182,8 @@ ValidatedSpool validate_spool(const ValidateRequest& request, const RigFile& rig
                              .reflection = inversion::overall_relative_rmse(gathered[m].reflection),
                              .transmission = inversion::overall_relative_rmse(gathered[m].transmission),
                              .fitted_views = inversion::overall_relative_rmse(gathered[m].fitted),
-                             .seconds = gathered[m].seconds});
+                             .seconds = gathered[m].seconds,
+                             .views = gathered[m].views});
   return result;
 }
 
@@ -230,12 +233,17 @@ nlohmann::json to_json(const std::vector<ValidatedSpool>& spools) {
   nlohmann::json document = nlohmann::json::array();
   for (const ValidatedSpool& spool : spools) {
     nlohmann::json models = nlohmann::json::object();
-    for (const ValidatedModel& m : spool.models)
-      models[name_of(m.model)] = {{"relative_rmse", m.relative_rmse},
-                                  {"reflection", m.reflection},
-                                  {"transmission", m.transmission},
-                                  {"fitted_views", m.fitted_views},
-                                  {"seconds", m.seconds}};
+    for (const ValidatedModel& m : spool.models) {
+      nlohmann::json views = nlohmann::json::array();
+      for (const ValidatedModel::OfView& view : m.views)
+        views.push_back({{"id", view.id},
+                         {"left_out", view.left_out},
+                         {"relative_rmse", view.relative_rmse},
+                         {"relative_bias", view.relative_bias}});
+      models[name_of(m.model)] = {
+          {"relative_rmse", m.relative_rmse}, {"reflection", m.reflection}, {"transmission", m.transmission},
+          {"fitted_views", m.fitted_views},   {"seconds", m.seconds},       {"views", views}};
+    }
     document.push_back({{"spool", spool.name}, {"fibers_per_thread", spool.fibers_per_thread}, {"models", models}});
   }
   return {{"spools", document}};

@@ -36,6 +36,12 @@ struct ValidatedModel {
   double relative_rmse = 0, reflection = 0, transmission = 0;
   double fitted_views = 0;  // over the views that were fitted, first fold
   double seconds = 0;       // of one fit
+  struct OfView {
+    std::string id;
+    bool left_out;
+    double relative_rmse, relative_bias;
+  };
+  std::vector<OfView> views;  // first fold
 };
 
 struct ValidatedSpool {
