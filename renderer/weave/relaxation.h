@@ -15,7 +15,7 @@ namespace renderer {
 struct RelaxationOptions {
   int points_per_crossing = 8;  // control points; even
   double overlap_goal = 0.005;  // of the thinnest yarn's radius
-  double gradient_goal = 1e-7;  // of force_scale_n
+  double gradient_goal = 1e-8;  // of force_scale_n
   int most_stages = 10;         // of contact stiffness, each four times the one before
   bool quasi_newton = false;    // L-BFGS before Newton
 };
@@ -43,8 +43,8 @@ struct RelaxedPatch {
 };
 
 inline constexpr double kMostOverlap = 0.01;  // of a radius: what a relaxed patch may have
-// In square plain cloth the gap is 1.7 % at p / D = 0.9, 2.5 % at 0.88, 4.4 % at 0.86; Peirce's jam lies at 0.866.
-inline constexpr double kJammedCrownGap = 0.035;
+// In square plain cloth the gap is 1.7 % at p / D = 0.9, 2.5 % at 0.88, 4.3 % at 0.86; Peirce's jam lies at 0.866.
+inline constexpr double kJammedCrownGap = 0.04;
 
 // Errors: std::runtime_error with the line of check_draft(). Quality is in the report.
 RelaxedPatch relax(const Draft& draft, const RelaxationOptions& options = {});
