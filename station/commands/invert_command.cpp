@@ -51,6 +51,7 @@ void add_invert_command(CLI::App& app) {
       ->check(CLI::Range(1, 100000));
   command->add_option("--adam-paths", arguments->request.fit.adam_paths, "light paths per block for each of them")
       ->check(CLI::Range(1, 100000));
+  command->add_flag("!--eq6", arguments->request.fit.robust, "all views and blocks count as in eq. 6, none less");
   command
       ->add_option("--prior", arguments->request.fit.prior_weight, "weight of the simulated threads' prior; 0: none")
       ->check(CLI::Range(0.0, 1000.0));

@@ -90,8 +90,10 @@ json fit_document(const inversion::ViewFit& fit, const inversion::FitOptions& op
                   const std::vector<FittedView>& fitted, int samples_per_pixel) {
   json views = json::array(), held = json::array();
   std::vector<inversion::ViewAgreement> all, reflection, transmission;
-  for (const FittedView& view : fitted) {
+  for (std::size_t i = 0; i < fitted.size(); ++i) {
+    const FittedView& view = fitted[i];
     views.push_back({{"id", view.id},
+                     {"weight", fit.view_weights[i]},
                      {"relative_rmse", view.agreement.relative_rmse()},
                      {"relative_bias", view.agreement.relative_bias},
                      {"mean_over_diffuser", view.agreement.mean_reference}});
@@ -104,6 +106,7 @@ json fit_document(const inversion::ViewFit& fit, const inversion::FitOptions& op
                 {"seed", options.seed},
                 {"prior_weight", options.model == inversion::ModelKind::thread ? options.prior_weight : 0.0},
                 {"held", held},
+                {"robust", options.robust},
                 {"block_px", fit.block_px},
                 {"blocks", fit.blocks},
                 {"start", fit.start},
