@@ -2,10 +2,13 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iomanip>
 #include <limits>
-#include <utility>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <tuple>
 
 #include "renderer/weave/crossings.h"
 #include "renderer/weave/patch_measures.h"
@@ -219,10 +222,7 @@ YarnPatch patch_of(const Cell& cell, YarnPatch patch) {
 
 }  // namespace
 
-RelaxedPatch relax(const Draft& draft, const RelaxationOptions& options) {
-  Draft unscaled = draft;
-  unscaled.height_scale = 1;
-  const YarnPatch start = initial_patch(unscaled, options.points_per_crossing);
+RelaxedPatch relax(const YarnPatch& start, const Draft& draft, const RelaxationOptions& options) {
   Cell cell = cell_of(start, draft);
   RelaxedPatch relaxed;
   RelaxationReport& report = relaxed.report;
@@ -232,7 +232,7 @@ RelaxedPatch relax(const Draft& draft, const RelaxationOptions& options) {
   if (draft.free_periods) settle_periods(cell, options, report);
 
   report.contact_n_mm2 = cell.model.contact_n_mm2;
-  report.contact_forces_n = cell.contacts.forces(cell.model, cell.points);
+  std::tie(report.contact_forces_n, report.contact_loads_n) = cell.contacts.forces(cell.model, cell.points);
   report.cell_force_n = cell_force(cell, derivatives(cell, cell.points, Curvature::none));
   YarnPatch patch = patch_of(cell, start);
   report.as_drafted = is_as_drafted(patch, draft);
@@ -242,10 +242,30 @@ RelaxedPatch relax(const Draft& draft, const RelaxationOptions& options) {
   for (Yarn& yarn : patch.yarns)
     for (Eigen::Vector3d& point : yarn.control_points) point.z() *= draft.height_scale;
   measure(patch);
-  const bool flattened = draft.warp.flatness > 1 || draft.weft.flatness > 1;
+  const bool flattened =
+      std::any_of(patch.yarns.begin(), patch.yarns.end(), [](const Yarn& yarn) { return yarn.flatness > 1; });
   if (flattened && report.overlap > 0) patch.least_gap_mm = -report.overlap * thinnest_radius(cell.model);
   relaxed.patch = std::move(patch);
   return relaxed;
+}
+
+RelaxedPatch relax(const Draft& draft, const RelaxationOptions& options) {
+  Draft unscaled = draft;
+  unscaled.height_scale = 1;
+  return relax(initial_patch(unscaled, options.points_per_crossing), draft, options);
+}
+
+void check_at_rest(const RelaxedPatch& relaxed) {
+  const std::string name = "draft \"" + relaxed.patch.name + "\": ";
+  if (!relaxed.report.as_drafted)
+    throw std::runtime_error(name +
+                             "yarns slipped past each other on the way to rest, so the cloth is not as drafted; open "
+                             "the sett, take thinner yarns or more tension");
+  std::ostringstream gradient;
+  gradient << std::setprecision(2) << relaxed.report.gradient;
+  if (!relaxed.report.converged)
+    throw std::runtime_error(name + "yarns did not come to rest (largest force " + gradient.str() +
+                             " of the pull on them); open the sett, take thinner yarns or more tension");
 }
 
 }  // namespace renderer

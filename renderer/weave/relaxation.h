@@ -35,6 +35,7 @@ struct RelaxationReport {
   Eigen::Vector2d cell_force_n =
       Eigen::Vector2d::Zero();        // with which the cell resists being widened, d energy / d period
   Eigen::Matrix3Xd contact_forces_n;  // on each yarn, sum over its contacts
+  Eigen::VectorXd contact_loads_n;    // on each yarn, sum of the magnitudes
 };
 
 struct RelaxedPatch {
@@ -48,5 +49,11 @@ inline constexpr double kJammedCrownGap = 0.04;
 
 // Errors: std::runtime_error with the line of check_draft(). Quality is in the report.
 RelaxedPatch relax(const Draft& draft, const RelaxationOptions& options = {});
+// The same from another start: an initial_patch() whose yarns may differ in radius, flatness and place. Stiffness, load and
+// height scale are the draft's.
+RelaxedPatch relax(const YarnPatch& start, const Draft& draft, const RelaxationOptions& options = {});
+
+// Errors: std::runtime_error, one line, where yarns did not come to rest or not as drafted. Jammed cloth passes.
+void check_at_rest(const RelaxedPatch& relaxed);
 
 }  // namespace renderer

@@ -243,15 +243,22 @@ double ContactList::deepest_overlap(const WeaveModel& model, const Eigen::Matrix
   return deepest;
 }
 
-Eigen::Matrix3Xd ContactList::forces(const WeaveModel& model, const Eigen::Matrix3Xd& points) const {
-  Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(model.yarns.size()));
+std::pair<Eigen::Matrix3Xd, Eigen::VectorXd> ContactList::forces(const WeaveModel& model,
+                                                                 const Eigen::Matrix3Xd& points) const {
+  const auto yarns = static_cast<Eigen::Index>(model.yarns.size());
+  Eigen::Matrix3Xd sums = Eigen::Matrix3Xd::Zero(3, yarns);
+  Eigen::VectorXd loads = Eigen::VectorXd::Zero(yarns);
   for_each_touch(model, points, [&](const Touch& touch) {
     const double q = touch.distance / touch.contact;
     const Eigen::Vector3d force = touch.factor * 2 * (1 / q - q) * (1 / (q * q) + 1) / touch.contact * touch.slope;
-    forces.col(samples_[static_cast<std::size_t>(pairs_[touch.pair].a)].yarn) += force;
-    forces.col(samples_[static_cast<std::size_t>(pairs_[touch.pair].b)].yarn) -= force;
+    const int a = samples_[static_cast<std::size_t>(pairs_[touch.pair].a)].yarn,
+              b = samples_[static_cast<std::size_t>(pairs_[touch.pair].b)].yarn;
+    sums.col(a) += force;
+    sums.col(b) -= force;
+    loads[a] += force.norm();
+    loads[b] += force.norm();
   });
-  return forces;
+  return {sums, loads};
 }
 
 }  // namespace renderer
