@@ -10,10 +10,12 @@ namespace {
 
 struct Arguments {
   ValidateRequest request;
+  std::string calibration;
   OutputOptions output;
 };
 
 void run(Arguments& arguments) {
+  if (!arguments.calibration.empty()) arguments.request.calibration = arguments.calibration;
   arguments.request.progress_style = arguments.output.progress_style();
   const std::vector<ValidatedSpool> spools = validate_fits(arguments.request);
   if (arguments.output.json)
@@ -35,6 +37,8 @@ void add_validate_command(CLI::App& app) {
       ->transform(CLI::CheckedTransformer(names_of_models()));
   command->add_option("--folds", request.folds, "how often two views are left out; 0: no such fits")
       ->check(CLI::Range(0, 3));
+  command->add_option("--calibration", arguments->calibration,
+                      "folder of a calibration of the rig: fit with its geometry and light as well");
   command->add_flag("--solvers", request.solvers, "compare Levenberg-Marquardt and Adam on all views");
   command
       ->add_option("--spp", request.samples_per_pixel, "samples per pixel of each of the two photographs of a view")

@@ -24,6 +24,7 @@
 #include "station/capture/stored_file.h"
 #include "station/capture_checks.h"
 #include "station/develop/mounted_holder.h"
+#include "station/develop/noise_law.h"
 #include "station/develop/sheet_width.h"
 #include "station/documents/calibration_file.h"
 #include "station/documents/reader.h"
@@ -207,7 +208,6 @@ DevelopedPicture develop_view(const std::filesystem::path& session, const Sessio
         dark = read_picture(session, picture_of(pictures, other.id));
     picture = calibration::develop(bracket, develop_options(calibration, dark, step.id));
   }
-  picture.variance.release();
   DevelopedPicture result;
   result.patch = read_lamp(asked.rig, spool, picture, 86400 * days_between(asked.utc, record.utc),
                            calibration.light.droop, developed);
@@ -219,6 +219,8 @@ DevelopedPicture develop_view(const std::filesystem::path& session, const Sessio
   if (developed.masked_pixels == 0)
     throw std::runtime_error("view " + view.id +
                              ": no thread is where the calibration expects them; calibrate the rig again");
+  developed.noise = noise_law(picture.radiance, picture.variance, view.mask);
+  picture.variance.release();
   developed.saturated_fraction =
       static_cast<double>(cv::countNonZero(picture.saturated & view.mask)) / developed.masked_pixels;
   if (!view.transmission) result.sheet_width_mm = sheet_width_mm(view.image, view.camera, spool);

@@ -151,6 +151,34 @@ std::vector<ComparedSolver> compare_solvers(const ValidateRequest& request, cons
   return compared;
 }
 
+// What is fitted: a model, on the true views or on what a calibration takes them to be.
+struct Variant {
+  inversion::ModelKind model;
+  bool calibrated = false;
+  std::vector<View> views;
+};
+
+std::vector<Variant> variants_of(const ValidateRequest& request, const RigFile& rig, const Spool& spool,
+                                 const Photographed& made) {
+  std::vector<Variant> variants;
+  for (inversion::ModelKind model : request.models) variants.push_back({.model = model, .views = made.views});
+  if (!request.calibration) return variants;
+  const RigCalibration calibration = read_calibration(*request.calibration);
+  Variant calibrated{.model = inversion::ModelKind::thread,
+                     .calibrated = true,
+                     .views = synthetic_views(rig, spool.wrapping, kWidth_px, kHeight_px, &calibration)};
+  for (std::size_t i = 0; i < made.views.size(); ++i) {
+    calibrated.views[i].image = made.views[i].image;
+    calibrated.views[i].mask &= made.views[i].mask;  // the photograph is drawn there only
+  }
+  variants.push_back(std::move(calibrated));
+  return variants;
+}
+
+std::string label_of(const ValidatedModel& of) {
+  return name_of(of.model) + (of.calibrated ? "*" : "");
+}
+
 ValidatedSpool validate_spool(const ValidateRequest& request, const RigFile& rig,
                               const std::filesystem::path& spool_file,
                               const std::function<void(const std::string&, double)>& step) {
@@ -175,22 +203,23 @@ ValidatedSpool validate_spool(const ValidateRequest& request, const RigFile& rig
   for (std::size_t i = 0; i < made.views.size(); ++i)
     draws.add(made.views[i],
               inversion::noiseless_agreement(made.views[i], made.pictures[i], other.pictures[i], kBlock_px));
-  std::vector<Gathered> gathered(request.models.size());
-  const auto parts = static_cast<double>(request.models.size()) * request.folds;
+  const std::vector<Variant> variants = variants_of(request, rig, spool, made);
+  std::vector<Gathered> gathered(variants.size());
+  const auto parts = static_cast<double>(variants.size()) * request.folds;
   for (int fold = 0; fold < request.folds; ++fold) {
     const std::vector<bool> out = left_out(made.views, static_cast<std::size_t>(fold));
-    std::vector<View> kept;
-    for (std::size_t i = 0; i < out.size(); ++i)
-      if (!out[i]) kept.push_back(made.views[i]);
     std::vector<std::vector<cv::Mat3f>> shown(out.size());
-    for (std::size_t m = 0; m < request.models.size(); ++m) {
+    for (std::size_t m = 0; m < variants.size(); ++m) {
       Gathered& of = gathered[m];
-      inversion::FitOptions options{.model = request.models[m], .seed = request.seed};
+      std::vector<View> kept;
+      for (std::size_t i = 0; i < out.size(); ++i)
+        if (!out[i]) kept.push_back(variants[m].views[i]);
+      inversion::FitOptions options{.model = variants[m].model, .seed = request.seed};
       if (options.model == inversion::ModelKind::yarn) options.paths_per_block = {128, 512};
       const double done =
-          (static_cast<double>(fold) * static_cast<double>(request.models.size()) + static_cast<double>(m)) / parts;
+          (static_cast<double>(fold) * static_cast<double>(variants.size()) + static_cast<double>(m)) / parts;
       options.progress = [&](const std::string& what, double share) {
-        step(name_of(options.model) + ", " + what,
+        step(name_of(options.model) + (variants[m].calibrated ? " as calibrated, " : ", ") + what,
              2 * kPhotographShare + (1 - 2 * kPhotographShare) * (done + 0.8 * share / parts));
         return !interrupted();
       };
@@ -199,7 +228,7 @@ ValidatedSpool validate_spool(const ValidateRequest& request, const RigFile& rig
       of.seconds += seconds_since(started) / request.folds;
       for (std::size_t i = 0; i < out.size(); ++i) {
         if (!out[i] && fold > 0) continue;
-        const View& view = made.views[i];
+        const View& view = variants[m].views[i];
         const Pictures pictures = rendered(spool.wrapping, view, fit, request.fitted_samples,
                                            7000 + 100 * static_cast<std::uint64_t>(fold) + 2 * i);
         const auto agreement = inversion::noiseless_agreement(view, made.pictures[i], pictures, kBlock_px);
@@ -225,8 +254,9 @@ ValidatedSpool validate_spool(const ValidateRequest& request, const RigFile& rig
                         .solvers = {}};
   if (request.solvers) result.solvers = compare_solvers(request, spool, made.views, step);
   if (request.folds == 0) return result;
-  for (std::size_t m = 0; m < request.models.size(); ++m)
-    result.models.push_back({.model = request.models[m],
+  for (std::size_t m = 0; m < variants.size(); ++m)
+    result.models.push_back({.model = variants[m].model,
+                             .calibrated = variants[m].calibrated,
                              .relative_rmse = inversion::overall_relative_rmse(gathered[m].all),
                              .reflection = inversion::overall_relative_rmse(gathered[m].reflection),
                              .transmission = inversion::overall_relative_rmse(gathered[m].transmission),
@@ -268,10 +298,10 @@ std::string describe(const std::vector<ValidatedSpool>& spools) {
     text += line;
     for (const ValidatedModel& m : spool.models) {
       std::snprintf(line, sizeof line, "%-25s  %6d  %-7s  %8.1f  %10.1f  %12.1f  %12.1f  %7.1f\n", spool.name.c_str(),
-                    spool.fibers_per_thread, name_of(m.model).c_str(), 100 * m.relative_rmse, 100 * m.reflection,
+                    spool.fibers_per_thread, label_of(m).c_str(), 100 * m.relative_rmse, 100 * m.reflection,
                     100 * m.transmission, 100 * m.fitted_views, m.seconds);
       text += line;
-      by_model[name_of(m.model)].push_back(m.relative_rmse);
+      by_model[label_of(m)].push_back(m.relative_rmse);
     }
     for (const ComparedSolver& of : spool.solvers) {
       std::snprintf(line, sizeof line, "%-25s  %6d  solver %-4s  loss on other paths %.4g +- %.1g, %.1f s\n",
@@ -280,6 +310,7 @@ std::string describe(const std::vector<ValidatedSpool>& spools) {
       text += line;
     }
   }
+  if (by_model.contains("thread*")) text += "thread*: with the geometry and light of the calibration\n";
   for (const auto& [model, errors] : by_model) {
     double sum = 0, worst = 0;
     for (double e : errors) sum += e, worst = std::max(worst, e);
@@ -300,7 +331,7 @@ nlohmann::json to_json(const std::vector<ValidatedSpool>& spools) {
                          {"left_out", view.left_out},
                          {"relative_rmse", view.relative_rmse},
                          {"relative_bias", view.relative_bias}});
-      models[name_of(m.model)] = {
+      models[m.calibrated ? "thread_calibrated" : name_of(m.model)] = {
           {"relative_rmse", m.relative_rmse}, {"reflection", m.reflection}, {"transmission", m.transmission},
           {"fitted_views", m.fitted_views},   {"seconds", m.seconds},       {"views", views}};
     }

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,10 @@ struct ValidateRequest {
   std::vector<std::filesystem::path> spools;
   std::vector<inversion::ModelKind> models{inversion::ModelKind::thread, inversion::ModelKind::fiber,
                                            inversion::ModelKind::yarn};
-  int folds = 3;               // 0 ... 3
-  bool solvers = false;        // compare them on each spool
+  int folds = 3;         // 0 ... 3
+  bool solvers = false;  // compare them on each spool
+  // Folder or file: the thread model is fitted besides with camera, axis and lamps as this calibration of the rig has them.
+  std::optional<std::filesystem::path> calibration;
   int samples_per_pixel = 96;  // of each photograph
   int fitted_samples = 48;     // of each rendering
   std::uint64_t seed = 1;
@@ -35,6 +38,7 @@ struct ValidateRequest {
 
 struct ValidatedModel {
   inversion::ModelKind model;
+  bool calibrated = false;  // with a calibration's geometry and light, not the true ones
   // Over the left-out views; of all, reflections, transmissions.
   double relative_rmse = 0, reflection = 0, transmission = 0;
   double fitted_views = 0;  // over the views that were fitted, first fold
