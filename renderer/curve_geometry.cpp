@@ -88,7 +88,8 @@ CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u
   const Vector3f origin = ray.origin.cwiseQuotient(stretch), direction = ray.direction.cwiseQuotient(stretch);
   const Vector3f from_center = origin + distance * direction - center.head<3>();
   if (const auto exact = cylinder_normal(from_center, direction, point.tangent, center.w())) point.normal = *exact;
-  point.position = (center.head<3>() + center.w() * (1 - kStartDepth) * point.normal).cwiseProduct(stretch);
+  point.radius = center.w() * (1 - kStartDepth);
+  point.position = (center.head<3>() + point.radius * point.normal).cwiseProduct(stretch);
   if (stretch == Vector3f::Ones()) return point;
   point.tangent = point.tangent.cwiseProduct(stretch).normalized();
   point.normal = point.normal.cwiseQuotient(stretch).normalized();

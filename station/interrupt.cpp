@@ -4,6 +4,7 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <csignal>
@@ -14,7 +15,8 @@
 namespace station {
 namespace {
 
-std::atomic<bool> interrupt_seen{false};  // a signal handler can reach nothing else
+std::atomic<int> interrupts_seen{0};  // a signal handler can reach nothing else
+std::atomic<int> interrupts_watched{1};
 
 // Becomes readable with the first signal, for threads that wait for it.
 std::atomic<int> interrupt_event{-1};
@@ -25,7 +27,7 @@ void signal_event(int event) {
 }
 
 void on_signal(int signal) {
-  if (interrupt_seen.exchange(true)) {
+  if (interrupts_seen.fetch_add(1) >= interrupts_watched) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
   }
@@ -36,8 +38,9 @@ void on_signal(int signal) {
 
 }  // namespace
 
-void watch_interrupts() {
-  interrupt_seen = false;
+void watch_interrupts(int watched) {
+  interrupts_seen = 0;
+  interrupts_watched = watched;
   if (interrupt_event < 0) {
     interrupt_event = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   }
@@ -50,13 +53,17 @@ void watch_interrupts() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
+int interrupts() {
+  return interrupts_seen;
+}
+
 bool interrupted() {
-  return interrupt_seen;
+  return interrupts() > 0;
 }
 
 struct StopOnInterrupt::Watch {
-  explicit Watch(std::function<void()> action)
-      : stop(std::move(action)), over(eventfd(0, EFD_CLOEXEC)), thread([this] { wait(); }) {}
+  Watch(std::function<void()> first, std::function<void()> second)
+      : actions{std::move(first), std::move(second)}, over(eventfd(0, EFD_CLOEXEC)), thread([this] { wait(); }) {}
   ~Watch() {
     signal_event(over);
     thread.join();
@@ -64,23 +71,35 @@ struct StopOnInterrupt::Watch {
   }
 
   void wait() const {
-    std::array<pollfd, 2> watched{pollfd{interrupt_event, POLLIN, 0}, pollfd{over, POLLIN, 0}};
-    while (poll(watched.data(), watched.size(), -1) < 0) {
-    }
-    if (watched[0].revents != 0) {
-      try {
-        stop();
-      } catch (...) {
+    for (int done = 0; done < 2 && actions.at(static_cast<std::size_t>(done));) {
+      std::array<pollfd, 2> watched{pollfd{interrupt_event, POLLIN, 0}, pollfd{over, POLLIN, 0}};
+      if (interrupts() <= done) {
+        while (poll(watched.data(), watched.size(), -1) < 0) {
+        }
+        if (watched[1].revents != 0 && watched[0].revents == 0) return;
+        std::uint64_t count = 0;
+        [[maybe_unused]] const ssize_t drained = read(interrupt_event, &count, sizeof count);
+      }
+      while (done < std::min(interrupts(), 2) && actions.at(static_cast<std::size_t>(done))) {
+        act(actions.at(static_cast<std::size_t>(done++)));
       }
     }
   }
 
-  std::function<void()> stop;
+  static void act(const std::function<void()>& action) {
+    try {
+      action();
+    } catch (...) {
+    }
+  }
+
+  std::array<std::function<void()>, 2> actions;
   int over;
   std::thread thread;
 };
 
-StopOnInterrupt::StopOnInterrupt(std::function<void()> stop) : watch_(std::make_unique<Watch>(std::move(stop))) {}
+StopOnInterrupt::StopOnInterrupt(std::function<void()> stop, std::function<void()> stop_now)
+    : watch_(std::make_unique<Watch>(std::move(stop), std::move(stop_now))) {}
 
 StopOnInterrupt::~StopOnInterrupt() = default;
 

@@ -28,7 +28,7 @@ using nlohmann::json;
 
 constexpr int kProcessSocket = 3;
 // A process that ends is quickly replaced; one that hangs costs its whole time.
-constexpr int kMostEnded = 3, kMostHung = 2;
+constexpr int kMostEnded = 3, kMostHung = 2, kMostLost = 2;
 
 // The process is gone or says nothing: it is to be started again.
 struct ProcessLost : std::runtime_error {
@@ -174,14 +174,14 @@ class ProcessCamera final : public Camera {
 
  private:
   // A camera that refuses is asked no second time: what it said is for the person. It is connected anew for the next
-  // question, because a broken connection speaks the same way.
+  // question.
   template <typename Work>
   void with_process(const std::string& asked, const Work& work) {
     std::string why;
     if (process_ && !process_->lives()) {
       process_.reset();  // died while nothing was asked, which costs nothing
     }
-    int ended = 0, hung = 0;
+    int ended = 0, hung = 0, lost = 0;
     while (ended < kMostEnded && hung < kMostHung) {
       try {
         if (!process_) {
@@ -189,10 +189,15 @@ class ProcessCamera final : public Camera {
         }
         work();
         return;
-      } catch (const ProcessLost& lost) {
-        why = lost.what();
-        ++(lost.hung ? hung : ended);
+      } catch (const ProcessLost& gone) {
+        why = gone.what();
+        ++(gone.hung ? hung : ended);
         process_.reset();
+      } catch (const CameraLost&) {
+        process_.reset();
+        if (++lost == kMostLost) {
+          throw;
+        }
       } catch (const json::exception&) {
         why = "its process answered something else";
         ++ended;
@@ -235,6 +240,9 @@ class ProcessCamera final : public Camera {
   CameraFrame ask(const json& question, double exposure_s) {
     CameraFrame answer = process_->ask({.text = question, .bytes = {}}, setup_.answer_timeout_s + exposure_s);
     if (const auto error = answer.text.find("error"); error != answer.text.end()) {
+      if (answer.text.value("lost", false)) {
+        throw CameraLost(error->get<std::string>());
+      }
       throw std::runtime_error(error->get<std::string>());
     }
     return answer;
@@ -305,8 +313,10 @@ int run_camera_process(int socket, const std::function<std::unique_ptr<Camera>(c
         CameraFrame answer;
         try {
           answer = answer_to(question.text, camera, open_camera);
+        } catch (const CameraLost& error) {
+          answer = {.text = {{"error", error.what()}, {"lost", true}}, .bytes = {}};
         } catch (const std::exception& error) {
-          answer = {.text = {{"error", error.what()}}, .bytes = {}};
+          answer = {.text = {{"error", error.what()}, {"lost", false}}, .bytes = {}};
         }
         send_all(socket, encode_frame(answer));
       }

@@ -17,8 +17,9 @@ struct CameraProcessSetup {
   double answer_timeout_s = 40;  // beside the exposure: libgphoto2 itself gives up after 35 s
 };
 
-// Connects at once. A process that died or hangs is ended and started again; what was asked is then asked a second time,
-// with the settings of before. Errors: those of the camera; std::runtime_error when the process fails twice in a row.
+// Connects at once. A process that died or hangs is ended and started again, and so is a connection that broke; what was
+// asked is then asked a second time, with the settings of before, after what the camera had taken meanwhile was thrown
+// away. Errors: those of the camera; std::runtime_error when the process fails twice in a row.
 std::unique_ptr<Camera> make_process_camera(const CameraProcessSetup& setup);
 
 // The process itself: answers frames on the socket until it is closed. Returns the exit status.

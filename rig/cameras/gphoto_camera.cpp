@@ -26,12 +26,16 @@ using Handle = std::unique_ptr<::Camera, int (*)(::Camera*)>;
 using Widget = std::unique_ptr<CameraWidget, int (*)(CameraWidget*)>;
 using File = std::unique_ptr<CameraFile, int (*)(CameraFile*)>;
 
+constexpr const char* kHeldByAnother =
+    "another program holds the camera; close file manager windows that show it (or run: gio mount -u gphoto2://*) "
+    "and "
+    "try again";
+
 std::string what_to_do(int status) {
   switch (status) {
     case GP_ERROR_IO_USB_CLAIM:
     case GP_ERROR_IO_LOCK:
-      return "another program holds the camera; close file manager windows that show it (or run: gio mount -u "
-             "gphoto2://*) and try again";
+      return kHeldByAnother;
     case GP_ERROR_MODEL_NOT_FOUND:
     case GP_ERROR_UNKNOWN_PORT:
     case GP_ERROR_IO_USB_FIND:
@@ -53,9 +57,20 @@ std::string what_to_do(int status) {
   }
 }
 
+// A broken connection, a question without an answer, noise: none of it says what the camera did. When the list of
+// settings does not come, the library says that the setting asked for is none.
+bool is_lost(int status) {
+  return status == GP_ERROR || status == GP_ERROR_IO || status == GP_ERROR_IO_READ || status == GP_ERROR_IO_WRITE ||
+         status == GP_ERROR_TIMEOUT || status == GP_ERROR_BAD_PARAMETERS || status == GP_ERROR_CORRUPTED_DATA;
+}
+
 [[noreturn]] void refuse(const std::string& asked, int status) {
-  throw std::runtime_error("the camera was to " + asked + " and libgphoto2 answered \"" +
-                           gp_result_as_string(status) + "\"; " + what_to_do(status));
+  const std::string message = "the camera was to " + asked + " and libgphoto2 answered \"" +
+                              gp_result_as_string(status) + "\"; " + what_to_do(status);
+  if (is_lost(status)) {
+    throw CameraLost(message);
+  }
+  throw std::runtime_error(message);
 }
 
 void check(const std::string& asked, int status) {
@@ -123,8 +138,7 @@ class GphotoCamera final : public Camera {
       }
     }
     std::ranges::sort(times_s);
-    const auto repeated = std::ranges::unique(times_s, same_number);
-    times_s.erase(repeated.begin(), repeated.end());
+    times_s.erase(std::unique(times_s.begin(), times_s.end(), same_number), times_s.end());
     return times_s;
   }
 
@@ -165,6 +179,9 @@ class GphotoCamera final : public Camera {
     choose_model();
     choose_port();
     const int status = gp_camera_init(handle_.get(), context_.get());
+    if (status == GP_ERROR) {  // on the network nothing more is said
+      throw CameraLost("the camera at " + setup_.port + " is there and turns the program away: " + kHeldByAnother);
+    }
     check("be connected at " + setup_.port, status);
     // Some answer properly only after this question.
     CameraText summary{};

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "rig/camera.h"
@@ -17,6 +18,11 @@ struct GphotoSetup {
   int width_px = 0, height_px = 0;         // of its raw pictures, which the wire does not tell
   double shortest_shutter_s = 1.0 / 8000;  // libgphoto2 offers shorter ones that the camera does not have
   int least_battery_percent = 10;
+};
+
+// The connection broke or answered nothing of use, and nobody knows whether the camera did what was asked.
+struct CameraLost : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 // Connects and looks whether the camera is ready: mode dial at M, manual focus, battery, card; sets RAW. Errors:

@@ -13,6 +13,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -23,10 +24,13 @@
 namespace rig {
 namespace {
 
-constexpr std::uint32_t kInitCommand = 1, kInitCommandAck = 2, kInitEvent = 3, kInitEventAck = 4, kRequest = 6,
-                        kResponse = 7, kEvent = 8, kStartData = 9, kData = 10, kEndData = 12, kPing = 13, kPong = 14;
+constexpr std::uint32_t kInitCommand = 1, kInitCommandAck = 2, kInitEvent = 3, kInitEventAck = 4, kInitFail = 5,
+                        kRequest = 6, kResponse = 7, kEvent = 8, kStartData = 9, kData = 10, kEndData = 12,
+                        kPing = 13, kPong = 14;
 constexpr std::size_t kHeader = 8, kLargestPacket = 1 << 20, kPiece = 1 << 16;
 constexpr int kLookEveryMs = 5;  // for pictures that became ready
+// A packet of a type that there is not, with more than a kilobyte of nothing.
+constexpr std::string_view kNoise("\x00\x05\x00\x00\xff\xfe\x81\x07\xc3", 9);
 constexpr std::uint16_t kPictureReady = 0xc201, kGetObject = 0x1009;
 
 class Socket {
@@ -94,7 +98,8 @@ std::string packet(std::uint32_t type, const std::string& body) {
 
 class Server final : public PtpipServer {
  public:
-  Server(SimulatedSony& camera, int port) : camera_(camera), port_(port) {
+  Server(SimulatedSony& camera, int port, CameraFaultPlan plan)
+      : camera_(camera), plan_(std::move(plan)), port_(port) {
     listen_there();
     thread_ = std::thread([this] { serve(); });
   }
@@ -119,6 +124,7 @@ class Server final : public PtpipServer {
     }
   }
   void cut_after(long bytes) override { cut_after_ = bytes; }
+  int operations() override { return operations_; }
 
  private:
   void listen_there() {
@@ -183,7 +189,7 @@ class Server final : public PtpipServer {
     announce();
   }
 
-  // The first packet says which of the two connections it is. A new host takes the place of an old one.
+  // The first packet says which of the two connections it is.
   void welcome(Socket guest) {
     const int yes = 1;
     setsockopt(guest.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
@@ -191,8 +197,10 @@ class Server final : public PtpipServer {
     setsockopt(guest.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     setsockopt(guest.get(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
     const Packet first = receive_packet(guest);
-    if (first.type == kInitCommand) {
-      hang_up();
+    if (first.type == kInitCommand && command_.open()) {
+      constexpr std::uint32_t kBusy = 2;
+      send_all(guest, packet(kInitFail, PtpWriter().put(kBusy).take()));
+    } else if (first.type == kInitCommand) {
       PtpWriter ack;
       ack.put(std::uint32_t{1}).bytes("threadstation-7M").wide_text("ILCE-7M2").put(std::uint32_t{0x10000});
       send_all(guest, packet(kInitCommandAck, ack.take()));
@@ -217,13 +225,73 @@ class Server final : public PtpipServer {
     if (*phase == 2) {
       request.data = receive_data();
     }
+    const auto fault = next_fault();
+    if (fault == CameraFault::silence) {
+      return;
+    }
+    if (fault == CameraFault::unplug) {
+      plugged_ = false;
+      throw Broken{};
+    }
     const PtpAnswer answer = camera_.handle(request);
+    if (fault == CameraFault::lost_answer) {
+      return;
+    }
+    if (fault == CameraFault::garbage) {
+      send_all(command_, std::string(kNoise));
+      return;
+    }
+    if (fault == CameraFault::cut) {
+      cut_short(answer, *transaction);
+    }
     if (answer.data) {
       send_data(*answer.data, *transaction, *code == kGetObject && request.parameters.at(0) == 0xffffc001);
     }
     PtpWriter response;
     response.put(answer.code).put(*transaction);
     send_all(command_, packet(kResponse, response.take()));
+  }
+
+  // Of this operation; what lasts is the camera's condition from here on.
+  std::optional<CameraFault> next_fault() {
+    ++operations_;
+    const auto found = std::ranges::find(plan_, operations_.load(), &PlannedCameraFault::at_operation);
+    if (found == plan_.end()) {
+      return std::nullopt;
+    }
+    switch (found->fault) {
+      case CameraFault::refused_setting:
+        camera_.set_condition({.shutter_locked = true});
+        break;
+      case CameraFault::stale_picture:
+        camera_.set_condition({.repeats_last_picture = true});
+        break;
+      case CameraFault::store_full:
+        camera_.set_condition({.store_full = true});
+        break;
+      case CameraFault::battery_empty:
+        camera_.set_condition({.battery_percent = 1});
+        break;
+      case CameraFault::dial_turned:
+        camera_.set_condition({.exposure_program = 2});
+        break;
+      default:
+        break;
+    }
+    return found->fault;
+  }
+
+  [[noreturn]] void cut_short(const PtpAnswer& answer, std::uint32_t transaction) {
+    PtpWriter part;
+    part.put(transaction).bytes(answer.data.value_or(""));
+    const std::string whole = packet(answer.data ? kEndData : kResponse, part.take());
+    if (answer.data) {
+      PtpWriter start;
+      start.put(transaction).put(static_cast<std::uint64_t>(answer.data->size()));
+      send_all(command_, packet(kStartData, start.take()));
+    }
+    send_all(command_, std::string_view(whole).substr(0, whole.size() / 2));
+    throw Broken{};
   }
 
   std::string receive_data() {
@@ -273,9 +341,11 @@ class Server final : public PtpipServer {
   }
 
   SimulatedSony& camera_;
+  const CameraFaultPlan plan_;
   std::atomic<int> port_;
   Socket door_, command_, event_;
   int announced_ = 0;
+  std::atomic<int> operations_ = 0;
   std::atomic<bool> ending_ = false, plugged_ = true, listening_ = false;
   std::atomic<long> cut_after_ = -1;
   std::thread thread_;
@@ -283,8 +353,8 @@ class Server final : public PtpipServer {
 
 }  // namespace
 
-std::unique_ptr<PtpipServer> serve_on_ptpip(SimulatedSony& camera, int port) {
-  return std::make_unique<Server>(camera, port);
+std::unique_ptr<PtpipServer> serve_on_ptpip(SimulatedSony& camera, int port, CameraFaultPlan plan) {
+  return std::make_unique<Server>(camera, port, std::move(plan));
 }
 
 }  // namespace rig

@@ -64,14 +64,14 @@ class GrblController final : public MotionController {
     on_guard_ = true;
     home_seen_ = false;
     homing_ = true;
-    line_->write("$H\n");
+    begin("$H\n");
   }
 
   void start_move(std::int64_t steps) override {
     std::array<char, 64> command{};
     std::snprintf(command.data(), command.size(), "G21 G53 G0 X%.4f\n",
                   static_cast<double>(steps) / identity_.steps_per_deg);
-    line_->write(command.data());
+    begin(command.data());
   }
 
   MotionStatus status() override {
@@ -79,13 +79,18 @@ class GrblController final : public MotionController {
       return homing_status();
     }
     const GrblStatus status = ask_status();
-    return {motion_of(status.state), std::llround(position_deg(status) * identity_.steps_per_deg)};
+    return {stopped_ ? Motion::held : motion_of(status.state),
+            std::llround(position_deg(status) * identity_.steps_per_deg)};
   }
 
   // A hold keeps the position; while it looks for its switch only a reset is heard.
-  void stop() override { line_->write(homing_ ? std::string_view("\x18") : std::string_view("!\x85")); }
+  void stop() override {
+    stopped_ = true;
+    write_stop();
+  }
 
   void clear_stop() override {
+    stopped_ = false;  // one that comes from now on has to be cleared, too
     if (homing_.exchange(false)) {
       throw PositionLost("the turntable was stopped while it looked for its home; home it again");
     }
@@ -107,6 +112,16 @@ class GrblController final : public MotionController {
   }
 
  private:
+  void write_stop() { line_->write(homing_ ? std::string_view("\x18") : std::string_view("!\x85")); }
+
+  // A stop that another thread wrote just before is said again: it may have come too early for this command.
+  void begin(std::string_view command) {
+    line_->write(command);
+    if (stopped_) {
+      write_stop();
+    }
+  }
+
   bool listen(double timeout_s, const Take& take) {
     return rig::listen(*line_, frames_, clock_, timeout_s, [&](const std::string& text) {
       const GrblReply reply = parse_grbl_line(text);
@@ -313,6 +328,9 @@ class GrblController final : public MotionController {
   // While it looks for its switch the firmware answers late or not at all; the ok comes at the end. Should that one be
   // lost, standing idle after having been seen at it says the same.
   MotionStatus homing_status() {
+    if (stopped_) {
+      return {Motion::held, 0};
+    }
     bool done = false;
     std::optional<GrblError> refused;
     std::optional<GrblStatus> seen;
@@ -349,7 +367,7 @@ class GrblController final : public MotionController {
   std::optional<int> alarm_code_;  // since the last reset
   bool on_guard_ = false;          // an alarm or a banner now means that the position is lost
   bool home_seen_ = false;
-  std::atomic<bool> homing_ = false;  // stop() reads it from other threads
+  std::atomic<bool> homing_ = false, stopped_ = false;  // stop() comes from other threads
 };
 
 }  // namespace

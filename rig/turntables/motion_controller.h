@@ -21,7 +21,7 @@ struct PositionLost : std::runtime_error {
 // person has turned to its mark.
 enum class HomeBy { here, home_switch };
 
-enum class Motion { idle, moving, held };
+enum class Motion { idle, moving, held };  // held: stopped, and not cleared since
 
 struct MotionStatus {
   Motion motion = Motion::idle;
@@ -35,6 +35,9 @@ struct ControllerIdentity {
   int repeated = 0;                 // questions asked again because the answer was noise or missing
 };
 
+// After stop() nothing turns until clear_stop(): not what is under way, and not what is begun meanwhile. What one thread
+// begins while another one stops is therefore never obeyed after the stop.
+//
 // Errors: Unplugged (byte_line.h), NoReply, PositionLost, and std::runtime_error for a refusal; each message says what
 // was asked, what came back and what the person can do.
 class MotionController {
@@ -45,7 +48,7 @@ class MotionController {
   virtual void start_move(std::int64_t steps) = 0;  // begins; absolute, as MotionStatus counts
   virtual MotionStatus status() = 0;
   virtual void stop() = 0;        // one write, from any thread; also while a homing runs
-  virtual void clear_stop() = 0;  // waits until the motor stands; it can be moved again
+  virtual void clear_stop() = 0;  // waits until the motor stands; it can be moved again; PositionLost after a homing
 };
 
 }  // namespace rig

@@ -14,9 +14,10 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kPollS = 0.05;
-constexpr int kMostTries = 4;              // of a move: begun once and repeated three times
-constexpr int kIdleReadings = 2;           // in a row at the target: it stands
-constexpr int kLostReadings = 6;           // in a row idle elsewhere: the command was lost
+constexpr int kMostTries = 4;     // of a move: begun once and repeated three times
+constexpr int kIdleReadings = 2;  // in a row at the target: it stands
+constexpr int kLostReadings = 6;  // in a row idle elsewhere: the command was lost
+constexpr const char* kStoppedHoming = "the platform was stopped while it looked for its home; home it again";
 constexpr double kLargestSteps = 1 << 24;  // GRBL counts in single precision, 24 bits
 
 std::string degrees(double angle_rad) {
@@ -32,18 +33,20 @@ class StepperTurntable final : public Turntable {
   }
 
   void home() override {
-    if (lost_) {
-      reconnect();
-    }
     const bool known = state_ != TurntableState::unknown_position;
+    if (lost_ || (!known && stop_asked_)) {  // connecting clears a stop, too
+      stop_asked_ = false;
+      reconnect();
+      if (stop_asked_) {  // there was nobody to be told
+        throw std::runtime_error("the platform was stopped while its controller was looked for; home it again");
+      }
+    }
     guarded([&] {
-      release_stop();
+      begin_moving();
       if (known && setup_.home_by == HomeBy::here) {
-        begin_moving();
         approach(zero_steps_);
         return;
       }
-      begin_moving();
       controller()->start_home();
       zero_steps_ = wait_until_idle();
     });
@@ -61,7 +64,6 @@ class StepperTurntable final : public Turntable {
                                ", more steps from the controller's zero than it can count; home it again");
     }
     guarded([&] {
-      release_stop();
       begin_moving();
       approach(zero_steps_ + static_cast<std::int64_t>(steps));
     });
@@ -107,7 +109,6 @@ class StepperTurntable final : public Turntable {
     set_controller(std::move(found));
     state_ = TurntableState::unknown_position;
     lost_ = false;
-    stop_asked_ = false;
   }
 
   void set_controller(std::shared_ptr<MotionController> controller) {
@@ -143,16 +144,11 @@ class StepperTurntable final : public Turntable {
     }
   }
 
-  // A stop while the platform stood leaves the controller held.
-  void release_stop() {
-    if (stop_asked_) {
+  // A stop while the platform stood leaves the controller held. One that comes from now on ends the move.
+  void begin_moving() {
+    if (stop_asked_.exchange(false)) {
       controller()->clear_stop();
     }
-  }
-
-  // In this order: whoever sees the platform moving and stops it must be heard.
-  void begin_moving() {
-    stop_asked_ = false;
     state_ = TurntableState::moving;
   }
 
@@ -202,9 +198,11 @@ class StepperTurntable final : public Turntable {
           watch([](const MotionStatus& status) { return status.motion == Motion::idle; }, false);
       state_ = TurntableState::idle;
       return steps;
+    } catch (const Stopped&) {
+      throw PositionLost(kStoppedHoming);
     } catch (const PositionLost&) {
       if (stop_asked_) {
-        throw PositionLost("the platform was stopped while it looked for its home; home it again");
+        throw PositionLost(kStoppedHoming);
       }
       throw;
     }
@@ -244,12 +242,12 @@ class StepperTurntable final : public Turntable {
   }
 
   [[noreturn]] void end_at_stop() {
+    stop_asked_ = false;
     controller()->clear_stop();
     const std::int64_t steps = controller()->status().steps;
     if (state_ == TurntableState::moving) {
       state_ = TurntableState::stopped;
     }
-    stop_asked_ = false;
     throw Stopped("the platform was stopped at " + place(steps) +
                   " on its way; ask for the move again when it is safe");
   }

@@ -36,15 +36,16 @@ class ZaberController final : public MotionController {
   ControllerIdentity identity() override { return identity_; }
 
   void start_home() override {
-    ask("home");
     homing_ = true;
+    ask("home");
   }
 
   void start_move(std::int64_t steps) override { ask("move abs " + std::to_string(steps)); }
 
   MotionStatus status() override {
     const ZaberReply reply = ask("get pos");
-    if (homing_ && !reply.busy) {
+    const bool held = stopped_;
+    if (homing_ && !reply.busy && !held) {
       homing_ = false;
     }
     const bool fault = reply.warning.starts_with('F') || reply.warning == "WS";
@@ -57,19 +58,26 @@ class ZaberController final : public MotionController {
       throw std::runtime_error("the turntable was asked for its position and answered \"" + printable(reply.data) +
                                "\"; check \"axis\" in the rig file");
     }
-    return {reply.busy ? Motion::moving : Motion::idle, *steps};
+    return {held ? Motion::held : reply.busy ? Motion::moving : Motion::idle, *steps};
   }
 
-  void stop() override { line_->write(framed("stop", std::nullopt)); }
+  void stop() override {
+    stopped_ = true;
+    write_stop();
+  }
 
   void clear_stop() override {
+    stopped_ = false;  // one that comes from now on has to be cleared, too
+    ask("stop");       // the one before was not waited for
     wait_to_stand();
-    if (homing_.exchange(false)) {
+    if (std::exchange(homing_, false)) {
       throw PositionLost("the turntable was stopped while it looked for its home; home it again");
     }
   }
 
  private:
+  void write_stop() { line_->write(framed("stop", std::nullopt)); }
+
   std::string framed(const std::string& command, std::optional<int> message) const {
     std::string text = std::to_string(setup_.zaber_device) + " " + std::to_string(setup_.zaber_axis) + " ";
     if (message) {
@@ -79,12 +87,16 @@ class ZaberController final : public MotionController {
     return "/" + text + ":" + zaber_check_sum(text) + "\n";
   }
 
-  // The answer that carries the question's number and comes from the stage that was asked.
+  // The answer that carries the question's number and comes from the stage that was asked. The stage forgets a stop with
+  // the next move, so until it is cleared the stop is said again behind whatever is written.
   std::optional<ZaberReply> exchange(const std::string& command, double timeout_s) {
     const int message = message_;
     message_ = (message_ + 1) % 100;
     std::optional<ZaberReply> found;
     line_->write(framed(command, message));
+    if (stopped_) {
+      write_stop();
+    }
     listen(*line_, frames_, clock_, timeout_s, [&](const std::string& text) {
       const auto reply = parse_zaber_line(text);
       if (!reply) {
@@ -175,7 +187,8 @@ class ZaberController final : public MotionController {
   LineFrames frames_;
   std::string noise_;  // the last of it
   int message_ = 0;
-  std::atomic<bool> homing_ = false;
+  bool homing_ = false;
+  std::atomic<bool> stopped_ = false;  // stop() comes from other threads
 };
 
 }  // namespace

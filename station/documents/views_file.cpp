@@ -109,6 +109,7 @@ void read_view_pictures(const std::filesystem::path& session, DevelopedViews& vi
     inversion::View& view = developed.view;
     view.image = renderer::read_exr(session / developed.image_file);
     view.mask = renderer::read_png_grey(session / developed.mask_file);
+    view.image /= developed.lamp_strength;
     const cv::Size expected(view.camera.width, view.camera.height);
     if (view.image.size() != expected || view.mask.size() != expected)
       throw std::runtime_error("view " + view.id + ": picture or mask is not " + std::to_string(expected.width) +

@@ -23,7 +23,7 @@ struct DevelopedView {
   int masked_pixels = 0;
   double saturated_fraction = 0.0;  // of the masked pixels
   double pose_rms_px = 0.0;         // of the holder's tags at this mounting
-  double lamp_strength = 1.0;       // relative to the first view, by the reference patch; the image is divided by it
+  double lamp_strength = 1.0;       // relative to the first view, by the reference patch
 };
 
 struct DevelopedViews {
@@ -34,6 +34,7 @@ struct DevelopedViews {
 
 nlohmann::json to_json(const DevelopedViews& views);
 DevelopedViews read_views(const std::filesystem::path& session);
+// Divided by their lamp strengths.
 void read_view_pictures(const std::filesystem::path& session, DevelopedViews& views);
 
 }  // namespace station

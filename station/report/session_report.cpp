@@ -5,11 +5,13 @@
 
 #include "renderer/image_file.h"
 #include "station/capture/manifest.h"
+#include "station/capture/stored_file.h"
 #include "station/documents/calibration_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
 #include "station/documents/views_file.h"
 #include "station/report/calibration_report.h"
+#include "station/report/capture_report.h"
 #include "station/report/contact_sheet.h"
 #include "station/report/display.h"
 #include "station/report/html.h"
@@ -58,22 +60,24 @@ std::string view_tiles(const DevelopedViews& developed, bool transmission) {
 std::filesystem::path write_session_report(const std::filesystem::path& session) {
   const SessionFile asked = read_session_file(session);
   const RigCalibration calibration = read_calibration(session / "calibration");
-  DevelopedViews developed = read_views(session);
-  read_view_pictures(session, developed);
-  std::string body = fact_table({{"spool", asked.spool.name + " (" + asked.spool.material + ")"},
-                                 {"wrapping", std::to_string(asked.spool.wrapping.turns) + " turns of " +
-                                                  number_text(asked.spool.wrapping.thread_diameter_mm, 3) + " mm"},
-                                 {"rig", asked.rig.name},
-                                 {"captured", asked.utc},
-                                 {"software", asked.software}});
-  body += cloth_section(session, developed) + thread_section(session, developed);
-  body += view_tiles(developed, false) + view_tiles(developed, true);
+  std::string body = capture_facts(session, asked, calibration);
+  if (std::filesystem::exists(session / "linear" / "views.json")) {
+    make_folder(session / "result");
+    DevelopedViews developed = read_views(session);
+    read_view_pictures(session, developed);
+    body += cloth_section(session, developed) + thread_section(session, developed);
+    body += view_tiles(developed, false) + view_tiles(developed, true);
+    renderer::write_png(session / "result" / "contact_sheet.png", contact_sheet(developed));
+    if (const cv::Mat3b overview = overview_picture(session, developed); !overview.empty())
+      renderer::write_png(session / "result" / "overview.png", overview);
+    FileSystem disk;
+    write_manifest(session / "result", disk);
+  } else {
+    body += "<p>The views have not been developed yet: threadstation develop makes their pictures and masks.</p>\n";
+  }
+  body += verdict_section(session, asked);
   body += "<h2>Calibration</h2>\n" + calibration_section(calibration);
-  renderer::write_png(session / "result" / "contact_sheet.png", contact_sheet(developed));
-  if (const cv::Mat3b overview = overview_picture(session, developed); !overview.empty())
-    renderer::write_png(session / "result" / "overview.png", overview);
-  FileSystem disk;
-  write_manifest(session / "result", disk);
+  body += checksum_section(session);
   const std::filesystem::path file = session / "report.html";
   write_text_file(file, html_page("Thread session: " + asked.spool.name, body));
   return file;

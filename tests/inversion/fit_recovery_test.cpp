@@ -13,13 +13,6 @@ namespace {
 
 constexpr int kWidth_px = 120, kSamples = 48;
 
-std::vector<View> photographs(const WrappedSpool& spool, const renderer::ThreadParameters& thread) {
-  std::vector<View> views;
-  for (const Standpoint& at : six_standpoints())
-    views.push_back(photographed(unlit_view(spool, at, kWidth_px), spool, thread, kSamples, 11 + views.size()));
-  return views;
-}
-
 std::vector<ViewAgreement> agreements(const WrappedSpool& spool, const std::vector<View>& views, const ViewFit& fit) {
   std::vector<ViewAgreement> found;
   for (const View& view : views) {
@@ -38,7 +31,7 @@ renderer::Rgb<double> albedo(const renderer::ThreadParameters& thread, double c)
 
 TEST(FitRecoveryTest, AKnownThreadIsRecoveredFromItsPictures) {
   const WrappedSpool spool;
-  const std::vector<View> views = photographs(spool, known_thread());
+  const std::vector<View> views = photographs(spool, known_thread(), kWidth_px, kSamples);
   FitOptions options;
   options.paths_per_block = {256, 1024, 4096};
   const ViewFit fit = fit_views(spool, views, options);
@@ -68,7 +61,7 @@ TEST(FitRecoveryTest, AKnownThreadIsRecoveredFromItsPictures) {
 
 TEST(FitRecoveryTest, HoldingAnyGroupAtItsStartMakesTheLossClearlyWorse) {
   const WrappedSpool spool;
-  const std::vector<View> views = photographs(spool, known_thread());
+  const std::vector<View> views = photographs(spool, known_thread(), kWidth_px, kSamples);
   FitOptions options;
   options.paths_per_block = {128, 512};
   const double free = fit_views(spool, views, options).loss();
@@ -81,7 +74,7 @@ TEST(FitRecoveryTest, HoldingAnyGroupAtItsStartMakesTheLossClearlyWorse) {
 
 TEST(FitRecoveryTest, AWhiteThreadThatKeepsNearlyAllLightIsFittedWithoutEnergyBeyondOne) {
   const WrappedSpool spool;
-  const ViewFit fit = fit_views(spool, photographs(spool, white_thread()), {});
+  const ViewFit fit = fit_views(spool, photographs(spool, white_thread(), kWidth_px, kSamples), {});
   double most = 0;
   for (int k = 0; k <= 10000; ++k) {
     const auto lambda = energies_at(fit.thread(), k / 10000.0);

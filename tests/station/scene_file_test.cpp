@@ -58,8 +58,16 @@ TEST(SceneFile, OptionsOfAThreadAreReadAndWrittenOnlyWhereTheyDiffer) {
   EXPECT_EQ(parse_thread(to_json(metal), "again").parameters.lambda0_rgb, metal.parameters.lambda0_rgb);
   EXPECT_EQ(parse_thread(to_json(metal), "again").parameters.transmittance_powers,
             metal.parameters.transmittance_powers);
+  ThreadFile entry = metal;
+  entry.parameters.exit = renderer::ThreadExit::entry_point;
+  EXPECT_EQ(to_json(entry).at("parameters").at("exit"), "entry_point");
+  EXPECT_EQ(parse_thread(to_json(entry), "again").parameters.exit, renderer::ThreadExit::entry_point);
+  json elsewhere = to_json(entry);
+  elsewhere["parameters"]["exit"] = "middle";
+  EXPECT_THAT([&] { parse_thread(elsewhere, "t"); },
+              testing::ThrowsMessage<std::runtime_error>(testing::HasSubstr("\"far_side\" or \"entry_point\"")));
   const json silk = to_json(read_thread(kThreads / "silk_gold.json")).at("parameters");
-  EXPECT_FALSE(silk.contains("lambda0_rgb") || silk.contains("transmittance_powers"));
+  EXPECT_FALSE(silk.contains("lambda0_rgb") || silk.contains("transmittance_powers") || silk.contains("exit"));
 
   json document = to_json(metal);
   document["parameters"]["lambda0_rgb"] = {1.2, 1, 1};

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "station/documents/reader.h"
+#include "tests/station/hasty_bench.h"
 
 namespace station_test {
 namespace {
@@ -11,14 +12,6 @@ namespace {
 using nlohmann::json;
 
 std::unique_ptr<TemporaryFolder> folder;
-
-// The same lens before a sensor of fewer, larger pixels.
-void coarsen(json& sensor, json& lens) {
-  constexpr int kHastySide_px = 4;
-  for (const char* key : {"width_px", "height_px"}) sensor[key] = sensor[key].get<int>() / kHastySide_px;
-  for (const char* key : {"focal_length_px", "principal_point_px"})
-    for (json& value : lens[key]) value = value.get<double>() / kHastySide_px;
-}
 
 }  // namespace
 
@@ -43,14 +36,10 @@ void Workflow::SetUpTestSuite() {
   expect_success(capture(path("session")));
   expect_success(run_threadstation({"develop", path("session"), "--quiet"}));
 
-  rig["simulation"]["target_samples_per_pixel"] = 1;
-  coarsen(rig["simulation"]["sensor"], rig["simulation"]["lens"]);
-  station::write_json_file(path("hasty_rig.json"), rig);
-  json calibration = station::read_json_file(path("calibration/calibration.json"));
-  coarsen(calibration["lens"], calibration["lens"]);
-  calibration.erase("sensor");  // of the fine sensor
+  station::write_json_file(path("hasty_rig.json"), hasty_rig(rig));
   std::filesystem::create_directory(path("hasty_calibration"));
-  station::write_json_file(path("hasty_calibration/calibration.json"), calibration);
+  station::write_json_file(path("hasty_calibration/calibration.json"),
+                           hasty_calibration(station::read_json_file(path("calibration/calibration.json"))));
 }
 
 void Workflow::TearDownTestSuite() {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "rig/cameras/live_view.h"
@@ -18,16 +20,43 @@ class RecordingCamera final : public rig::Camera {
   std::vector<double> shutter_times_s() override { return camera_.shutter_times_s(); }
   rig::ExposureSettings configure(const rig::ExposureSettings& wanted) override { return camera_.configure(wanted); }
   rig::Picture capture() override {
-    taken.push_back(camera_.capture());
+    const rig::Picture picture = camera_.capture();
+    const std::lock_guard hold(mutex_);
+    taken.push_back(picture);
+    return picture;
+  }
+  rig::Picture last() const {
+    const std::lock_guard hold(mutex_);
     return taken.back();
   }
-  std::deque<rig::Picture> taken;
+  std::deque<rig::Picture> taken;  // where no exposure is under way
 
  private:
   rig::Camera& camera_;
+  mutable std::mutex mutex_;
+};
+
+// Lets a test act when the camera hears a question.
+class WatchedSony final : public rig::SimulatedSony {
+ public:
+  WatchedSony(rig::SimulatedSony& sony, const std::function<void()>& before_answer)
+      : sony_(sony), before_answer_(before_answer) {}
+  rig::PtpAnswer handle(const rig::PtpRequest& request) override {
+    if (before_answer_) {
+      before_answer_();
+    }
+    return sony_.handle(request);
+  }
+  int waiting_pictures() override { return sony_.waiting_pictures(); }
+  void set_condition(const rig::SonyCondition& condition) override { sony_.set_condition(condition); }
+
+ private:
+  rig::SimulatedSony& sony_;
+  const std::function<void()>& before_answer_;
 };
 
 struct WiredCamera {
+  explicit WiredCamera(rig::CameraFaultPlan plan = {}) : faults(std::move(plan)) {}
   static cv::Mat3f draw(const rig::BenchState& state) {
     cv::Mat3f picture(state.lens.height_px, state.lens.width_px);
     for (int row = 0; row < picture.rows; ++row) {
@@ -42,11 +71,14 @@ struct WiredCamera {
     return "ptpip:127.0.0.1:" + number + ":" + number;
   }
 
+  rig::CameraFaultPlan faults;
   rig::SimulatedBench bench{{.lens = {.width_px = 60, .height_px = 40}}, draw};
   rig::SimulatedClock clock{1.8e9};
   std::unique_ptr<rig::Camera> camera = rig::make_simulated_camera(bench, clock);
   RecordingCamera recorded{*camera};
   std::unique_ptr<rig::SimulatedSony> sony =
       rig::make_simulated_sony(recorded, [this] { return rig::live_view_jpeg(bench.draw()); });
-  std::unique_ptr<rig::PtpipServer> server = rig::serve_on_ptpip(*sony);
+  std::function<void()> before_answer;  // set before anybody is connected
+  WatchedSony watched{*sony, before_answer};
+  std::unique_ptr<rig::PtpipServer> server = rig::serve_on_ptpip(watched, 0, faults);
 };

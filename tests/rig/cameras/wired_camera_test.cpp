@@ -104,12 +104,11 @@ TEST_F(GphotoCamera, ACableThatIsPulledIsSaidAndTheNextPictureComesWhenItIsBack)
   EXPECT_TRUE(delivers_what_was_made(*camera));
 }
 
-TEST_F(GphotoCamera, AFileThatBreaksOffIsNoPicture) {
+TEST_F(GphotoCamera, AFileThatBreaksOffIsTakenAgain) {
   const auto camera = open();
   for (const long bytes : {0L, 1L, 4096L}) {
     wired.server->cut_after(bytes);
-    EXPECT_THAT(refusal([&] { camera->capture(); }), HasSubstr("then resume")) << bytes;
-    EXPECT_TRUE(delivers_what_was_made(*camera));
+    EXPECT_TRUE(delivers_what_was_made(*camera)) << bytes;
   }
 }
 

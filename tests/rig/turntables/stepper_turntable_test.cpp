@@ -22,8 +22,66 @@ std::string refusal(const std::function<void()>& action) {
 
 using Rig = WiredBench<EventfulClock>;
 
+// A line on which something happens right before a write reaches the firmware.
+class WatchedLine final : public rig::ByteLine {
+ public:
+  WatchedLine(std::unique_ptr<rig::ByteLine> line, std::function<void()> before_write)
+      : line_(std::move(line)), before_write_(std::move(before_write)) {}
+  std::string read(double timeout_s) override { return line_->read(timeout_s); }
+  void write(std::string_view bytes) override {
+    before_write_();
+    line_->write(bytes);
+  }
+
+ private:
+  std::unique_ptr<rig::ByteLine> line_;
+  std::function<void()> before_write_;
+};
+
 struct StepperTurntable : testing::TestWithParam<Protocol> {
   Rig rig{GetParam()};
+
+  // `work` with a stop before its Nth write, for N = 1, 2 ... until the work ends before. A stop that was asked before
+  // the command to turn was written counts as much as a later one.
+  using Work = std::function<void(rig::Turntable&, Rig&)>;
+  void expect_stopped_before_every_write(const Work& prepare, const Work& work, const std::string& message) {
+    for (int at = 1;; ++at) {
+      SCOPED_TRACE("stop before write " + std::to_string(at));
+      Rig own(GetParam());
+      std::unique_ptr<rig::Turntable> table;
+      int writes = 0;
+      double angle_rad = 0, told_s = -1;
+      const auto before_write = [&] {
+        if (writes >= 0 && ++writes == at) {
+          writes = -1;  // the stop's own
+          angle_rad = own.true_angle_rad();
+          told_s = own.clock.monotonic_s();
+          table->stop();
+        }
+      };
+      own.open_line = [&] {
+        return std::make_unique<WatchedLine>(rig::open_simulated_line(own.port, own.clock), before_write);
+      };
+      writes = -1;
+      table = own.make_turntable();
+      prepare(*table, own);
+      writes = 0;
+      const std::string said = refusal([&] { work(*table, own); });
+      if (told_s < 0) {
+        EXPECT_GT(at, 3);
+        return;
+      }
+      // 30 deg/s: 3 deg to slow down, and 3 deg for a stop within 0.1 s.
+      EXPECT_LE(std::abs(own.true_angle_rad() - angle_rad), 6 * kDegree);
+      EXPECT_THAT(said, HasSubstr(message));
+      const double stood_rad = own.true_angle_rad();
+      own.clock.sleep_s(5);
+      own.port->transmit();
+      EXPECT_EQ(own.true_angle_rad(), stood_rad);
+      table->home();
+      EXPECT_NEAR(own.true_angle_rad(), 0, 1e-12);
+    }
+  }
 };
 
 INSTANTIATE_TEST_SUITE_P(OverTheWire, StepperTurntable, testing::Values(Protocol::grbl, Protocol::zaber),
@@ -125,6 +183,27 @@ TEST_P(StepperTurntable, AStopEndsTheMoveKeepsThePositionAndTheNextMoveGoesOn) {
     EXPECT_NEAR(own.true_angle_rad(), 90 * kDegree, 1e-12);
     EXPECT_EQ(table->state(), rig::TurntableState::idle);
   }
+}
+
+TEST_P(StepperTurntable, AStopBeforeAnyWriteOfAMoveStopsThePlatform) {
+  expect_stopped_before_every_write([](rig::Turntable& table, Rig&) { table.home(); },
+                                    [](rig::Turntable& table, Rig&) { table.move_to(90 * kDegree); },
+                                    "was stopped at");
+}
+
+TEST_P(StepperTurntable, AStopBeforeAnyWriteOfAHomingStopsThePlatform) {
+  expect_stopped_before_every_write([](rig::Turntable&, Rig&) {}, [](rig::Turntable& table, Rig&) { table.home(); },
+                                    "home it again");
+}
+
+TEST_P(StepperTurntable, AStopBeforeAnyWriteOfAnotherConnectionStopsThePlatform) {
+  expect_stopped_before_every_write(
+      [](rig::Turntable& table, Rig& own) {
+        own.port->unplug();
+        EXPECT_THROW(table.home(), rig::Unplugged);
+        own.port->power_on();
+      },
+      [](rig::Turntable& table, Rig&) { table.home(); }, "home it again");
 }
 
 TEST_P(StepperTurntable, AStopWhileStandingKeepsThePosition) {
