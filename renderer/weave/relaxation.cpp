@@ -139,8 +139,8 @@ void add_steps(RelaxationReport& report, const MinimizerReport& minimum) {
   report.quasi_newton_steps += minimum.quasi_newton_steps;
   report.newton_steps += minimum.newton_steps;
   report.factorizations += minimum.factorizations;
-  report.converged = minimum.converged;
   report.gradient = minimum.gradient / report.force_scale_n;
+  report.converged = report.gradient <= kAtRest;
   report.energy_n_mm = minimum.energy;
 }
 

@@ -21,7 +21,8 @@ struct RelaxationOptions {
 };
 
 struct RelaxationReport {
-  bool converged = false;   // gradient_goal reached at the last stiffness
+  bool converged =
+      false;  // gradient below kAtRest at the last stiffness; the goal may lie below what rounding allows
   bool as_drafted = false;  // at each crossing the yarn lies on top that the draft says
   bool jammed = false;      // yarns have no room in this sett: they overlap by more than kMostOverlap, or have been
                             // squeezed out of the plane until no two touch where they cross (crown_gap)
@@ -43,6 +44,7 @@ struct RelaxedPatch {
   RelaxationReport report;
 };
 
+inline constexpr double kAtRest = 1e-6;       // of the force scale
 inline constexpr double kMostOverlap = 0.01;  // of a radius: what a relaxed patch may have
 // In square plain cloth the gap is 1.7 % at p / D = 0.9, 2.5 % at 0.88, 4.3 % at 0.86; Peirce's jam lies at 0.866.
 inline constexpr double kJammedCrownGap = 0.04;

@@ -105,8 +105,9 @@ YarnPatch with_plies(const YarnPatch& patch, const Plies& plies) {
       throw std::runtime_error("weave: a ply of radius " + std::to_string(ply.radius_mm) +
                                " mm is thicker than its yarn of " + std::to_string(yarn.radius_mm) + " mm");
     ply.tex = yarn.tex / plies.count;
-    ply.flatness = 1;  // flat yarns are bundles of round plies
-    const double wide = half_width(yarn) - ply.radius_mm, high = std::max(0.0, half_height(yarn) - ply.radius_mm);
+    // A flat yarn is the round one with its plies, pressed: the plies are as flat as it is, so they keep touching.
+    const double room = yarn.radius_mm - ply.radius_mm, flat = std::sqrt(yarn.flatness), wide = room * flat,
+                 high = room / flat;
     const Vector3d side = yarn.warp ? Vector3d::UnitX() : Vector3d::UnitY();
     for (int k = 0; k < plies.count; ++k) {
       std::vector<Vector3d> points;

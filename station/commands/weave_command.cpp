@@ -26,26 +26,23 @@ std::string number(const char* format, double value) {
   return text;
 }
 
-// Overlap in percent of the thinnest yarn's radius; 0 where yarns are apart.
-double overlap_percent(const YarnPatch& patch) {
-  const auto thinner = [](const renderer::Yarn& a, const renderer::Yarn& b) { return a.radius_mm < b.radius_mm; };
-  const double radius_mm = std::min_element(patch.yarns.begin(), patch.yarns.end(), thinner)->radius_mm;
+// Overlap in percent of the thinner system's radius; 0 where yarns are apart.
+double overlap_percent(const YarnPatch& patch, const renderer::Draft& draft) {
+  const double radius_mm = std::min(draft.warp.diameter_mm, draft.weft.diameter_mm) / 2;
   return 100 * std::max(0.0, -patch.least_gap_mm) / radius_mm;
 }
 
-std::string described(const RelaxedPatch& relaxed) {
+std::string described(const RelaxedPatch& relaxed, const renderer::Draft& draft) {
   const YarnPatch& patch = relaxed.patch;
-  const auto ends =
-      std::count_if(patch.yarns.begin(), patch.yarns.end(), [](const renderer::Yarn& y) { return y.warp; });
-  const auto picks = static_cast<std::ptrdiff_t>(patch.yarns.size()) - ends;
-  std::string text = patch.name + ": " + std::to_string(ends) + " ends x " + std::to_string(picks) + " picks, " +
-                     number("%.3f", patch.period_x_mm) + " x " + number("%.3f mm\n", patch.period_y_mm);
+  std::string text = patch.name + ": " + std::to_string(ends_in_patch(draft)) + " ends x " +
+                     std::to_string(picks_in_patch(draft)) + " picks, " + number("%.3f", patch.period_x_mm) + " x " +
+                     number("%.3f mm\n", patch.period_y_mm);
   text +=
       "crimp " + number("warp %.2f %%, ", 100 * patch.crimp_warp) + number("weft %.2f %%\n", 100 * patch.crimp_weft);
   text += number("thickness %.3f mm\n", patch.thickness_mm) + number("cover %.1f %%\n", 100 * patch.cover);
   text += patch.areal_mass_g_m2 > 0 ? number("mass %.1f g/m2\n", patch.areal_mass_g_m2)
                                     : "mass unknown: the draft gives no tex\n";
-  text += number("overlap of yarns %.2f %% of the radius\n", overlap_percent(patch));
+  text += number("overlap of yarns %.2f %% of the radius\n", overlap_percent(patch, draft));
   if (patch.height_scale != 1) text += number("heights scaled by %g\n", patch.height_scale);
   if (relaxed.report.jammed)
     text += "note: yarns jam in this sett" +
@@ -114,7 +111,7 @@ void add_weave_command(CLI::App& app) {
                        .dump()
                 << "\n";
     else
-      std::cout << described(relaxed);
+      std::cout << described(relaxed, draft);
   });
 }
 

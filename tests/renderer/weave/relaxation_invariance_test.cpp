@@ -18,14 +18,14 @@ void expect_same_measures(const YarnPatch& a, const YarnPatch& b, double toleran
 
 // The same points and samples at the same places: what is left is where Newton's method stops, a gradient of 1e-8 of the
 // pull, over the least stiffness of a cloth, some 1e-3 of pull / mm.
-constexpr double kAtRest = 1e-6;
+constexpr double kSame = 1e-6;
 
 TEST(RelaxationTest, RepeatsOfThePatchChangeNothing) {
   for (const Draft& draft : uneven_drafts()) {
     Draft doubled = draft;
     doubled.warp.threads.assign(2 * draft.warp_over[0].size(), 0);
     doubled.weft.threads.assign(2 * draft.warp_over.size(), 0);
-    expect_same_measures(relax(draft).patch, relax(doubled).patch, kAtRest);
+    expect_same_measures(relax(draft).patch, relax(doubled).patch, kSame);
   }
 }
 
@@ -34,7 +34,7 @@ TEST(RelaxationTest, MovingOrTurningTheDraftMovesOrTurnsTheCloth) {
     Draft moved = draft;
     for (std::vector<bool>& pick : moved.warp_over) std::rotate(pick.begin(), pick.begin() + 1, pick.end());
     const YarnPatch cloth = relax(draft).patch;
-    expect_same_measures(cloth, relax(moved).patch, kAtRest);
+    expect_same_measures(cloth, relax(moved).patch, kSame);
     Draft turned = draft;
     std::swap(turned.warp, turned.weft);
     const std::size_t picks = draft.warp_over.size(), ends = draft.warp_over[0].size();
@@ -44,7 +44,7 @@ TEST(RelaxationTest, MovingOrTurningTheDraftMovesOrTurnsTheCloth) {
         turned.warp_over[end][picks - 1 - pick] = !draft.warp_over[pick][end];
     YarnPatch back = relax(turned).patch;
     std::swap(back.crimp_warp, back.crimp_weft);
-    expect_same_measures(cloth, back, kAtRest);
+    expect_same_measures(cloth, back, kSame);
   }
 }
 

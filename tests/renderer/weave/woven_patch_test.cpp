@@ -62,6 +62,14 @@ TEST(WovenPatchTest, FlattenedYarnsAreDrawnAsEllipsesOfTheRoundYarnsArea) {
   }
 }
 
+TEST(WovenPatchTest, FlattenedYarnsAreRefusedByBruteForceInOneLine) {
+  Draft draft = plain_draft();
+  draft.warp.flatness = 2;
+  const std::vector<ScatteringModel> threads{ThreadParameters{}};
+  EXPECT_THROW(explicit_curves(SwatchShape{6, 6}, initial_patch(draft), threads, Eigen::Isometry3d::Identity()),
+               std::runtime_error);
+}
+
 TEST(WovenPatchTest, YarnsFlattenTheMoreTheSofterTheyAreAndKeepTheirArea) {
   const Draft draft = plain_cloth(1.2, 1.0, 0.5);
   double flattest = 1, thinnest = relax(draft).patch.thickness_mm;

@@ -11,7 +11,7 @@ namespace station {
 // It is written and read again, and a small one has a patch; anything else ends the program.
 inline void expect_usable(const renderer::Draft& draft) {
   if (parse_draft(to_json(draft), "again").warp_over != draft.warp_over) std::abort();
-  if (renderer::ends_in_patch(draft) * renderer::picks_in_patch(draft) <= 64) renderer::initial_patch(draft);
+  if (renderer::ends_in_patch(draft) * renderer::picks_in_patch(draft) <= 16) renderer::initial_patch(draft);
 }
 
 }  // namespace station
