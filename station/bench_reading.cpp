@@ -19,6 +19,8 @@ BenchReading read_bench(const RigCalibration& calibration, const RigFile& rig,
   BenchReading found;
   found.shift = calibration::shift_of(calibration.still_tags, seen);
   found.angle = calibration::measure_angle(calibration.lens.lens, calibration.platform, rig.platform_ring, seen);
+  // A platform measured by tape alone does not know where its ring lies.
+  if (calibration.platform.readings_rad.empty()) found.angle.reset();
   if (found.angle && found.angle->tags_used < kFewestRingTags) found.angle.reset();
   return found;
 }

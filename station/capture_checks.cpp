@@ -32,6 +32,7 @@ constexpr double kMostBlur_px = 3, kMuchBlur_px = 2;
 constexpr double kLeastSharpness = 0.4, kLittleSharpness = 0.6;  // of the median of the views before
 constexpr std::size_t kFewestCompared = 3;
 constexpr double kMostMotion_px = 0.2;
+constexpr double kLampOff = 0.5;  // of its strength
 constexpr double kMostTilt_rad = 30 * M_PI / 180;
 // Light on the holder's tags, of what the lamp in front gives a white surface there: paper 0.1 to 0.9 under it, nothing
 // but what the bench throws back under the one behind.
@@ -72,8 +73,8 @@ struct Seen {
 
 class CaptureChecks::Work {
  public:
-  Work(const SessionFolder& session, const SessionFile& asked, const RigCalibration& calibration)
-      : session_(session), asked_(asked), calibration_(calibration) {
+  Work(const SessionFolder& session, const SessionFile& asked, const RigCalibration& calibration, bool in_order)
+      : session_(session), asked_(asked), calibration_(calibration), in_order_(in_order) {
     if (calibration_.sensor) load_sensor_maps(session.path() / "calibration", *calibration_.sensor);
     for (const auto& [id, record] : taken_pictures(session.records()))
       if (record.kind == StepKind::view) remember_sharpness(record.lamp, record.mounting, record.verdict);
@@ -146,7 +147,7 @@ class CaptureChecks::Work {
       found("settings", Grade::good, std::log2(raw.exposure_s / picture.settings.exposure_s));
     require_same_camera(calibration_, raw, "picture of " + step.id);
     // "2026:11:21 10:20:30": later is greater.
-    if (raw.date_time < date_time_)
+    if (in_order_ && raw.date_time < date_time_)
       found("stale", Grade::bad, std::nullopt,
             "the file of '" + step.id + "' was made at " + raw.date_time +
                 ", before the picture that came before it (" + date_time_ +
@@ -243,14 +244,14 @@ class CaptureChecks::Work {
               ? name + " is over-exposed at " + number_text(seen.raw.exposure_s, 5) +
                     " s: more than 5 % of the threads' window is saturated; move the lamp away, then resume"
               : name + " has " + percent(saturated) + " of the threads' window saturated; look at its bracket");
-    const calibration::Developed developed = developed_of(seen.raw);
-    check_lamp(seen, developed);
+    check_focus(seen, region);
+    // A soft picture of the small patch says nothing of the lamp.
+    if (verdict_.findings.back().grade != Grade::bad) check_lamp(seen, developed_of(seen.raw));
     const double level = bright_level(seen.raw, region, ExposureAim{}.percentile);
     found("exposure", level < kUnderExposed ? Grade::bad : Grade::good, 100 * level,
           name + " is dark: the brightest threads reach " + percent(level) + " of the range at " +
               number_text(seen.raw.exposure_s, 3) +
               " s; see that the lamp is on and shines on the threads, then resume");
-    check_focus(seen, region);
     found("tags", Grade::good, static_cast<double>(seen.tags.size()));
   }
 
@@ -291,29 +292,36 @@ class CaptureChecks::Work {
         (Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()) * *mounted).inverse();
     const renderer::Camera camera =
         camera_of(calibration_.lens.lens, holder_from_world * calibration_.platform.world_from_camera, false);
-    check_strength(seen, developed, camera, holder_from_world);
-    check_lamp_side(seen, developed, camera, holder_from_world);
+    const std::optional<Finding> side = lamp_side(seen, developed, camera, holder_from_world);
+    const std::optional<double> strength = lamp_strength(seen, developed, camera, holder_from_world);
+    // The calibrated lamp is the one on the right side; a lamp that is off is on no side.
+    const bool wrong_side = side && side->grade == Grade::bad && (!strength || *strength >= kLampOff);
+    if (strength && !wrong_side) {
+      const std::string problem = lamp_problem(seen.step, *strength);
+      found("lamp", problem.empty() ? Grade::good : Grade::bad, 100 * *strength, problem);
+      if (problem.empty()) last_ = LastView{seen.step.lamp, seen.step.mounting, *strength};
+    }
+    if (side) verdict_.findings.push_back(*side);
   }
 
-  void check_strength(const Seen& seen, const calibration::Developed& developed, const renderer::Camera& camera,
-                      const Eigen::Isometry3d& holder_from_world) {
-    if (!asked_.rig.reference_patch) return;
+  // Measured / expected at the reference patch; nothing where it cannot be read.
+  std::optional<double> lamp_strength(const Seen& seen, const calibration::Developed& developed,
+                                      const renderer::Camera& camera,
+                                      const Eigen::Isometry3d& holder_from_world) const {
+    if (!asked_.rig.reference_patch) return std::nullopt;
     const auto reading = read_patch(
         developed.radiance, developed.saturated, camera, *asked_.rig.reference_patch, asked_.spool.wrapping,
         seen.step.mounting,
         lamp_in_holder(calibration_, asked_.rig.lamp_radius_mm, seen.step.lamp == rig::Lamp::back, holder_from_world),
         calibration_.light.droop);
-    if (!reading) return;
-    const std::string problem = lamp_problem(seen.step, reading->strength);
-    found("lamp", problem.empty() ? Grade::good : Grade::bad, 100 * reading->strength, problem);
-    if (problem.empty()) last_ = LastView{seen.step.lamp, seen.step.mounting, reading->strength};
+    return reading ? std::optional(reading->strength) : std::nullopt;
   }
 
   std::string lamp_problem(const PlanStep& step, double strength) const {
     const calibration::LampGates limits;
     const std::string found_there =
         "'" + step.id + "': the reference patch shows " + percent(strength) + " of the calibrated lamp";
-    if (strength < 0.5) return found_there + "; switch the lamp on and see that nothing covers it, then resume";
+    if (strength < kLampOff) return found_there + "; switch the lamp on and see that nothing covers it, then resume";
     if (strength > 1 + limits.largest_change)
       return found_there + "; switch the room light off and see that only the lamp shines, then resume";
     if (strength < 1 - limits.largest_change) return found_there + "; cool or replace the lamp and calibrate again";
@@ -324,8 +332,8 @@ class CaptureChecks::Work {
   }
 
   // The holder's tags are on its front: bright under the lamp in front, dark under the one behind.
-  void check_lamp_side(const Seen& seen, const calibration::Developed& developed, const renderer::Camera& camera,
-                       const Eigen::Isometry3d& holder_from_world) {
+  std::optional<Finding> lamp_side(const Seen& seen, const calibration::Developed& developed,
+                                   const renderer::Camera& camera, const Eigen::Isometry3d& holder_from_world) const {
     const inversion::NearLight front =
         lamp_in_holder(calibration_, asked_.rig.lamp_radius_mm, false, holder_from_world);
     std::vector<double> parts;
@@ -344,13 +352,17 @@ class CaptureChecks::Work {
       const double white = front.intensity.mean() * cosine / to_lamp.squaredNorm() / M_PI;
       if (const auto light = tag_light(developed.radiance, outline)) parts.push_back(*light / white);
     }
-    if (parts.empty()) return;
+    if (parts.empty()) return std::nullopt;
     const double part = calibration::median(parts);
     const bool from_front = part > kLitFromTheFront, wanted = seen.step.lamp == rig::Lamp::front;
-    found("lamp_side", from_front == wanted ? Grade::good : Grade::bad, 100 * part,
-          "'" + seen.step.id + "' was to be lit from " + (wanted ? "the front" : "behind") +
-              " and the holder's front is " + (from_front ? "lit" : "dark") + "; put the lamp " +
-              (wanted ? "in front of" : "behind") + " the platform, then resume");
+    Finding side{.check = "lamp_side", .grade = Grade::good, .value = 100 * part, .reason = {}};
+    if (from_front != wanted) {
+      side.grade = Grade::bad;
+      side.reason = "'" + seen.step.id + "' was to be lit from " + (wanted ? "the front" : "behind") +
+                    " and the holder's front is " + (from_front ? "lit" : "dark") + "; put the lamp " +
+                    (wanted ? "in front of" : "behind") + " the platform, then resume";
+    }
+    return side;
   }
 
   static std::optional<double> tag_light(const cv::Mat3f& radiance, const std::vector<cv::Point>& outline) {
@@ -389,6 +401,7 @@ class CaptureChecks::Work {
   const SessionFolder& session_;
   const SessionFile& asked_;
   RigCalibration calibration_;
+  bool in_order_;
   Verdict verdict_;
   std::pair<std::string, calibration::TagObservation> test_tags_;      // of a step's last test picture
   std::string date_time_;                                              // of the picture before
@@ -399,8 +412,8 @@ class CaptureChecks::Work {
 };
 
 CaptureChecks::CaptureChecks(const SessionFolder& session, const SessionFile& asked,
-                             const RigCalibration& calibration)
-    : work_(std::make_shared<Work>(session, asked, calibration)) {}
+                             const RigCalibration& calibration, bool in_order)
+    : work_(std::make_shared<Work>(session, asked, calibration, in_order)) {}
 
 ExposureChoice CaptureChecks::choose_exposure(const PlanStep& step, const rig::Picture& test) {
   return work_->choose(step, test);

@@ -35,8 +35,9 @@ namespace station {
 // tags) has no finding.
 class CaptureChecks {
  public:
-  // All three must outlive the checks.
-  CaptureChecks(const SessionFolder& session, const SessionFile& asked, const RigCalibration& calibration);
+  // The first three must outlive the checks. `in_order`: a file that is older than the one before it is stale.
+  CaptureChecks(const SessionFolder& session, const SessionFile& asked, const RigCalibration& calibration,
+                bool in_order = true);
 
   // Errors: std::runtime_error for a test picture that cannot be read, or of another camera; while the holder can still be
   // put right, for a bench that does not stand as it was calibrated.

@@ -28,7 +28,7 @@ std::vector<std::string> steps_to_reshoot(const Plan& plan, const std::vector<st
 
 RunState run_session(SessionFolder& session, const RunDevices& devices, const SessionFile& asked,
                      const RigCalibration& calibration, const SessionRun& run) {
-  CaptureChecks checks(session, asked, calibration);
+  CaptureChecks checks(session, asked, calibration, run.in_order);
   RunOptions options;
   options.settings = run.settings;
   options.most_attempts = run.most_attempts;

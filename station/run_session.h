@@ -15,7 +15,8 @@ struct SessionRun {
   std::vector<std::string> reshoot{};                   // views by their number, or steps by name, to take again
   rig::ExposureSettings settings{.exposure_s = 0.125};  // ISO and f-number of all pictures; where metering begins
   int most_attempts = 3;                                // for one picture
-  bool record = false;                                  // write down all that the devices say (replay/device_log.h)
+  bool in_order = true;  // pictures are made while this runs: a file older than the one before is stale
+  bool record = false;   // write down all that the devices say (replay/device_log.h)
   std::function<StopWish()> stop_wish{};
   std::function<void(const Progress&)> progress{};
   std::function<void(const PlanStep&, const Verdict&)> judged{};

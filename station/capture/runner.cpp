@@ -46,6 +46,7 @@ class CaptureRun {
   void go() {
     require_known_steps();
     recorder_.begin(plan_);
+    remember_order();
     take_back();
     poll();
     bool ready = false;
@@ -80,6 +81,17 @@ class CaptureRun {
         throw std::runtime_error("'" + step +
                                  "' was to be taken again and is no step of the plan; see its session.json");
       }
+    }
+  }
+
+  void remember_order() {
+    std::vector<std::pair<std::string, std::string>> pictures;  // when, which step
+    for (const auto& [step, picture] : recorder_.taken()) {
+      pictures.emplace_back(picture.utc, step);
+    }
+    std::ranges::sort(pictures);
+    for (const auto& [utc, step] : pictures) {
+      order_.push_back(step);
     }
   }
 
@@ -334,7 +346,7 @@ class CaptureRun {
   Recorder& recorder_;
   const RunOptions& options_;
   std::optional<rig::Arrangement> standing_;  // unknown at the beginning: somebody may have been there
-  std::vector<std::string> order_;            // steps in the order of their pictures, this run's
+  std::vector<std::string> order_;            // steps in the order of their pictures
   std::set<std::string> delivered_;           // hashes of all that the camera delivered in this run
   std::vector<double> durations_s_;           // of this run's steps
 };

@@ -16,7 +16,7 @@ double three_digits(double value) {
   const auto written = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, 2);
   double rounded = 0;
   std::from_chars(text.data(), written.ptr, rounded);
-  return std::isfinite(rounded) ? rounded : 0;
+  return std::isfinite(rounded) && std::abs(rounded) > 1e-6 ? rounded : 0;
 }
 
 Grade grade_from_name(const std::string& name) {

@@ -301,6 +301,7 @@ RunState import_session(const ImportRequest& request) {
     if (verdict.grade() == Grade::doubtful) display.note(step.id + " is doubtful: " + verdict.reason());
   };
   run.most_attempts = 1;
+  run.in_order = false;
   const RunState state =
       run_session(session, {camera, turntable, person, clock}, read_session_file(request.out), calibration, run);
   display.finish(state_name(state) + ": " + request.out.string());

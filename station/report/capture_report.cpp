@@ -1,6 +1,7 @@
 #include "station/report/capture_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <optional>
@@ -46,12 +47,14 @@ std::string value_text(const Finding& finding) {
       {"exposure", " %"}, {"lamp", " %"},     {"dark", " %"},    {"lamp_side", " %"},      {"settings", " stops"}};
   if (!finding.value) return "";
   const auto unit = units.find(finding.check);
-  return " " + number_text(*finding.value, 2) + (unit == units.end() ? "" : unit->second);
+  const double value = std::abs(*finding.value) < 0.005 ? 0 : *finding.value;  // no "-0.00"
+  return " " + number_text(value, finding.check == "tags" ? 0 : 2) + (unit == units.end() ? "" : unit->second);
 }
 
 std::string findings_text(const Verdict& verdict) {
   std::string text;
   for (const Finding& finding : verdict.findings) {
+    if (finding.check == "settings" && finding.grade == Grade::good) continue;  // as asked
     text += (text.empty() ? "" : ", ") + escaped(finding.check) + value_text(finding);
     if (!finding.reason.empty()) text += " (<b>" + escaped(finding.reason) + "</b>)";
   }
