@@ -14,6 +14,8 @@
 namespace station {
 namespace {
 
+constexpr int kStopAgainMs = 50;
+
 std::atomic<bool> interrupt_seen{false};  // a signal handler can reach nothing else
 
 // Becomes readable with the first signal, for threads that wait for it.
@@ -67,11 +69,12 @@ struct StopOnInterrupt::Watch {
     std::array<pollfd, 2> watched{pollfd{interrupt_event, POLLIN, 0}, pollfd{over, POLLIN, 0}};
     while (poll(watched.data(), watched.size(), -1) < 0) {
     }
-    if (watched[0].revents != 0) {
+    while (watched[1].revents == 0) {
       try {
         stop();
       } catch (...) {
       }
+      poll(&watched[1], 1, kStopAgainMs);
     }
   }
 

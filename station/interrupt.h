@@ -10,8 +10,8 @@ void watch_interrupts();  // from now on a first ctrl-C only sets the flag; a se
 bool interrupted();
 
 // While it lives, the first ctrl-C or SIGTERM calls `stop` at once from a thread of its own, whatever the rest of the
-// program is doing or waiting for. Needs watch_interrupts() before. What `stop` throws is dropped: it is called where
-// nobody waits for it.
+// program is doing or waiting for, and again every 50 ms: a move that was begun at the very moment is stopped as well.
+// Needs watch_interrupts() before. What `stop` throws is dropped: it is called where nobody waits for it.
 class StopOnInterrupt {
  public:
   explicit StopOnInterrupt(std::function<void()> stop);
