@@ -33,6 +33,7 @@ class Camera {
   virtual std::vector<double> shutter_times_s() = 0;                       // ascending, the times the camera offers
   virtual ExposureSettings configure(const ExposureSettings& wanted) = 0;  // returns what was read back
   virtual Picture capture() = 0;
+  virtual std::vector<std::byte> preview() = 0;  // a small JPEG of what it sees now; exposed as it likes
 };
 
 // The offered shutter time nearest to `wanted_s` in stops.

@@ -192,6 +192,15 @@ Verdict fresh_pictures(Camera& camera) {
                 longer.utc)};
 }
 
+// A JPEG begins and ends with its markers.
+Verdict live_view(Camera& camera) {
+  const std::vector<std::byte> jpeg = camera.preview();
+  const auto is = [&](std::size_t at, int value) { return std::to_integer<int>(jpeg.at(at)) == value; };
+  const bool whole =
+      jpeg.size() > 4 && is(0, 0xff) && is(1, 0xd8) && is(jpeg.size() - 2, 0xff) && is(jpeg.size() - 1, 0xd9);
+  return {whole, words(jpeg.size(), " bytes", whole ? " of a JPEG" : " that are no JPEG")};
+}
+
 }  // namespace
 
 std::vector<ContractRow> check_turntable(Turntable& turntable, double tolerance_rad) {
@@ -216,6 +225,7 @@ std::vector<ContractRow> check_camera(Camera& camera) {
       row("an exposure that is not a number is refused", [&] { return refuses_exposure(camera, kNan); }),
       row("a negative exposure is refused", [&] { return refuses_exposure(camera, -1.0); }),
       row("a picture has bytes, a date and the settings asked", [&] { return picture_as_configured(camera); }),
+      row("the live view shows a picture", [&] { return live_view(camera); }),
       row("each picture is a new one", [&] { return fresh_pictures(camera); }),
   };
 }

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "rig/cameras/live_view.h"
 #include "rig/noise.h"
 #include "rig/raw_writer.h"
 #include "rig/simulated_bench.h"
@@ -152,6 +153,13 @@ class SimulatedCamera final : public Camera {
     frame.serial = identity().serial;
     clock_.sleep_s(settings_.exposure_s);
     return {.bytes = encode_raw(frame), .extension = "arw", .settings = settings_, .utc = frame.utc};
+  }
+
+  std::vector<std::byte> preview() override {
+    const BenchState now = bench_.state();
+    const std::string jpeg = live_view_jpeg(focused(bench_.draw(), now.lens));
+    const auto* bytes = reinterpret_cast<const std::byte*>(jpeg.data());
+    return {bytes, bytes + jpeg.size()};
   }
 
  private:

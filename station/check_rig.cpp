@@ -1,9 +1,11 @@
 #include "station/check_rig.h"
 
+#include <algorithm>
 #include <exception>
 #include <functional>
 #include <numbers>
 
+#include "station/check_picture.h"
 #include "station/rig_devices.h"
 
 namespace station {
@@ -37,7 +39,7 @@ DeviceCheck checked(const std::string& device, const std::function<std::vector<r
 
 }  // namespace
 
-std::vector<DeviceCheck> check_rig(const RigFile& rig) {
+std::vector<DeviceCheck> check_rig(const RigFile& rig, const std::optional<RigCalibration>& calibration) {
   std::vector<DeviceCheck> checks;
   checks.push_back(checked(turntable_name(rig), [&] {
     const RigDevices devices = open_turntable(rig);
@@ -48,6 +50,10 @@ std::vector<DeviceCheck> check_rig(const RigFile& rig) {
     const RigDevices devices = open_camera(rig);
     return rig::check_camera(*devices.camera);
   }));
+  const bool sound = std::ranges::all_of(checks, [](const DeviceCheck& one) { return rig::all_passed(one.rows); });
+  if (calibration && sound)
+    checks.push_back(checked("test picture",
+                             [&] { return check_picture(open_rig(rig, std::nullopt, false), rig, *calibration); }));
   return checks;
 }
 

@@ -1,10 +1,12 @@
 // Tries the devices of a rig before a session: connects, turns, takes test pictures, and says row by row what held.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "rig/device_contract.h"
+#include "station/documents/calibration_file.h"
 #include "station/documents/rig_file.h"
 
 namespace station {
@@ -14,7 +16,8 @@ struct DeviceCheck {
   std::vector<rig::ContractRow> rows;
 };
 
-// The platform must be free to turn. A device that cannot be connected has one row, which says why.
-std::vector<DeviceCheck> check_rig(const RigFile& rig);
+// The platform must be free to turn. A device that cannot be connected has one row, which says why. With a calibration and
+// both devices sound, a test picture as well (check_picture.h).
+std::vector<DeviceCheck> check_rig(const RigFile& rig, const std::optional<RigCalibration>& calibration);
 
 }  // namespace station

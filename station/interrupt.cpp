@@ -15,6 +15,8 @@
 namespace station {
 namespace {
 
+constexpr int kStopAgainMs = 50;
+
 std::atomic<int> interrupts_seen{0};  // a signal handler can reach nothing else
 std::atomic<int> interrupts_watched{1};
 
@@ -70,8 +72,10 @@ struct StopOnInterrupt::Watch {
     close(over);
   }
 
+  // The last action goes on until it is over: a move that was begun at the very moment is stopped as well.
   void wait() const {
-    for (int done = 0; done < 2 && actions.at(static_cast<std::size_t>(done));) {
+    const int last = actions[1] ? 1 : 0;
+    for (int done = 0; done <= last;) {
       std::array<pollfd, 2> watched{pollfd{interrupt_event, POLLIN, 0}, pollfd{over, POLLIN, 0}};
       if (interrupts() <= done) {
         while (poll(watched.data(), watched.size(), -1) < 0) {
@@ -80,10 +84,10 @@ struct StopOnInterrupt::Watch {
         std::uint64_t count = 0;
         [[maybe_unused]] const ssize_t drained = read(interrupt_event, &count, sizeof count);
       }
-      while (done < std::min(interrupts(), 2) && actions.at(static_cast<std::size_t>(done))) {
-        act(actions.at(static_cast<std::size_t>(done++)));
-      }
+      while (done <= last && done < interrupts()) act(actions.at(static_cast<std::size_t>(done++)));
     }
+    pollfd ended{over, POLLIN, 0};
+    while (poll(&ended, 1, kStopAgainMs) <= 0) act(actions.at(static_cast<std::size_t>(last)));
   }
 
   static void act(const std::function<void()>& action) {

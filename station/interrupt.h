@@ -12,8 +12,9 @@ int interrupts();  // since then
 bool interrupted();
 
 // While it lives, the first ctrl-C or SIGTERM calls `stop` at once from a thread of its own, whatever the rest of the
-// program is doing or waiting for, and the second one `stop_now`. Needs watch_interrupts() before. What they throw is
-// dropped: they are called where nobody waits for it.
+// program is doing or waiting for, and the second one `stop_now`. The last of the two that is given is called again every
+// 50 ms: a move that was begun at the very moment is stopped as well. Needs watch_interrupts() before. What they throw
+// is dropped: they are called where nobody waits for it.
 class StopOnInterrupt {
  public:
   explicit StopOnInterrupt(std::function<void()> stop, std::function<void()> stop_now = {});

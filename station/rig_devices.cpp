@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "rig/cameras/camera_process.h"
-#include "rig/cameras/live_view.h"
 #include "rig/console_operator.h"
 #include "rig/manual_turntable.h"
 #include "rig/turntables/serial_line.h"
@@ -79,8 +78,8 @@ cv::Mat3f undrawn(const rig::BenchState& state) {
 
 }  // namespace
 
-std::shared_ptr<rig::SimulatedPort> start_firmware(const RigFile& rig, rig::SimulatedBench& bench,
-                                                   rig::Clock& clock) {
+std::shared_ptr<rig::SimulatedPort> start_firmware(const RigFile& rig, rig::SimulatedBench& bench, rig::Clock& clock,
+                                                   const rig::LineFaultPlan& faults) {
   if (!rig.turntable_wire || rig.turntable_wire->line != TurntableWire::Line::simulated)
     throw std::runtime_error("rig \"" + rig.name +
                              "\" names no turntable that is simulated on a wire; give it \"turntable\": \"grbl\" or "
@@ -90,15 +89,15 @@ std::shared_ptr<rig::SimulatedPort> start_firmware(const RigFile& rig, rig::Simu
   return rig::make_simulated_port(
       rig.turntable_driver == "grbl"
           ? rig::make_simulated_grbl(motor, clock, setup.home_by == rig::HomeBy::home_switch)
-          : rig::make_simulated_zaber(motor));
+          : rig::make_simulated_zaber(motor),
+      faults);
 }
 
-void start_simulated_camera(RigDevices& devices) {
+void start_simulated_camera(RigDevices& devices, const rig::CameraFaultPlan& faults) {
   auto& simulated = devices.simulated_camera;
   simulated.lens = rig::make_simulated_camera(*devices.bench, *devices.clock);
-  simulated.body = rig::make_simulated_sony(
-      *simulated.lens, [bench = devices.bench.get()] { return rig::live_view_jpeg(bench->draw()); });
-  simulated.network = rig::serve_on_ptpip(*simulated.body);
+  simulated.body = rig::make_simulated_sony(*simulated.lens);
+  simulated.network = rig::serve_on_ptpip(*simulated.body, 0, faults);
 }
 
 RigDevices open_rig(const RigFile& rig, const std::optional<Spool>& spool, bool unattended) {

@@ -45,9 +45,10 @@ RigDevices open_turntable(const RigFile& rig);
 RigDevices open_camera(const RigFile& rig);
 
 // Puts the simulated camera that a rig file names on this computer's network, photographing `devices.bench`.
-void start_simulated_camera(RigDevices& devices);
+void start_simulated_camera(RigDevices& devices, const rig::CameraFaultPlan& faults = {});
 
 // The simulated firmware that a rig file names, turning `bench`. Throws when it names none.
-std::shared_ptr<rig::SimulatedPort> start_firmware(const RigFile& rig, rig::SimulatedBench& bench, rig::Clock& clock);
+std::shared_ptr<rig::SimulatedPort> start_firmware(const RigFile& rig, rig::SimulatedBench& bench, rig::Clock& clock,
+                                                   const rig::LineFaultPlan& faults = {});
 
 }  // namespace station

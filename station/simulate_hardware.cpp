@@ -21,7 +21,8 @@ cv::Mat3f marked(const rig::BenchState& state) {
 
 }  // namespace
 
-void simulate_hardware(const RigFile& rig, const std::function<void(const SimulatedPorts&)>& started,
+void simulate_hardware(const RigFile& rig, const Faults& faults,
+                       const std::function<void(const SimulatedPorts&)>& started,
                        const std::function<bool()>& should_stop) {
   const bool camera = rig.camera_wire && rig.camera_wire->simulated;
   const bool turntable = rig.turntable_wire && rig.turntable_wire->line == TurntableWire::Line::simulated;
@@ -34,11 +35,11 @@ void simulate_hardware(const RigFile& rig, const std::function<void(const Simula
   devices.bench = std::make_unique<rig::SimulatedBench>(rig.simulation->truth, marked);
   SimulatedPorts ports;
   if (turntable) {
-    devices.simulated_wire = rig::serve_on_pty(start_firmware(rig, *devices.bench, *devices.clock));
+    devices.simulated_wire = rig::serve_on_pty(start_firmware(rig, *devices.bench, *devices.clock, faults.turntable));
     ports.turntable = devices.simulated_wire->path();
   }
   if (camera) {
-    start_simulated_camera(devices);
+    start_simulated_camera(devices, faults.camera);
     const std::string port = std::to_string(devices.simulated_camera.network->port());
     ports.camera = "ptpip:127.0.0.1:" + port + ":" + port;
   }

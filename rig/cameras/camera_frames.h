@@ -8,6 +8,7 @@
 //                                              -> {"identity": {...}, "shutter_times_s": [...]}
 //   {"ask": "configure", "settings": {...}}    -> {"settings": {...}}, read back
 //   {"ask": "capture"}                         -> {"settings": {...}, "extension", "utc"} and the picture's bytes
+//   {"ask": "preview"}                         -> {} and the bytes of a JPEG
 //   any of them                                -> {"error": "one line for people", "lost": whether it may be asked again}
 #pragma once
 

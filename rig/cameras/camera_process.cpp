@@ -172,6 +172,12 @@ class ProcessCamera final : public Camera {
     return picture;
   }
 
+  std::vector<std::byte> preview() override {
+    std::vector<std::byte> jpeg;
+    with_process("show what it sees", [&] { jpeg = ask({{"ask", "preview"}}, 0).bytes; });
+    return jpeg;
+  }
+
  private:
   // A camera that refuses is asked no second time: what it said is for the person. It is connected anew for the next
   // question.
@@ -291,6 +297,9 @@ CameraFrame answer_to(const json& question, std::unique_ptr<Camera>& camera,
                      {"extension", picture.extension},
                      {"utc", picture.utc}},
             .bytes = std::move(picture.bytes)};
+  }
+  if (asked == "preview") {
+    return {.text = json::object(), .bytes = camera->preview()};
   }
   throw std::runtime_error("the camera process was asked to \"" + asked + "\", which it cannot");
 }

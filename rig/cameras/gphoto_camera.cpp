@@ -171,6 +171,13 @@ class GphotoCamera final : public Camera {
                              " times; switch it off and on so that it forgets old ones, then resume");
   }
 
+  std::vector<std::byte> preview() override {
+    const File file = empty_file();
+    const int status = gp_camera_capture_preview(handle_.get(), file.get(), context_.get());
+    check("show what it sees", status);
+    return bytes_of(file, "its live view");
+  }
+
  private:
   void connect() {
     ::Camera* handle = nullptr;
@@ -370,20 +377,28 @@ class GphotoCamera final : public Camera {
     return picture;
   }
 
-  std::vector<std::byte> download(const CameraFilePath& path) const {
+  static File empty_file() {
     CameraFile* made = nullptr;
     check("deliver a picture", gp_file_new(&made));
-    const File file(made, gp_file_unref);
+    return {made, gp_file_unref};
+  }
+
+  static std::vector<std::byte> bytes_of(const File& file, const std::string& name) {
+    const char* data = nullptr;
+    unsigned long size = 0;
+    check("deliver " + name, gp_file_get_data_and_size(file.get(), &data, &size));
+    const auto* bytes = reinterpret_cast<const std::byte*>(data);
+    return {bytes, bytes + size};
+  }
+
+  std::vector<std::byte> download(const CameraFilePath& path) const {
+    const File file = empty_file();
     const int status =
         gp_camera_file_get(handle_.get(), path.folder, path.name, GP_FILE_TYPE_NORMAL, file.get(), context_.get());
     check("deliver " + std::string(path.name), status);
-    const char* data = nullptr;
-    unsigned long size = 0;
-    check("deliver " + std::string(path.name), gp_file_get_data_and_size(file.get(), &data, &size));
-    const auto* bytes = reinterpret_cast<const std::byte*>(data);
-    std::vector<std::byte> copy(bytes, bytes + size);
+    std::vector<std::byte> bytes = bytes_of(file, path.name);
     gp_camera_file_delete(handle_.get(), path.folder, path.name, context_.get());  // only kept in memory there
-    return copy;
+    return bytes;
   }
 
   void require_kept_settings(const ExposureSettings& found) const {

@@ -66,6 +66,10 @@ void put_property(PtpWriter& out, std::uint16_t code, std::uint16_t type, Number
   }
 }
 
+std::string text_of(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 std::size_t stepped(std::size_t index, int steps, std::size_t count) {
   return static_cast<std::size_t>(
       std::clamp<long>(static_cast<long>(index) + steps, 0, static_cast<long>(count) - 1));
@@ -73,7 +77,7 @@ std::size_t stepped(std::size_t index, int steps, std::size_t count) {
 
 class Sony final : public SimulatedSony {
  public:
-  Sony(Camera& camera, std::function<std::string()> take_jpeg) : camera_(camera), take_jpeg_(std::move(take_jpeg)) {}
+  explicit Sony(Camera& camera) : camera_(camera) {}
   ~Sony() override {
     if (exposing_.valid()) {
       exposing_.wait();
@@ -247,10 +251,10 @@ class Sony final : public SimulatedSony {
       if (quality >= 16) {
         camera_.configure(settings);
         const Picture picture = camera_.capture();
-        taken.push_back({kArw, {reinterpret_cast<const char*>(picture.bytes.data()), picture.bytes.size()}});
+        taken.push_back({kArw, text_of(picture.bytes)});
       }
       if (quality != 16) {
-        taken.push_back({kJpeg, take_jpeg_()});
+        taken.push_back({kJpeg, text_of(camera_.preview())});
       }
     } catch (const std::exception&) {
       return;  // a shutter that does not open: no picture ever appears
@@ -301,7 +305,7 @@ class Sony final : public SimulatedSony {
   PtpAnswer live_view() {
     constexpr std::uint32_t kOffset = 136;
     try {
-      const std::string jpeg = take_jpeg_();
+      const std::string jpeg = text_of(camera_.preview());
       PtpWriter out;
       out.put(kOffset).put(static_cast<std::uint32_t>(jpeg.size()));
       out.bytes(std::string(kOffset - 8, '\0')).bytes(jpeg);
@@ -312,7 +316,6 @@ class Sony final : public SimulatedSony {
   }
 
   Camera& camera_;
-  std::function<std::string()> take_jpeg_;
   std::mutex mutex_;
   SonyCondition condition_;
   std::uint8_t quality_ = 16;  // RAW
@@ -323,8 +326,8 @@ class Sony final : public SimulatedSony {
 
 }  // namespace
 
-std::unique_ptr<SimulatedSony> make_simulated_sony(Camera& camera, std::function<std::string()> take_jpeg) {
-  return std::make_unique<Sony>(camera, std::move(take_jpeg));
+std::unique_ptr<SimulatedSony> make_simulated_sony(Camera& camera) {
+  return std::make_unique<Sony>(camera);
 }
 
 }  // namespace rig

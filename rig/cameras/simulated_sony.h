@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,8 +44,8 @@ class SimulatedSony {
   virtual void set_condition(const SonyCondition& condition) = 0;
 };
 
-// `take_jpeg` gives the bytes of a small picture of what stands on the bench, for the live view and as the JPEG beside a
-// raw file. Both must outlive the camera. An exposure goes on in a thread of its own, so that questions are answered.
-std::unique_ptr<SimulatedSony> make_simulated_sony(Camera& camera, std::function<std::string()> take_jpeg);
+// `camera` must outlive it; its preview is the live view and the JPEG beside a raw file. An exposure goes on in a thread of
+// its own, so that questions are answered.
+std::unique_ptr<SimulatedSony> make_simulated_sony(Camera& camera);
 
 }  // namespace rig

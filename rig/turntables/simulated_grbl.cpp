@@ -2,12 +2,12 @@
 #include <cmath>
 #include <cstdio>
 #include <deque>
-#include <map>
 #include <optional>
-#include <vector>
+#include <utility>
 
-#include "rig/turntables/number_text.h"
+#include "rig/turntables/grbl_code.h"
 #include "rig/turntables/simulated_firmware.h"
+#include "rig/turntables/simulated_grbl_settings.h"
 
 namespace rig {
 namespace {
@@ -16,27 +16,10 @@ constexpr std::size_t kPlannerBlocks = 15;
 constexpr std::size_t kLongestLine = 80;
 constexpr int kOffsetEvery = 10, kOverridesEvery = 20;  // reports
 
-// Status codes of the firmware.
-constexpr int kExpectedLetter = 1, kBadNumber = 2, kUnknownStatement = 3, kNegativeValue = 4, kHomingDisabled = 5,
-              kNotIdle = 8, kLocked = 9, kSoftLimitsNeedHoming = 10, kLineTooLong = 14, kUnknownCode = 20,
-              kNoFeed = 22, kAxisMissing = 26;
-
-struct Word {
-  char letter;
-  double value;
-};
-
 struct Block {
   double target_steps;
   double speed_deg_s;
   bool jog;
-};
-
-// A line of G-code that was understood.
-struct Motions {
-  bool moves = false, rapid = false, machine = false, jog = false;
-  std::optional<double> x, dwell_s;
-  bool sets_offset = false;
 };
 
 enum class State { idle, run, hold, jog, alarm, home };
@@ -44,42 +27,7 @@ enum class State { idle, run, hold, jog, alarm, home };
 class SimulatedGrbl final : public SimulatedFirmware {
  public:
   SimulatedGrbl(SimulatedMotor motor, Clock& clock, bool with_switch)
-      : motor_(motor), clock_(clock), with_switch_(with_switch) {
-    const double deg_min = motor_.full_speed_deg_s() * 60;
-    settings_ = {{0, 10},
-                 {1, 255},
-                 {2, 0},
-                 {3, 0},
-                 {4, 0},
-                 {5, 0},
-                 {6, 0},
-                 {10, 1},
-                 {11, 0.01},
-                 {12, 0.002},
-                 {13, 0},
-                 {20, 0},
-                 {21, 0},
-                 {22, with_switch ? 1.0 : 0.0},
-                 {23, 0},
-                 {24, deg_min / 10},
-                 {25, deg_min},
-                 {26, 250},
-                 {27, 2},
-                 {30, 1000},
-                 {31, 0},
-                 {32, 0},
-                 {100, motor_.steps_per_deg()},
-                 {101, 250},
-                 {102, 250},
-                 {110, deg_min},
-                 {111, 500},
-                 {112, 500},
-                 {120, motor_.full_speed_deg_s() / 0.2},
-                 {121, 10},
-                 {122, 10},
-                 {130, 360},
-                 {131, 200},
-                 {132, 200}};
+      : motor_(motor), clock_(clock), with_switch_(with_switch), settings_(motor, with_switch) {
     power_on();
   }
 
@@ -133,9 +81,7 @@ class SimulatedGrbl final : public SimulatedFirmware {
     planner_.clear();
     dwell_until_s_.reset();
     homing_ = false;
-    incremental_ = false;
-    feed_deg_min_ = 0;
-    motion_is_rapid_ = true;
+    modes_ = {};
     offset_deg_ = 0;
     reports_to_offset_ = 0;
     reports_to_overrides_ = 1;
@@ -343,7 +289,9 @@ class SimulatedGrbl final : public SimulatedFirmware {
       return kNotIdle;
     }
     if (line == "$$") {
-      print_settings();
+      for (const std::string& setting : settings_.lines()) {
+        say(setting);
+      }
       return 0;
     }
     if (line == "$H") {
@@ -354,21 +302,11 @@ class SimulatedGrbl final : public SimulatedFirmware {
       return 0;
     }
     if (line == "$G") {
-      say("[GC:" + std::string(motion_is_rapid_ ? "G0" : "G1") + " G54 G17 G21 " + (incremental_ ? "G91" : "G90") +
-          " G94 M5 M9 T0 F" + std::to_string(std::lround(feed_deg_min_)) + " S0]");
+      say("[GC:" + std::string(modes_.rapid ? "G0" : "G1") + " G54 G17 G21 " + (modes_.incremental ? "G91" : "G90") +
+          " G94 M5 M9 T0 F" + std::to_string(std::lround(modes_.feed_deg_min)) + " S0]");
       return 0;
     }
-    return set(line);
-  }
-
-  void print_settings() {
-    for (const auto& [number, value] : settings_) {
-      const bool decimals = number == 11 || number == 12 || number == 24 || number == 25 || number == 27 ||
-                            number == 30 || number == 31 || number >= 100;
-      std::array<char, 64> text{};
-      std::snprintf(text.data(), text.size(), decimals ? "$%d=%.3f" : "$%d=%.0f", number, value);
-      say(text.data());
-    }
+    return settings_.set(line);
   }
 
   void print_offsets() {
@@ -382,29 +320,6 @@ class SimulatedGrbl final : public SimulatedFirmware {
     say(text.data());
     say("[TLO:0.000]");
     say("[PRB:0.000,0.000,0.000:0]");
-  }
-
-  std::optional<int> set(const std::string& line) {
-    const std::size_t equals = line.find('=');
-    if (equals == std::string::npos) {
-      return kUnknownStatement;
-    }
-    const auto number = number_from<int>(std::string_view(line).substr(1, equals - 1));
-    const auto value = number_from<double>(std::string_view(line).substr(equals + 1));
-    if (!number || !value) {
-      return kBadNumber;
-    }
-    if (*value < 0) {
-      return kNegativeValue;
-    }
-    if (!settings_.contains(*number)) {
-      return kUnknownStatement;
-    }
-    if (*number == 20 && *value != 0 && settings_.at(22) == 0) {
-      return kSoftLimitsNeedHoming;
-    }
-    settings_[*number] = *value;
-    return 0;
   }
 
   std::optional<int> begin_homing() {
@@ -435,115 +350,34 @@ class SimulatedGrbl final : public SimulatedFirmware {
     say("ok");
   }
 
-  // Words of letter and number; a status code when it is none.
-  static std::optional<int> read_words(const std::string& line, std::vector<Word>& words) {
-    std::string text;
-    for (const char c : line) {
-      if (c != ' ') {
-        text += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-      }
-    }
-    for (std::size_t at = 0; at < text.size();) {
-      const char letter = text[at++];
-      if (letter < 'A' || letter > 'Z') {
-        return kExpectedLetter;
-      }
-      std::size_t end = at;
-      while (end < text.size() &&
-             (text[end] == '-' || text[end] == '+' || text[end] == '.' || (text[end] >= '0' && text[end] <= '9'))) {
-        ++end;
-      }
-      const auto value = number_from<double>(std::string_view(text).substr(at, end - at));
-      if (!value) {
-        return kBadNumber;
-      }
-      words.push_back({letter, *value});
-      at = end;
-    }
-    return std::nullopt;
-  }
-
   std::optional<int> code_line(const std::string& line, bool jog) {
     if (state_ == State::alarm) {
       return kLocked;
     }
-    std::vector<Word> words;
-    if (const auto status = read_words(line, words)) {
-      return status;
+    const auto parsed = parse_grbl_code(line, jog, modes_);
+    if (const auto* status = std::get_if<GrblStatusCode>(&parsed)) {
+      return *status;
     }
-    Motions motions{.jog = jog};
-    bool incremental = incremental_, dwell = false;
-    double feed_deg_min = feed_deg_min_;
-    if (jog) {
-      feed_deg_min = 0;
-    }
-    for (const Word& word : words) {
-      const int code = static_cast<int>(std::lround(word.value));
-      switch (word.letter) {
-        case 'G':
-          if (code == 0 || code == 1) {
-            motion_is_rapid_ = code == 0;
-          } else if (code == 4) {
-            dwell = true;
-          } else if (code == 53) {
-            motions.machine = true;
-          } else if (code == 90 || code == 91) {
-            incremental = code == 91;
-          } else if (code == 92) {
-            motions.sets_offset = true;
-          } else if (code != 21 && code != 94 && code != 54) {
-            return kUnknownCode;
-          }
-          break;
-        case 'X':
-          motions.x = word.value;
-          break;
-        case 'F':
-          feed_deg_min = word.value;
-          break;
-        case 'P':
-          motions.dwell_s = word.value;
-          break;
-        case 'M':
-        case 'S':
-        case 'T':
-        case 'N':
-          break;
-        default:
-          return kUnknownCode;
-      }
-    }
-    motions.rapid = motion_is_rapid_ && !jog;
-    motions.moves = motions.x.has_value() && !motions.sets_offset;
-    if (motions.moves && !motions.rapid && !(feed_deg_min > 0)) {
-      return kNoFeed;
-    }
-    if (jog && !motions.x) {
-      return kAxisMissing;
-    }
-    if (!jog) {
-      incremental_ = incremental;
-      feed_deg_min_ = feed_deg_min;
-    }
-    if (dwell) {
-      dwell_until_s_ = clock_.monotonic_s() + motions.dwell_s.value_or(0);
+    const GrblCode& code = std::get<GrblCode>(parsed);
+    if (code.dwell_s) {
+      dwell_until_s_ = clock_.monotonic_s() + *code.dwell_s;
       return std::nullopt;
     }
-    if (motions.sets_offset) {
-      offset_deg_ = planned_deg() - motions.x.value_or(0);
+    if (code.sets_offset) {
+      offset_deg_ = planned_deg() - code.x_deg.value_or(0);
       reports_to_offset_ = 0;
       return 0;
     }
-    return motions.moves ? plan(motions, incremental, feed_deg_min) : std::optional<int>(0);
+    return code.moves ? plan(code, jog) : std::optional<int>(0);
   }
 
   double planned_deg() const {
     return planner_.empty() ? machine_deg() : planner_.back().target_steps / settings_.at(100);
   }
 
-  std::optional<int> plan(const Motions& motions, bool incremental, double feed_deg_min) {
-    const double base_deg = motions.machine ? 0 : incremental ? planned_deg() : offset_deg_;
-    const double target_deg = base_deg + *motions.x;
+  std::optional<int> plan(const GrblCode& code, bool jog) {
+    const double base_deg = code.machine ? 0 : code.incremental ? planned_deg() : offset_deg_;
+    const double target_deg = base_deg + *code.x_deg;
     if (settings_.at(20) != 0 && (target_deg > 0 || target_deg < -settings_.at(130))) {
       state_ = State::alarm;
       planner_.clear();
@@ -555,15 +389,15 @@ class SimulatedGrbl final : public SimulatedFirmware {
     }
     const double limit_deg_s = settings_.at(110) / 60;
     planner_.push_back({.target_steps = std::round(target_deg * settings_.at(100)),
-                        .speed_deg_s = motions.rapid ? limit_deg_s : std::min(limit_deg_s, feed_deg_min / 60),
-                        .jog = motions.jog});
+                        .speed_deg_s = code.rapid ? limit_deg_s : std::min(limit_deg_s, code.feed_deg_min / 60),
+                        .jog = jog});
     return 0;
   }
 
   SimulatedMotor motor_;
   Clock& clock_;
   bool with_switch_;
-  std::map<int, double> settings_;
+  SimulatedGrblSettings settings_;
   State state_ = State::idle;
   std::string line_, said_;
   std::deque<std::string> waiting_;  // lines not yet taken
@@ -571,30 +405,15 @@ class SimulatedGrbl final : public SimulatedFirmware {
   bool begun_ = false;  // the planner's first block
   std::optional<double> dwell_until_s_;
   bool homing_ = false, report_asked_ = false, wait_for_reset_ = false;
-  bool incremental_ = false, motion_is_rapid_ = true;
-  double feed_deg_min_ = 0, offset_deg_ = 0;
+  GrblModes modes_;
+  double offset_deg_ = 0;
   int reports_to_offset_ = 0, reports_to_overrides_ = 1;
-};
-
-class Echo final : public SimulatedFirmware {
- public:
-  void power_on() override {}
-  void receive(std::string_view bytes) override { said_ += bytes; }
-  std::string transmit() override { return std::exchange(said_, {}); }
-  void break_down(Breakdown) override {}
-
- private:
-  std::string said_;
 };
 
 }  // namespace
 
 std::unique_ptr<SimulatedFirmware> make_simulated_grbl(SimulatedMotor motor, Clock& clock, bool with_switch) {
   return std::make_unique<SimulatedGrbl>(motor, clock, with_switch);
-}
-
-std::unique_ptr<SimulatedFirmware> make_echo() {
-  return std::make_unique<Echo>();
 }
 
 }  // namespace rig

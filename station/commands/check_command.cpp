@@ -36,12 +36,18 @@ void print_json(const std::vector<DeviceCheck>& checks) {
 
 void add_check_command(CLI::App& app) {
   auto rig = std::make_shared<std::string>();
+  auto calibration = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("check", "connect a rig's devices, turn the platform, take test pictures");
   command->add_option("--rig", *rig, "rig file")->required();
+  command->add_option("--calibration", *calibration,
+                      "the rig's calibration: takes a test picture too (empty platform, room light on)");
   command->add_flag("--json", *json, "as JSON, for machines");
-  command->callback([rig, json] {
-    const std::vector<DeviceCheck> checks = check_rig(read_rig(*rig));
+  command->callback([rig, calibration, json] {
+    const RigFile file = read_rig(*rig);
+    std::optional<RigCalibration> calibrated;
+    if (!calibration->empty()) calibrated = read_calibration(*calibration);
+    const std::vector<DeviceCheck> checks = check_rig(file, calibrated);
     *json ? print_json(checks) : print_table(checks);
     for (const DeviceCheck& check : checks)
       for (const rig::ContractRow& row : check.rows)

@@ -25,16 +25,19 @@ void print(const RigFile& rig, const SimulatedPorts& ports, bool json) {
 
 void add_simulate_hardware_command(CLI::App& app) {
   auto rig = std::make_shared<std::string>();
+  auto faults = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false);
   CLI::App* command =
       app.add_subcommand("simulate-hardware", "start a rig's simulated devices and print their ports, until Ctrl-C");
   command->add_option("--rig", *rig, "rig file with devices that are simulated on a wire")->required();
+  command->add_option("--faults", *faults, "fault plan: what goes wrong, and when");
   command->add_flag("--json", *json, "as JSON, for machines");
-  command->callback([rig, json] {
+  command->callback([rig, faults, json] {
     const RigFile file = read_rig(*rig);
+    const Faults plan = faults->empty() ? Faults{} : read_faults(*faults);
     watch_interrupts();
     simulate_hardware(
-        file, [&](const SimulatedPorts& ports) { print(file, ports, *json); }, interrupted);
+        file, plan, [&](const SimulatedPorts& ports) { print(file, ports, *json); }, interrupted);
   });
 }
 

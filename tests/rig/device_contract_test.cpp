@@ -56,11 +56,13 @@ class AlteredCamera final : public rig::Camera {
   std::vector<double> shutter_times_s() override { return on_times(); }
   rig::ExposureSettings configure(const rig::ExposureSettings& wanted) override { return on_configure(wanted); }
   rig::Picture capture() override { return on_capture(); }
+  std::vector<std::byte> preview() override { return on_preview(); }
 
   std::function<std::vector<double>()> on_times = [this] { return sound_.shutter_times_s(); };
   std::function<rig::ExposureSettings(rig::ExposureSettings)> on_configure =
       [this](const rig::ExposureSettings& wanted) { return sound_.configure(wanted); };
   std::function<rig::Picture()> on_capture = [this] { return sound_.capture(); };
+  std::function<std::vector<std::byte>()> on_preview = [this] { return sound_.preview(); };
 
  private:
   rig::Camera& sound_;
@@ -166,6 +168,11 @@ TEST_F(CameraContract, IsBrokenByTheSamePictureTwice) {
     return picture;
   };
   EXPECT_THAT(failures(), ElementsAre("each picture is a new one"));
+}
+
+TEST_F(CameraContract, IsBrokenByALiveViewThatIsNoPicture) {
+  camera.on_preview = [] { return std::vector<std::byte>(1000); };
+  EXPECT_THAT(failures(), ElementsAre("the live view shows a picture"));
 }
 
 TEST_F(CameraContract, IsBrokenByAClockThatStands) {

@@ -17,6 +17,18 @@ TEST(StopOnInterrupt, CallsTheStopWhileTheRestOfTheProgramWaits) {
   station::watch_interrupts();
 }
 
+TEST(StopOnInterrupt, StopsAgainWhatWasBegunAtTheSameMoment) {
+  station::watch_interrupts();
+  std::atomic<int> stops = 0;
+  std::promise<void> stopped_again;
+  const station::StopOnInterrupt watch([&] {
+    if (++stops == 3) stopped_again.set_value();
+  });
+  std::raise(SIGINT);
+  stopped_again.get_future().wait();
+  station::watch_interrupts();
+}
+
 TEST(StopOnInterrupt, DoesNothingWithoutASignalAndForgetsTheOneOfARunBefore) {
   station::watch_interrupts();
   std::raise(SIGTERM);

@@ -42,6 +42,20 @@ TEST_F(RigCommands, CheckEndsInATableForEverySimulatedRig) {
   }
 }
 
+TEST_F(RigCommands, CheckWithACalibrationLooksAtATestPicture) {
+  json rig = station::read_json_file(fixture("simulated"));
+  rig["simulation"]["target_samples_per_pixel"] = 4;
+  const std::string calibration = std::string(FIXTURES_DIR) + "/calibrations/simulated.json";
+  const ProgramResult sound = run_threadstation({"check", "--rig", rig_file(rig), "--calibration", calibration});
+  EXPECT_EQ(sound.status, 0) << sound.error << sound.out;
+  for (const char* row : {"an exposure is found", "the picture is in focus", "tags on the platform are seen",
+                          "tags on the table are seen", "the bench stands as it was calibrated"})
+    EXPECT_THAT(sound.out, HasSubstr(std::string("  ok    ") + row));
+  rig["simulation"]["lens"]["blur_px"] = 2.5;
+  const ProgramResult blurred = run_threadstation({"check", "--rig", rig_file(rig), "--calibration", calibration});
+  expect_refused(blurred, "the test picture failed \"the picture is in focus\": edges of tags are");
+}
+
 TEST_F(RigCommands, CheckSaysInOneLineWhatIsMissing) {
   json rig = station::read_json_file(fixture("grbl_sony_network"));
   rig["turntable_setup"]["port"] = "/dev/ttyNONE7";
@@ -60,19 +74,29 @@ TEST_F(RigCommands, CheckAsJsonIsForMachines) {
   EXPECT_EQ(checks[0]["passed"], true);
 }
 
+TEST_F(RigCommands, AFaultThatThereIsNotIsNamedWithThoseThatThereAre) {
+  json faults = station::read_json_file(std::string(FIXTURES_DIR) + "/faults/example.json");
+  faults["camera"][0]["fault"] = "hiccup";
+  station::write_json_file(folder / "faults.json", faults);
+  expect_refused(run_threadstation({"simulate-hardware", "--rig", fixture("simulated_wire_grbl"), "--faults",
+                                    folder / "faults.json"}),
+                 "\"hiccup\" is none; it is one of silence, lost_answer, cut");
+}
+
 TEST_F(RigCommands, SimulateHardwareNeedsSomethingOnAWire) {
   expect_refused(run_threadstation({"simulate-hardware", "--rig", fixture("simulated")}),
                  "names nothing that is simulated on a wire");
 }
 
-// Two programs: one is the hardware, the other one finds it at the ports that the first one printed.
+// Two programs: one is the hardware with faults, the other one finds it at the ports that the first one printed.
 TEST_F(RigCommands, SimulatedHardwareServesAnotherProgramAndEndsWithCtrlC) {
   json wire = station::read_json_file(fixture("simulated_wire_grbl"));
   wire["simulation"]["turntable"]["speed_deg_s"] = 300;  // in real time
+  const std::string faults = std::string(FIXTURES_DIR) + "/faults/example.json";
   const std::string ports = folder / "ports", program = THREADSTATION_PROGRAM;
-  const ProgramResult started =
-      station_test::run_shell(program + " simulate-hardware --json --rig " + rig_file(wire) + " > " + ports +
-                              " & echo $!; while [ ! -s " + ports + " ]; do kill -0 $! || exit 1; sleep 0.05; done");
+  const ProgramResult started = station_test::run_shell(
+      program + " simulate-hardware --json --rig " + rig_file(wire) + " --faults " + faults + " > " + ports +
+      " & echo $!; while [ ! -s " + ports + " ]; do kill -0 $! || exit 1; sleep 0.05; done");
   ASSERT_EQ(started.status, 0) << started.error;
   const json found = station::read_json_file(ports);
   json rig = station::read_json_file(fixture("grbl_sony_network"));

@@ -7,7 +7,6 @@
 #include <mutex>
 #include <string>
 
-#include "rig/cameras/live_view.h"
 #include "rig/cameras/ptpip_server.h"
 #include "rig/cameras/simulated_sony.h"
 #include "rig/simulated_bench.h"
@@ -25,6 +24,7 @@ class RecordingCamera final : public rig::Camera {
     taken.push_back(picture);
     return picture;
   }
+  std::vector<std::byte> preview() override { return camera_.preview(); }
   rig::Picture last() const {
     const std::lock_guard hold(mutex_);
     return taken.back();
@@ -76,8 +76,7 @@ struct WiredCamera {
   rig::SimulatedClock clock{1.8e9};
   std::unique_ptr<rig::Camera> camera = rig::make_simulated_camera(bench, clock);
   RecordingCamera recorded{*camera};
-  std::unique_ptr<rig::SimulatedSony> sony =
-      rig::make_simulated_sony(recorded, [this] { return rig::live_view_jpeg(bench.draw()); });
+  std::unique_ptr<rig::SimulatedSony> sony = rig::make_simulated_sony(recorded);
   std::function<void()> before_answer;  // set before anybody is connected
   WatchedSony watched{*sony, before_answer};
   std::unique_ptr<rig::PtpipServer> server = rig::serve_on_ptpip(watched, 0, faults);

@@ -41,8 +41,19 @@ Ending try_work(Rig& rig, std::unique_ptr<rig::Turntable>& table) {
   }
 }
 
-void expect_sound_again(Rig& rig, std::unique_ptr<rig::Turntable>& table) {
+void come_back(Rig& rig) {
   rig.port->power_on();
+}
+
+// By its serial number it is found there.
+void come_back_at_another_port(Rig& rig) {
+  rig::SimulatedMotor motor(rig.bench, rig.clock, rig.kStepsPerDeg);
+  rig.port =
+      rig::make_simulated_port(rig.protocol == Protocol::grbl ? rig::make_simulated_grbl(motor, rig.clock, true)
+                                                              : rig::make_simulated_zaber(motor));
+}
+
+void expect_sound_again(Rig& rig, std::unique_ptr<rig::Turntable>& table) {
   if (table) {
     EXPECT_EQ(table->state(), rig::TurntableState::unknown_position);
     EXPECT_THROW(table->move_to(0), std::runtime_error);
@@ -56,7 +67,8 @@ void expect_sound_again(Rig& rig, std::unique_ptr<rig::Turntable>& table) {
 
 struct LineFaults : testing::TestWithParam<Protocol> {
   // Sweeps over the operations of the work without faults; returns what was said.
-  std::set<std::string> sweep(rig::LineFault fault, double most_s) {
+  std::set<std::string> sweep(rig::LineFault fault, double most_s,
+                              const std::function<void(Rig&)>& put_right = come_back) {
     Rig sound(GetParam());
     std::unique_ptr<rig::Turntable> table;
     EXPECT_EQ(try_work(sound, table).message, "");
@@ -75,6 +87,7 @@ struct LineFaults : testing::TestWithParam<Protocol> {
         ++failed;
         said.insert(ending.message);
         EXPECT_LT(ending.took_s, sound_s + most_s);
+        put_right(rig);
         expect_sound_again(rig, faulty);
       }
     }
@@ -137,4 +150,17 @@ TEST_P(LineFaults, AnAlarmIsSaidInWordsAndHasToBeHomed) {
 TEST_P(LineFaults, AnUnpluggedCableIsSaidWithinASecondAndIsNoTimeout) {
   const auto said = sweep(rig::LineFault::unplug, 1);
   EXPECT_THAT(said, testing::ElementsAre(HasSubstr("was unplugged or switched off; plug it in")));
+}
+
+TEST_P(LineFaults, ADeviceThatComesBackAtAnotherPortIsFoundThere) {
+  const auto said = sweep(rig::LineFault::unplug, 1, come_back_at_another_port);
+  EXPECT_THAT(said, testing::ElementsAre(HasSubstr("was unplugged or switched off; plug it in")));
+}
+
+// From the Nth command on somebody else sits at the port.
+TEST_P(LineFaults, AnotherDeviceOnThePortIsRefused) {
+  const auto said = sweep(rig::LineFault::wrong_device, 15);
+  EXPECT_THAT(said, testing::Not(testing::IsEmpty()));
+  EXPECT_THAT(said, Each(AnyOf(HasSubstr("choose the turntable's port"), HasSubstr("did not answer; "),
+                               HasSubstr("has not come to rest within"))));
 }

@@ -74,6 +74,7 @@ class FakeCamera final : public rig::Camera {
   std::vector<double> shutter_times_s() override;
   rig::ExposureSettings configure(const rig::ExposureSettings& wanted) override;
   rig::Picture capture() override;  // no two alike, also among processes
+  std::vector<std::byte> preview() override { return {}; }
 
   static double level(const rig::Picture& picture);
 
