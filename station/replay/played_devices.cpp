@@ -82,6 +82,10 @@ class Script {
   StopWish wish_ = StopWish::none;
 };
 
+[[noreturn]] void refuse_preview() {
+  throw std::runtime_error("a recorded session has no live picture; run a capture to see one");
+}
+
 class ScriptedCamera final : public rig::Camera {
  public:
   explicit ScriptedCamera(std::shared_ptr<Script> script) : script_(std::move(script)) {}
@@ -95,6 +99,7 @@ class ScriptedCamera final : public rig::Camera {
         script_->answer({{"call", "configure"}, {"asked", rig::settings_to_json(wanted)}}));
   }
   rig::Picture capture() override { return picture_of(script_->answer({{"call", "capture"}}), script_->pictures()); }
+  std::vector<std::byte> preview() override { refuse_preview(); }
 
  private:
   std::shared_ptr<Script> script_;
@@ -176,6 +181,7 @@ class FreeCamera final : public rig::Camera {
     return rig::settings_from_json(memory_->now.settings);
   }
   // The pictures of one scenery in their order; the last of them is the one that was kept.
+  std::vector<std::byte> preview() override { refuse_preview(); }
   rig::Picture capture() override {
     const auto found = memory_->pictures.find(memory_->now.text());
     if (found == memory_->pictures.end())

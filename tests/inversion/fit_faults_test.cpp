@@ -130,7 +130,7 @@ TEST(FitFaultsTest, OneBadViewIsNamedAndHardlyMovesTheThread) {
   views[1].image *= 1.7;  // the lamp was knocked
   const DoubtedFit found = fit_and_doubt(views);
   EXPECT_THAT(found.doubts, Contains(testing::AllOf(HasSubstr(views[1].id), HasSubstr("disagrees"))));
-  EXPECT_LT(found.fit.view_weights[1], 0.2);
+  EXPECT_LT(found.fit.view_weights[1], 0.5);
   EXPECT_EQ(found.fit.view_weights[0], 1);
   FitOptions all_alike = kQuick;
   all_alike.robust = false;
