@@ -15,22 +15,24 @@ ViewAgreement noiseless_agreement(const View& view, const std::array<cv::Mat3f, 
                                   const std::array<cv::Mat3f, 2>& rendered, int block_px) {
   const double diffuser = diffuser_radiance(view.light).mean();
   ViewAgreement result;
-  double pixels = 0, difference_sum = 0;
+  double pixels = 0;
+  Eigen::Array3d difference_sum = Eigen::Array3d::Zero(), reference_sum = difference_sum;
   for (const Block& block : mask_blocks(view.mask, block_px)) {
     const auto weight = static_cast<double>(block.pixels.size());
     std::array<Eigen::Array3d, 2> difference;
     for (std::size_t i = 0; i < 2; ++i) {
       const Eigen::Array3d reference = block_mean(block, photographs[i]) / diffuser;
       difference[i] = block_mean(block, rendered[i]) / diffuser - reference;
-      result.mean_reference += 0.5 * weight * reference.mean();
-      difference_sum += 0.5 * weight * difference[i].mean();
+      reference_sum += 0.5 * weight * reference;
+      difference_sum += 0.5 * weight * difference[i];
     }
     result.mean_square += weight * (difference[0] * difference[1]).mean();
     pixels += weight;
   }
-  result.relative_bias = difference_sum / result.mean_reference;
+  result.relative_bias = difference_sum.sum() / reference_sum.sum();
+  result.colour_bias = difference_sum / reference_sum;
   result.mean_square /= pixels;
-  result.mean_reference /= pixels;
+  result.mean_reference = reference_sum.mean() / pixels;
   return result;
 }
 

@@ -16,6 +16,7 @@ struct ViewAgreement {
   double mean_reference = 0;     // of the photographed block averages, mean of RGB, over the diffuser's radiance
   double relative_rmse() const;  // root of the first over the second
   double relative_bias = 0;      // mean of the difference over the mean of the photograph
+  Eigen::Array3d colour_bias = Eigen::Array3d::Zero();  // the same of each channel by itself
 };
 
 // `rendered` as view.image: same size and radiance unit. Blocks of block_px.

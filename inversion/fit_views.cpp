@@ -17,6 +17,8 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int kMostSteps = 40;
+constexpr int kMostReweighings = 4;
+constexpr double kSettledWeight = 0.1;
 // With fewer the product of two halves' errors is larger than what it is to find.
 constexpr int kFewestPathsWithoutBias = 512;
 constexpr const char* kStopped = "the fit was stopped on request; start it again for a thread";
@@ -136,6 +138,7 @@ struct Attempt {
   int start = 0;
   VectorXd unknowns;
   std::vector<FitRound> rounds{};
+  std::vector<double> view_weights{};
   double loss() const { return rounds.empty() ? 0 : rounds.back().loss_after; }
 };
 
@@ -157,7 +160,8 @@ class RoundRunner {
       whole_ += paths[round] * (round + 1 < paths.size() ? static_cast<double>(starts) : 1.0);
   }
 
-  void run(Attempt& attempt, std::size_t round) {
+  // robustly: the blocks are weighed at the attempt's unknowns first.
+  void run(Attempt& attempt, std::size_t round, bool robustly = false) {
     constexpr double kTracingShare = 0.4;
     const FitOptions& options = *search_.options;
     const int paths = options.paths_per_block[round];
@@ -171,12 +175,25 @@ class RoundRunner {
     objective_.trace(attempt.unknowns, paths, options.seed + 1000003 * round, [&](int views_done, int total) {
       if (!go_on("tracing", kTracingShare * views_done / total)) throw std::runtime_error(kStopped);
     });
-    attempt.rounds.push_back(solve(
-        objective_, search_, prior_scale(objective_, search_, attempt.rounds),
-        [&](int step) {
-          return go_on("step " + std::to_string(step), kTracingShare + (1 - kTracingShare) * step / kMostSteps);
-        },
-        attempt.unknowns));
+    const auto search_on = [&] {
+      return solve(
+          objective_, search_, prior_scale(objective_, search_, attempt.rounds),
+          [&](int step) {
+            return go_on("step " + std::to_string(step), kTracingShare + (1 - kTracingShare) * step / kMostSteps);
+          },
+          attempt.unknowns);
+    };
+    if (robustly) attempt.view_weights = objective_.weigh_robustly(attempt.unknowns);
+    attempt.rounds.push_back(search_on());
+    // A bad view has pulled the fit towards itself before it is told from the others: as it loses weight, it stands out more.
+    for (int again = 0; robustly && again < kMostReweighings; ++again) {
+      std::vector<double> weights = objective_.weigh_robustly(attempt.unknowns);
+      const bool settled = std::equal(weights.begin(), weights.end(), attempt.view_weights.begin(),
+                                      [](double x, double y) { return std::abs(x - y) < kSettledWeight; });
+      attempt.view_weights = std::move(weights);
+      if (settled) break;
+      attempt.rounds.back() = search_on();
+    }
     attempt.rounds.back().paths_per_block = paths;
     done_ += paths;
   }
@@ -197,7 +214,7 @@ Attempt search_by_rounds(ViewObjective& objective, const Search& search, const s
     for (std::size_t round = 0; round < last; ++round) runner.run(attempt, round);
   Attempt& best = *std::min_element(attempts.begin(), attempts.end(),
                                     [](const Attempt& a, const Attempt& b) { return a.loss() < b.loss(); });
-  runner.run(best, last);
+  runner.run(best, last, search.options->robust && last > 0);
   return best;
 }
 
@@ -268,6 +285,7 @@ void remove_bias(ViewObjective& objective, const Search& search, Attempt& attemp
     const BiasFreeTerms data = data_terms(objective, unknowns);
     return BiasFreeTerms{terms.loss + data.loss, terms.gradient + data.gradient, terms.hessian + data.hessian};
   };
+  if (options.robust) attempt.view_weights = objective.weigh_robustly(attempt.unknowns);
   FitRound round{.paths_per_block = paths, .bias_free = true, .converged = true};
   round.losses = minimise_bias_free(
       loss, {.lower = search.family->lower_bounds(), .upper = search.family->upper_bounds(), .held = search.held},
@@ -356,6 +374,8 @@ ViewFit fit_family(const WrappedSpool& spool, const std::vector<View>& views, co
       .certainty = certainty_at(objective, search, prior_scale(objective, search, best.rounds), best.unknowns),
       .rounds = best.rounds,
       .start = best.start,
+      .view_weights =
+          best.view_weights.empty() ? std::vector<double>(views.size(), 1.0) : std::move(best.view_weights),
       .block_px = objective.block_px(),
       .blocks = objective.block_count()};
   if (auto* thread = std::get_if<renderer::ThreadParameters>(&fit.model)) thread->limit_energy = true;
@@ -406,6 +426,27 @@ ViewFit fit_views(const WrappedSpool& spool, const std::vector<View>& views, con
   if (options.held.empty())
     for (const renderer::ThreadParameters& start : options.other_starts) starts.emplace_back(unknowns_of(start));
   return fit_family(spool, views, options, *thread_family(), starts);
+}
+
+IndependentLoss independent_loss(const WrappedSpool& spool, const std::vector<View>& views, const ViewFit& fit,
+                                 int paths_per_block, int repetitions, std::uint64_t seed) {
+  const auto* yarn = std::get_if<renderer::YarnParameters>(&fit.model);
+  const auto family = yarn                                                           ? yarn_family(yarn->fiber_count)
+                      : std::holds_alternative<renderer::FiberParameters>(fit.model) ? fiber_family()
+                                                                                     : thread_family();
+  ViewObjective objective(spool, views, *family);
+  VectorXd residuals(objective.residual_count());
+  double sum = 0, squares = 0;
+  for (int i = 0; i < repetitions; ++i) {
+    objective.trace(fit.unknowns, paths_per_block, seed + 1000003 * static_cast<std::uint64_t>(i), [](int, int) {});
+    objective.residuals(fit.unknowns, residuals.data(), nullptr);
+    const double loss = 0.5 * residuals.squaredNorm();
+    sum += loss;
+    squares += loss * loss;
+  }
+  const double mean = sum / repetitions;
+  const double variance = std::max(0.0, squares / repetitions - mean * mean) / (repetitions - 1);
+  return {mean, std::sqrt(variance)};
 }
 
 }  // namespace inversion

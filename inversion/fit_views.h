@@ -45,6 +45,9 @@ struct FitOptions {
   // Levenberg-Marquardt ends with steps without the bias of the paths' noise (bias_free.h), unless the last of
   // paths_per_block is below 512. false: eq. 6 as it stands.
   bool without_bias = true;
+  // Before its last round Levenberg-Marquardt weighs views and blocks by how far off they are (robust_weights.h). false: all
+  // count as in eq. 6.
+  bool robust = true;
   std::vector<ParameterGroup> held{};  // of the thread model: left at `start`, the only one then
   std::uint64_t seed = 1;
   // Called between steps with what is done and the finished fraction; returning false stops the fit.
@@ -66,8 +69,9 @@ struct ViewFit {
   Eigen::VectorXd unknowns;
   std::vector<std::string> unknown_names;
   Certainty certainty;
-  std::vector<FitRound> rounds;  // of the start that got farthest
-  int start = 0;                 // 0: FitOptions::start, then other_starts
+  std::vector<FitRound> rounds;        // of the start that got farthest
+  int start = 0;                       // 0: FitOptions::start, then other_starts
+  std::vector<double> view_weights{};  // of each view, 0 ... 1: below 1 where it disagreed far more than the others
   int block_px = 0;
   std::size_t blocks = 0;
 
@@ -80,5 +84,13 @@ struct ViewFit {
 // Errors: std::runtime_error when the views are unusable (none, no masked pixels, dark lamp) or the fit was stopped;
 // std::invalid_argument when there is no round or one without paths.
 ViewFit fit_views(const WrappedSpool& spool, const std::vector<View>& views, const FitOptions& options);
+
+// Eq. 6's sum over the pictures, without penalties, at the fit's unknowns on light paths that no fit has seen: what two
+// fits are compared by. Recorded `repetitions` >= 2 times.
+struct IndependentLoss {
+  double mean = 0, standard_error = 0;
+};
+IndependentLoss independent_loss(const WrappedSpool& spool, const std::vector<View>& views, const ViewFit& fit,
+                                 int paths_per_block, int repetitions, std::uint64_t seed);
 
 }  // namespace inversion

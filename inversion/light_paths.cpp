@@ -26,6 +26,7 @@ class PathRecorder {
       : rays_(rays),
         traced_with_(traced_with),
         model_(renderer::prepare_curve_models({traced_with}).front()),
+        far_side_(renderer::leaves_on_far_side(model_)),
         lights_({unit_lamp(view.light)}) {}
 
   void record(renderer::CameraRay camera_ray, renderer::Sampler& sampler, std::vector<PathEvent>& events) const {
@@ -59,7 +60,10 @@ class PathRecorder {
     const CurveLobes<float> lobes = std::visit([&](const auto& model) { return model.lobes_at(h, wo); }, model_);
     PathEvent event{};
     event.point = point_at(h, wo);
-    event.light_weight = record_light(curve.position, frame, lobes, sampler.next_2d(), event.light);
+    const auto start_toward = [&](const Vector3f& direction) {
+      return far_side_ ? renderer::far_side_position(curve, direction, sampler.next_1d()) : curve.position;
+    };
+    event.light_weight = record_light(curve.position, start_toward, frame, lobes, sampler.next_2d(), event.light);
 
     const Eigen::Vector2f u = sampler.next_2d(), u_angles = sampler.next_2d();
     const Vector3f next = lobes.sample(u.x(), u.y(), u_angles.x(), u_angles.y());
@@ -78,7 +82,8 @@ class PathRecorder {
     }
     throughput *= weight;
     events.push_back(event);
-    return {curve.position, (frame.transpose() * next).normalized()};
+    const Vector3f onwards = (frame.transpose() * next).normalized();
+    return {start_toward(onwards), onwards};
   }
 
   renderer::ThreadPoint<float> point_at(float h, const Vector3f& wo) const {
@@ -91,20 +96,23 @@ class PathRecorder {
     return {cosine, renderer::InnerChord<float>(h, wo.x(), cosine, eta).length};
   }
 
-  float record_light(const Vector3f& position, const Eigen::Matrix3f& frame, const CurveLobes<float>& lobes,
-                     const Eigen::Vector2f& u, PathDirection& direction) const {
-    const Vector3d origin = position.cast<double>();
+  template <class StartToward>
+  float record_light(const Vector3f& position, const StartToward& start_toward, const Eigen::Matrix3f& frame,
+                     const CurveLobes<float>& lobes, const Eigen::Vector2f& u, PathDirection& direction) const {
+    const Vector3f start = start_toward(lights_.sample(position.cast<double>(), 0, u)->cast<float>());
+    const Vector3d origin = start.cast<double>();
     const std::optional<Vector3d> wi = lights_.sample(origin, 0, u);
-    const std::optional<renderer::LightHit> light = wi ? lights_.intersect(origin, *wi, false) : std::nullopt;
+    const std::optional<renderer::LightHit> light = lights_.intersect(origin, *wi, false);
     if (!light) return 0;  // rounding at the rim of the cone
     direction = stored(lobes.angles(frame * wi->cast<float>()));
-    if (rays_.occluded({position, wi->cast<float>()}, static_cast<float>(light->distance))) return 0;
+    if (rays_.occluded({start, wi->cast<float>()}, static_cast<float>(light->distance))) return 0;
     return light->radiance[0] / static_cast<float>(lights_.pdf(origin, *wi));
   }
 
   const renderer::RayScene& rays_;
   renderer::ScatteringModel traced_with_;
   renderer::CurveModel model_;
+  bool far_side_;
   renderer::SphereLights lights_;
 };
 

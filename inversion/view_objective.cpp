@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "inversion/block_estimate.h"
+#include "inversion/robust_weights.h"
 
 namespace inversion {
 namespace {
@@ -113,6 +114,27 @@ Eigen::VectorXd ViewObjective::residual_variances(const Eigen::VectorXd& unknown
   return variances;
 }
 
+std::vector<double> ViewObjective::weigh_robustly(const Eigen::VectorXd& unknowns) {
+  const std::unique_ptr<BlockShader> shader = family_.shader(unknowns);
+  std::vector<WeighedView> weighed;
+  for (const ViewBlocks& v : views_) {
+    WeighedView& view = weighed.emplace_back();
+    view.transmission = v.view->transmission;
+    view.misfits.resize(v.blocks.size());
+    view.noise_variances.resize(v.blocks.size());
+    tbb::parallel_for(std::size_t{0}, v.blocks.size(), [&](std::size_t b) {
+      const BlockEstimate estimate = shader->shade(v.paths, b, false);
+      view.misfits[b] = std::sqrt((v.scale * estimate.value - v.references[b]).square().mean());
+      view.noise_variances[b] = v.variances[b].mean();
+    });
+    for (const Eigen::Array3d& reference : v.references)
+      view.mean_reference += reference.mean() / static_cast<double>(v.references.size());
+  }
+  RobustWeights weights = robust_weights(weighed);
+  for (std::size_t i = 0; i < views_.size(); ++i) views_[i].robust = std::move(weights.blocks[i]);
+  return weights.views;
+}
+
 std::vector<int> ViewObjective::residual_views() const {
   std::vector<int> views;
   for (std::size_t v = 0; v < views_.size(); ++v)
@@ -121,7 +143,8 @@ std::vector<int> ViewObjective::residual_views() const {
 }
 
 double ViewObjective::residual_weight(const ViewBlocks& view, std::size_t block) {
-  return std::sqrt(2 * view.weight * static_cast<double>(view.blocks[block].pixels.size()));
+  const double robust = view.robust.empty() ? 1 : view.robust[block];
+  return std::sqrt(2 * robust * view.weight * static_cast<double>(view.blocks[block].pixels.size()));
 }
 
 }  // namespace inversion

@@ -38,6 +38,10 @@ class ViewObjective {
 
   // Variance of each residual: the photographs' noise (View::variance) and that of the light paths.
   Eigen::VectorXd residual_variances(const Eigen::VectorXd& unknowns) const;
+  // Weighs every block anew by how far off it is at the unknowns (robust_weights.h), for all calls from now on. The weight of
+  // each view.
+  std::vector<double> weigh_robustly(const Eigen::VectorXd& unknowns);
+
   // Number of the view that each residual belongs to.
   std::vector<int> residual_views() const;
 
@@ -49,6 +53,7 @@ class ViewObjective {
     std::vector<Eigen::Array3d> references;  // means of the photograph's blocks over the diffuser's radiance
     Eigen::Array3d scale;                    // block estimates times this are radiances over the diffuser's
     double weight;                           // w_i
+    std::vector<double> robust{};            // of each block, 0 ... 1; empty: 1
     LightPaths paths{};
     std::size_t first_block;
   };

@@ -38,13 +38,18 @@ ClothGeometry::ClothGeometry(const Cloth& cloth, std::uint32_t first_curve_set, 
   const SurfaceRange heights = shell_heights(cloth.patch);
   // A ray that crosses the cloth at 45 degrees stays in the column in which it starts.
   margin_mm_ = heights.high_mm - heights.low_mm;
-  for (const int thread : threads_of(cloth.patch)) {
-    threads_.push_back(cell_curves_of(cloth.patch, thread, margin_mm_ + 2 * kShellOverlap));
-    thread_of_set_.push_back(static_cast<std::uint32_t>(thread));
-  }
+  for (const RoundYarns& part : round_yarns_of(cloth.patch))
+    for (const int thread : threads_of(part.patch))
+      yarns_.push_back({cell_curves_of(part.patch, thread, margin_mm_ + 2 * kShellOverlap),
+                        static_cast<std::uint32_t>(thread), part.stretch.cast<float>()});
   column_ = {rtcNewScene(device), rtcReleaseScene};
   rtcSetSceneBuildQuality(column_.get(), RTC_BUILD_QUALITY_HIGH);
-  for (const CurveSet& set : threads_) add_curves(device, column_.get(), set);
+  for (const Yarns& yarns : yarns_) {
+    if (yarns.stretch == Vector3f::Ones())
+      add_curves(device, column_.get(), yarns.curves);
+    else
+      add_stretched_curves(device, column_.get(), yarns.curves, yarns.stretch);
+  }
   rtcCommitScene(column_.get());
 }
 
@@ -115,7 +120,7 @@ void ClothGeometry::intersect(const RTCIntersectFunctionNArguments& arguments) c
     query->hit.instID[0] = arguments.context->instID[0];
     reinterpret_cast<ClothQuery*>(arguments.context)->cloth = {
         .cell = arguments.primID,
-        .thread = found.hit.geomID,
+        .yarns = found.hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? found.hit.geomID : found.hit.instID[0],
         .segment = found.hit.primID,
         .u = found.hit.u,
         .hit_normal = {found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z},
@@ -147,11 +152,13 @@ void ClothGeometry::occluded(const RTCOccludedFunctionNArguments& arguments) con
 
 CurvePoint ClothGeometry::point_at(const ClothHit& hit) const {
   const ShellCell& cell = shell_.cells[hit.cell];
-  CurvePoint point = point_on_curve(threads_[hit.thread], hit.segment, hit.u, hit.hit_normal, hit.ray, hit.distance);
+  const Yarns& yarns = yarns_[hit.yarns];
+  CurvePoint point =
+      point_on_curve(yarns.curves, hit.segment, hit.u, hit.hit_normal, hit.ray, hit.distance, yarns.stretch);
   const Vector3d patch = point.position.cast<double>() + hit.tile;
   const Vector3d world = cell.world_from_patch * patch.homogeneous();
   const Eigen::Matrix3f frame = frame_at(shell_, cell, world).cast<float>();
-  point.curve_set = first_curve_set_ + thread_of_set_[hit.thread];
+  point.curve_set = first_curve_set_ + yarns.thread;
   point.position = world.cast<float>();
   point.tangent = frame * point.tangent;
   point.normal = frame * point.normal;
@@ -160,7 +167,7 @@ CurvePoint ClothGeometry::point_at(const ClothHit& hit) const {
 
 std::size_t ClothGeometry::yarn_bytes() const {
   std::size_t bytes = 0;
-  for (const CurveSet& set : threads_) bytes += bytes_of(set);
+  for (const Yarns& yarns : yarns_) bytes += bytes_of(yarns.curves);
   return bytes;
 }
 

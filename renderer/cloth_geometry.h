@@ -17,7 +17,7 @@ namespace renderer {
 
 // What a ray met, in the frame of the column it was in. Valid after a query whose nearest hit is on a cloth.
 struct ClothHit {
-  std::uint32_t cell = 0, thread = 0, segment = 0;
+  std::uint32_t cell = 0, yarns = 0, segment = 0;
   float u = 0;
   Eigen::Vector3f hit_normal = Eigen::Vector3f::Zero();
   Ray ray{};                                       // in the column, not unit
@@ -51,8 +51,12 @@ class ClothGeometry {
   Eigen::Vector2d period_mm_;
   double margin_mm_;
   std::uint32_t first_curve_set_;
-  std::vector<CurveSet> threads_;             // those that occur
-  std::vector<std::uint32_t> thread_of_set_;  // thread index of each of them
+  struct Yarns {
+    CurveSet curves;  // round; the cloth's are stretched
+    std::uint32_t thread;
+    Eigen::Vector3f stretch;
+  };
+  std::vector<Yarns> yarns_;  // of one thread and section
   std::shared_ptr<RTCSceneTy> column_;
 };
 

@@ -134,6 +134,10 @@ std::vector<CurveSet> explicit_curves(const ClothShape& shape, const YarnPatch& 
                              std::to_string(tiles.y) + " repeats of \"" + patch.name +
                              "\" as curves, more than memory should hold; use two_scale or a smaller cloth");
   check_cloth(patch, threads.size());
+  for (const Yarn& yarn : patch.yarns)
+    if (yarn.flatness != 1)
+      throw std::runtime_error("cloth: \"" + patch.name +
+                               "\" has flattened yarns, and brute force draws round ones only; use two_scale");
   const double around_mm = tiles.x * patch.period_x_mm;
   std::vector<CurveSet> sets;
   for (const int thread : threads_of(patch)) {

@@ -54,12 +54,28 @@ void add_curves(RTCDevice device, RTCScene scene, const CurveSet& curves) {
   rtcReleaseGeometry(geometry);
 }
 
+void add_stretched_curves(RTCDevice device, RTCScene scene, const CurveSet& curves, const Vector3f& stretch) {
+  const RTCScene unstretched = rtcNewScene(device);
+  rtcSetSceneBuildQuality(unstretched, RTC_BUILD_QUALITY_HIGH);
+  add_curves(device, unstretched, curves);
+  rtcCommitScene(unstretched);
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, unstretched);
+  const Eigen::Matrix<float, 3, 4> transform =
+      (Eigen::Matrix<float, 3, 4>() << Eigen::Matrix3f(stretch.asDiagonal()), Vector3f::Zero()).finished();
+  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, transform.data());
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcReleaseScene(unstretched);
+}
+
 std::size_t bytes_of(const CurveSet& curves) {
   return curves.control_points.size() * sizeof(Eigen::Vector4f) + curves.segments.size() * sizeof(std::uint32_t);
 }
 
 CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u, const Vector3f& hit_normal,
-                          const Ray& ray, float distance) {
+                          const Ray& ray, float distance, const Vector3f& stretch) {
   const Eigen::Vector4f* p = &curves.control_points[curves.segments[segment]];
   const float w = 1 - u;
   const Eigen::Vector4f center =
@@ -69,10 +85,14 @@ CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u
   CurvePoint point;
   point.tangent = derivative.normalized();
   point.normal = across(hit_normal, point.tangent).normalized();
-  const Vector3f from_center = ray.origin + distance * ray.direction - center.head<3>();
-  if (const auto exact = cylinder_normal(from_center, ray.direction, point.tangent, center.w()))
-    point.normal = *exact;
-  point.position = center.head<3>() + center.w() * (1 - kStartDepth) * point.normal;
+  const Vector3f origin = ray.origin.cwiseQuotient(stretch), direction = ray.direction.cwiseQuotient(stretch);
+  const Vector3f from_center = origin + distance * direction - center.head<3>();
+  if (const auto exact = cylinder_normal(from_center, direction, point.tangent, center.w())) point.normal = *exact;
+  point.radius = center.w() * (1 - kStartDepth);
+  point.position = (center.head<3>() + point.radius * point.normal).cwiseProduct(stretch);
+  if (stretch == Vector3f::Ones()) return point;
+  point.tangent = point.tangent.cwiseProduct(stretch).normalized();
+  point.normal = point.normal.cwiseQuotient(stretch).normalized();
   return point;
 }
 

@@ -53,10 +53,13 @@ struct PathTracer::Impl {
 
 // Light sampling's share of the light that reaches a vertex directly and goes on along the path.
 Array3f PathTracer::Impl::direct_light(const PathVertex& vertex, Sampler& sampler, std::uint64_t& traced) const {
-  const Vector3d origin = vertex.position().cast<double>();
   const Eigen::Vector2f u = sampler.next_2d();
-  const std::optional<Vector3d> direction = lights.sample(origin, lights.size() > 1 ? sampler.next_1d() : 0.0f, u);
-  if (!direction) return Array3f::Zero();
+  const float u_light = lights.size() > 1 ? sampler.next_1d() : 0.0f;
+  const std::optional<Vector3d> about = lights.sample(vertex.position().cast<double>(), u_light, u);
+  if (!about) return Array3f::Zero();
+  const Vector3f start = vertex.start_toward(about->cast<float>(), sampler);
+  const Vector3d origin = start.cast<double>();
+  const std::optional<Vector3d> direction = lights.sample(origin, u_light, u);  // from there, hardly another
   const std::optional<LightHit> light = lights.intersect(origin, *direction, false);
   if (!light) return Array3f::Zero();  // rounding at the rim of the cone
   const Vector3f wi = direction->cast<float>();
@@ -65,7 +68,7 @@ Array3f PathTracer::Impl::direct_light(const PathVertex& vertex, Sampler& sample
   const float chance = vertex.is_curve() ? std::min(1.0f, scattering.f_cos.maxCoeff() / kFaintScattering) : 1.0f;
   if (!(sampler.next_1d() < chance)) return Array3f::Zero();
   ++traced;
-  if (rays.occluded({vertex.position(), wi}, static_cast<float>(light->distance))) return Array3f::Zero();
+  if (rays.occluded({start, wi}, static_cast<float>(light->distance))) return Array3f::Zero();
   const auto pdf = static_cast<float>(lights.pdf(origin, *direction));
   return scattering.f_cos * light->radiance * (mis_weight(pdf, scattering.pdf) / (pdf * chance));
 }
@@ -108,7 +111,7 @@ Array3f PathTracer::Impl::radiance(CameraRay camera_ray, Sampler& sampler, int m
       if (!(sampler.next_1d() < survival)) break;
       throughput /= survival;
     }
-    origin = vertex.position().cast<double>();
+    origin = vertex.start_toward(wi, sampler).cast<double>();
     direction = wi.cast<double>();
   }
   return sum;

@@ -58,6 +58,22 @@ float viewing_offset(const Vector3f& wo) {
   return radial > 0 ? std::clamp(-wo.y() / radial, -1.0f, 1.0f) : 0.0f;
 }
 
+bool leaves_on_far_side(const CurveModel& model) {
+  const auto* thread = std::get_if<ThreadModel<float>>(&model);
+  return thread && thread->exit() == ThreadExit::far_side;
+}
+
+Vector3f far_side_position(const CurvePoint& entry, const Vector3f& wi, float u) {
+  const Vector3f across = wi - wi.dot(entry.tangent) * entry.tangent;
+  const float length = across.norm();
+  if (!(entry.normal.dot(across) < 0) || !(length > 0)) return entry.position;
+  const Vector3f outward = across / length;
+  const float offset = 2 * u - 1;
+  const Vector3f normal =
+      std::sqrt(std::max(0.0f, 1 - offset * offset)) * outward + offset * entry.tangent.cross(outward);
+  return entry.position + entry.radius * (normal - entry.normal);
+}
+
 PathVertex::PathVertex(const SurfaceHit& hit, const Vector3f& wo, const std::vector<CurveModel>& models) {
   if (const auto* curve = std::get_if<CurvePoint>(&hit.point)) {
     is_curve_ = true;
@@ -65,7 +81,9 @@ PathVertex::PathVertex(const SurfaceHit& hit, const Vector3f& wo, const std::vec
     local_from_world_ = local_from_world(*curve);
     const Vector3f local = local_from_world_ * wo;
     const float h = viewing_offset(local);
-    lobes_ = std::visit([&](const auto& model) { return model.lobes_at(h, local); }, models[curve->curve_set]);
+    const CurveModel& model = models[curve->curve_set];
+    lobes_ = std::visit([&](const auto& of) { return of.lobes_at(h, local); }, model);
+    if (leaves_on_far_side(model)) far_side_of_ = curve;
   } else {
     const auto& mesh = std::get<MeshPoint>(hit.point);
     is_curve_ = false;

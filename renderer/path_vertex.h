@@ -30,15 +30,28 @@ Eigen::Matrix3f local_from_world(const CurvePoint& point);
 // direction wo back along the ray, in the normal plane, is gamma_o = asin h.
 float viewing_offset(const Eigen::Vector3f& wo_local);
 
+// Whether light leaves such a curve anywhere across its far side (ThreadExit).
+bool leaves_on_far_side(const CurveModel& model);
+
+// Where light that met a thread at `entry` leaves it along unit direction wi, just below the surface in the same
+// cross-section; u in [0, 1) chooses across the far side. A fiber sends light on from where it came in. Among a
+// thread's fibers it wanders: what comes back does so near that place, what goes on has forgotten it, and leaves
+// anywhere across the width that the direction sees. Between touching threads that decides what the neighbours catch.
+Eigen::Vector3f far_side_position(const CurvePoint& entry, const Eigen::Vector3f& wi, float u);
+
 class PathVertex {
  public:
-  // `wo`: unit direction back along the ray. The models must outlive the vertex.
+  // `wo`: unit direction back along the ray. The hit and the models must outlive the vertex.
   PathVertex(const SurfaceHit& hit, const Eigen::Vector3f& wo, const std::vector<CurveModel>& models);
 
   ScatteringValue<float> evaluate(const Eigen::Vector3f& wi) const;
   Eigen::Vector3f sample(Sampler& sampler) const;
   bool is_curve() const { return is_curve_; }
-  const Eigen::Vector3f& position() const { return position_; }  // where scattered rays start
+  const Eigen::Vector3f& position() const { return position_; }
+  // Where light scattered along wi starts: `position`, or elsewhere on a thread (far_side_position).
+  Eigen::Vector3f start_toward(const Eigen::Vector3f& wi, Sampler& sampler) const {
+    return far_side_of_ ? far_side_position(*far_side_of_, wi, sampler.next_1d()) : position_;
+  }
 
  private:
   Eigen::Vector3f position_;
@@ -47,6 +60,7 @@ class PathVertex {
   const ReflectanceFactor* reflectance_factor_ = nullptr;
   Eigen::Vector3f wo_local_;  // of a surface that is not Lambertian
   bool is_curve_;
+  const CurvePoint* far_side_of_ = nullptr;
   CurveLobes<float> lobes_;  // curves
 };
 

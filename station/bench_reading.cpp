@@ -1,5 +1,6 @@
 #include "station/bench_reading.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -7,7 +8,7 @@
 namespace station {
 namespace {
 
-constexpr double kStill_mm = 0.1;
+constexpr double kStill_mm = 0.1, kStill_px = 0.3;
 constexpr double kLargestSlip_rad = 0.5 * M_PI / 180.0;
 constexpr int kFewestRingTags = 2;
 
@@ -18,6 +19,8 @@ BenchReading read_bench(const RigCalibration& calibration, const RigFile& rig,
   BenchReading found;
   found.shift = calibration::shift_of(calibration.still_tags, seen);
   found.angle = calibration::measure_angle(calibration.lens.lens, calibration.platform, rig.platform_ring, seen);
+  // A platform measured by tape alone does not know where its ring lies.
+  if (calibration.platform.readings_rad.empty()) found.angle.reset();
   if (found.angle && found.angle->tags_used < kFewestRingTags) found.angle.reset();
   return found;
 }
@@ -26,7 +29,22 @@ double still_limit_px(const RigCalibration& calibration) {
   const double distance_mm =
       (calibration.platform.world_from_camera.translation() - calibration.platform.world_from_table.translation())
           .norm();
-  return kStill_mm * calibration.lens.lens.fx_px / distance_mm;
+  return std::max(kStill_px, kStill_mm * calibration.lens.lens.fx_px / distance_mm);
+}
+
+std::optional<std::string> slip_problem(const RigCalibration& calibration, const BenchReading& found,
+                                        double reading_rad, const std::string& picture) {
+  if (!found.angle) return std::nullopt;
+  const double expected_rad = calibration.platform.scale * reading_rad;
+  const double slip_rad = std::remainder(found.angle->angle_rad - expected_rad, 2 * M_PI);
+  if (std::abs(slip_rad) <= kLargestSlip_rad) return std::nullopt;
+  char text[300];
+  std::snprintf(
+      text, sizeof text,
+      "%s: the platform's tags stand at %.2f degrees, the turntable reads %.2f: it slipped or lost steps; see "
+      "that nothing blocks it, home it and take the picture again",
+      picture.c_str(), found.angle->angle_rad * 180 / M_PI, expected_rad * 180 / M_PI);
+  return text;
 }
 
 void require_calibrated_bench(const RigCalibration& calibration, const BenchReading& found, double reading_rad,
@@ -35,17 +53,7 @@ void require_calibrated_bench(const RigCalibration& calibration, const BenchRead
     const auto problem = calibration::shift_problem(*found.shift, still_limit_px(calibration), picture);
     if (problem) throw std::runtime_error(*problem);
   }
-  if (!found.angle) return;
-  const double expected_rad = calibration.platform.scale * reading_rad;
-  const double slip_rad = std::remainder(found.angle->angle_rad - expected_rad, 2 * M_PI);
-  if (std::abs(slip_rad) <= kLargestSlip_rad) return;
-  char text[300];
-  std::snprintf(
-      text, sizeof text,
-      "%s: the platform's tags stand at %.2f degrees, the turntable reads %.2f: it slipped or lost steps; see "
-      "that nothing blocks it, home it and take the picture again",
-      picture.c_str(), found.angle->angle_rad * 180 / M_PI, expected_rad * 180 / M_PI);
-  throw std::runtime_error(text);
+  if (const auto problem = slip_problem(calibration, found, reading_rad, picture)) throw std::runtime_error(*problem);
 }
 
 }  // namespace station

@@ -20,8 +20,13 @@ struct BenchReading {
 BenchReading read_bench(const RigCalibration& calibration, const RigFile& rig,
                         const calibration::TagObservation& seen);
 
-// Shifts of the table's tags up to this are measurement error: 0.1 mm where they lie.
+// Shifts of the table's tags up to this are measurement error: 0.1 mm where they lie, and what corners of small tags scatter
+// by in the lamp's light, 0.3 px.
 double still_limit_px(const RigCalibration& calibration);
+
+// One line when the platform stands more than half a degree from what the turntable read; `picture` names it.
+std::optional<std::string> slip_problem(const RigCalibration& calibration, const BenchReading& found,
+                                        double reading_rad, const std::string& picture);
 
 // Throws std::runtime_error, naming the picture, when camera or table have moved since the calibration, or the platform
 // stands more than half a degree from what the turntable read.

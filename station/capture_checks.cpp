@@ -9,11 +9,16 @@
 
 #include "calibration/develop.h"
 #include "calibration/lamp_stability.h"
+#include "calibration/median.h"
 #include "calibration/sensor_maps.h"
 #include "station/bench_reading.h"
+#include "station/calibration_validity.h"
+#include "station/capture/metering.h"
 #include "station/capture/picture_record.h"
+#include "station/capture/plan_file.h"
 #include "station/develop/mounted_holder.h"
 #include "station/exposure.h"
+#include "station/picture_measures.h"
 #include "station/reference_patch.h"
 #include "station/report/html.h"
 #include "station/views.h"
@@ -21,11 +26,31 @@
 namespace station {
 namespace {
 
-constexpr double kOverExposed = 0.97, kOverExposedPercentile = 95, kUnderExposed = 0.02;
+constexpr double kMostSaturated = 0.05, kSomeSaturated = 0.005, kUnderExposed = 0.02;
 constexpr double kMostDarkOffset = 1e-3;  // of the range
+constexpr double kMostBlur_px = 3, kMuchBlur_px = 2;
+constexpr double kLeastSharpness = 0.4, kLittleSharpness = 0.6;  // of the median of the views before
+constexpr std::size_t kFewestCompared = 3;
+constexpr double kMostMotion_px = 0.2;
+constexpr double kLampOff = 0.5;  // of its strength
+constexpr double kMostTilt_rad = 30 * M_PI / 180;
+// Light on the holder's tags, of what the lamp in front gives a white surface there: paper 0.1 to 0.9 under it, nothing
+// but what the bench throws back under the one behind.
+constexpr double kLitFromTheFront = 0.04;
+constexpr int kTagPercentile = 80;  // their paper, not their ink
 
 std::string percent(double part) {
   return number_text(100 * part, 1) + " %";
+}
+
+// Only times whose true length is known, a stop apart; beyond them the wanted one.
+double nearest_measured_s(const calibration::SensorResponse& response, double wanted_s) {
+  double nearest_s = wanted_s, least_stops = 0.6;
+  for (const calibration::ShutterTime& time : response.shutter) {
+    const double stops = std::abs(std::log2(time.nominal_s / wanted_s));
+    if (stops < least_stops) nearest_s = time.nominal_s, least_stops = stops;
+  }
+  return nearest_s;
 }
 
 struct LastView {
@@ -34,85 +59,327 @@ struct LastView {
   double strength;
 };
 
-class Inspection {
+// One picture as all checks see it.
+struct Seen {
+  const PlanStep& step;
+  const calibration::SensorPicture& raw;
+  double reading_rad;
+  cv::Mat1f grey;
+  calibration::TagObservation tags;
+  BenchReading bench;
+};
+
+}  // namespace
+
+class CaptureChecks::Work {
  public:
-  Inspection(const SessionFolder& session, const SessionFile& asked, const RigCalibration& calibration)
-      : session_(session), asked_(asked), calibration_(calibration) {
+  Work(const SessionFolder& session, const SessionFile& asked, const RigCalibration& calibration, bool in_order)
+      : session_(session), asked_(asked), calibration_(calibration), in_order_(in_order) {
     if (calibration_.sensor) load_sensor_maps(session.path() / "calibration", *calibration_.sensor);
+    for (const auto& [id, record] : taken_pictures(session.records()))
+      if (record.kind == StepKind::view) remember_sharpness(record.lamp, record.mounting, record.verdict);
   }
 
-  void operator()(const PlanStep& step, const rig::Picture& picture, double reading_rad) {
-    if (step.kind == StepKind::exposure) return;  // its view has been looked at
+  // Views are metered on the threads; pose pictures on the whole frame, for the tags.
+  ExposureChoice choose(const PlanStep& step, const rig::Picture& test) {
+    const calibration::SensorPicture picture =
+        calibration::read_sensor_bytes(test.bytes, "test picture of " + step.id);
+    require_same_camera(calibration_, picture, "test picture of " + step.id);
+    date_time_ = picture.date_time;
+    const cv::Mat1b region = step.kind == StepKind::view ? window(step) : cv::Mat1b();
+    const auto next = next_exposure_s(picture, region, {.level = asked_.rig.target_level});
+    ExposureChoice choice{.exposure_s = next.value_or(picture.exposure_s), .done = !next};
+    if (calibration_.sensor && step.kind == StepKind::view) {
+      choice.exposure_s = nearest_measured_s(calibration_.sensor->response, choice.exposure_s);
+      choice.done = std::abs(std::log2(choice.exposure_s / picture.exposure_s)) < 0.1;
+    }
+    test_tags_ = {step.id, tags_in(picture)};
+    // While the holder can still be put right; the reading was checked by the runner.
+    if (!next && step.kind == StepKind::pose)
+      require_calibrated_bench(calibration_, read_bench(calibration_, asked_.rig, test_tags_.second),
+                               step.platform_angle_rad, "step " + step.id);
+    return choice;
+  }
+
+  Verdict judge(const PlanStep& step, const rig::Picture& picture, double reading_rad) {
+    verdict_ = {};
     const calibration::SensorPicture raw = calibration::read_sensor_bytes(picture.bytes, "picture of " + step.id);
-    if (step.kind == StepKind::pose) posed_[step.mounting].push_back({step.id, reading_rad, tags_in(raw)});
-    if (step.kind == StepKind::dark && calibration_.sensor) check_dark(step, raw);
-    if (step.kind == StepKind::view) check_view(step, raw, reading_rad);
+    check_file(step, picture, raw);
+    if (step.kind == StepKind::dark) {
+      if (calibration_.sensor) check_dark(step, raw);
+      return verdict_;
+    }
+    if (step.kind == StepKind::exposure) return verdict_;  // its view has been looked at
+    Seen seen{
+        .step = step, .raw = raw, .reading_rad = reading_rad, .grey = linear_grey(raw), .tags = {}, .bench = {}};
+    seen.tags = calibration::detect_tags(seen.grey);
+    seen.bench = read_bench(calibration_, asked_.rig, seen.tags);
+    check_bench(seen);
+    check_motion(seen);
+    if (step.kind == StepKind::pose) check_pose(seen);
+    if (step.kind == StepKind::view) check_view(seen);
+    return verdict_;
   }
 
  private:
-  void check_dark(const PlanStep& step, const calibration::SensorPicture& raw) const {
+  void found(const std::string& check, Grade grade, std::optional<double> value, const std::string& reason = {},
+             bool may_pass_again = false) {
+    verdict_.findings.push_back({.check = check,
+                                 .grade = grade,
+                                 .value = value,
+                                 .reason = grade == Grade::good ? "" : reason,
+                                 .may_pass_again = may_pass_again});
+  }
+
+  cv::Mat1b window(const PlanStep& step) const {
+    return window_region(asked_.rig, asked_.spool.wrapping, calibration_, step.mounting, step.platform_angle_rad);
+  }
+
+  // What the file itself says; the camera's own answers were compared by the runner.
+  void check_file(const PlanStep& step, const rig::Picture& picture, const calibration::SensorPicture& raw) {
+    const rig::ExposureSettings written{.exposure_s = raw.exposure_s, .iso = raw.iso, .f_number = raw.f_number};
+    if (!same_settings(picture.settings, written))
+      found("settings", Grade::bad, std::nullopt,
+            "the file of '" + step.id + "' says " + settings_text(written) + ", the camera " +
+                settings_text(picture.settings) + "; set its dial to M (manual), then resume",
+            true);
+    else
+      found("settings", Grade::good, std::log2(raw.exposure_s / picture.settings.exposure_s));
+    require_same_camera(calibration_, raw, "picture of " + step.id);
+    // "2026:11:21 10:20:30": later is greater.
+    if (in_order_ && raw.date_time < date_time_)
+      found("stale", Grade::bad, std::nullopt,
+            "the file of '" + step.id + "' was made at " + raw.date_time +
+                ", before the picture that came before it (" + date_time_ +
+                "): an old picture; switch the camera off and on, then resume",
+            true);
+    date_time_ = raw.date_time;  // a clock that was set back is one refused picture
+  }
+
+  void check_dark(const PlanStep& step, const calibration::SensorPicture& raw) {
     const double offset = calibration::dark_offset_dn(raw, calibration_.sensor->response.maps) /
                           (raw.white_level_dn - raw.black_level_dn);
-    if (offset > kMostDarkOffset)
-      throw std::runtime_error(
+    found("dark", offset > kMostDarkOffset ? Grade::bad : Grade::good, 100 * offset,
           "'" + step.id + "' was to be dark and is " + number_text(100 * offset, 2) +
-          " % of the range brighter than the calibration's dark frames; switch the room light and "
-          "the lamp off, close the curtain, then resume");
+              " % of the range brighter than the calibration's dark frames; switch the room light and "
+              "the lamp off, close the curtain, then resume");
   }
 
-  void check_view(const PlanStep& step, const calibration::SensorPicture& raw, double reading_rad) {
-    const cv::Mat1b window =
-        window_region(asked_.rig, asked_.spool.wrapping, calibration_, step.mounting, step.platform_angle_rad);
-    if (bright_level(raw, window, kOverExposedPercentile) > kOverExposed)
-      throw std::runtime_error(
-          "'" + step.id + "' is over-exposed at " + number_text(raw.exposure_s, 5) +
-          " s: more than 5 % of the threads' window is saturated; move the lamp away, then resume");
-    const std::optional<PatchReading> reading = patch_reading(step, raw, reading_rad);
-    if (reading) check_lamp(step, reading->strength);
-    const double level = bright_level(raw, window, ExposureAim{}.percentile);
-    if (level < kUnderExposed)
-      throw std::runtime_error("'" + step.id + "' is dark: the brightest threads reach " + percent(level) +
-                               " of the range at " + number_text(raw.exposure_s, 3) +
-                               " s; see that the lamp is on and shines on the threads, then resume");
+  void check_bench(const Seen& seen) {
+    const std::string name = (seen.step.kind == StepKind::pose ? "step " : "view ") + seen.step.id;
+    if (seen.bench.shift) {
+      const auto problem = calibration::shift_problem(*seen.bench.shift, still_limit_px(calibration_), name);
+      const double shift_px = std::max(seen.bench.shift->mean_px.norm(), seen.bench.shift->odd_px);
+      found("bench", problem ? Grade::bad : Grade::good, shift_px, problem.value_or(""));
+    }
+    if (seen.bench.angle) {
+      const auto problem = slip_problem(calibration_, seen.bench, seen.reading_rad, name);
+      found("angle", problem ? Grade::bad : Grade::good,
+            std::remainder(seen.bench.angle->angle_rad - calibration_.platform.scale * seen.reading_rad, 2 * M_PI) *
+                180 / M_PI,
+            problem.value_or(""));
+    }
   }
 
-  void check_lamp(const PlanStep& step, double strength) {
-    const calibration::LampGates limits;
-    const std::string found =
-        "'" + step.id + "': the reference patch shows " + percent(strength) + " of the calibrated lamp";
-    if (strength < 0.5)
-      throw std::runtime_error(found + "; switch the lamp on and see that nothing covers it, then resume");
-    if (strength > 1 + limits.largest_change)
-      throw std::runtime_error(found + "; switch the room light off and see that only the lamp shines, then resume");
-    if (strength < 1 - limits.largest_change)
-      throw std::runtime_error(found + "; cool or replace the lamp and calibrate again");
-    const bool comparable = last_ && last_->lamp == step.lamp && last_->mounting == step.mounting;
-    if (comparable && std::abs(strength / last_->strength - 1) > limits.largest_jump)
-      throw std::runtime_error(found + ", " + percent(last_->strength) +
-                               " in the view before; let the lamp settle, then resume");
-    last_ = LastView{step.lamp, step.mounting, strength};
+  void check_motion(const Seen& seen) {
+    if (test_tags_.first != seen.step.id) return;
+    const auto moved = motion_px(test_tags_.second, seen.tags);
+    if (!moved) return;
+    found("motion", *moved > kMostMotion_px ? Grade::bad : Grade::good, moved,
+          "'" + seen.step.id + "' moved by " + number_text(*moved, 2) + " px since the picture before it (limit " +
+              number_text(kMostMotion_px, 1) + "); let the platform come to rest and fasten the holder, then resume",
+          true);
   }
 
-  std::optional<PatchReading> patch_reading(const PlanStep& step, const calibration::SensorPicture& raw,
-                                            double reading_rad) {
-    if (!asked_.rig.reference_patch) return std::nullopt;
-    if (!mounted_.contains(step.mounting)) mounted_[step.mounting] = holder_of(step.mounting);
-    const std::optional<Eigen::Isometry3d>& mounted = mounted_.at(step.mounting);
-    if (!mounted) return std::nullopt;
-    const BenchReading bench = read_bench(calibration_, asked_.rig, tags_in(raw));
-    const double angle_rad = bench.angle ? bench.angle->angle_rad : calibration_.platform.scale * reading_rad;
-    const Eigen::Isometry3d holder_from_world =
-        (Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()) * *mounted).inverse();
+  void check_pose(const Seen& seen) {
+    const auto blur = edge_blur_px(seen.grey, seen.tags);
+    if (blur)
+      found("focus",
+            *blur > kMostBlur_px   ? Grade::bad
+            : *blur > kMuchBlur_px ? Grade::doubtful
+                                   : Grade::good,
+            blur,
+            "'" + seen.step.id + "' is out of focus: printed edges are " + number_text(*blur, 1) +
+                " px soft; the lens is calibrated at its taped focus: turn the ring back to it, or focus and "
+                "calibrate again");
+    std::vector<PosePicture>& posed = posed_[seen.step.mounting];
+    std::erase_if(posed, [&](const PosePicture& picture) { return picture.step == seen.step.id; });
+    posed.push_back({seen.step.id, seen.reading_rad, seen.tags});
+    mounted_.erase(seen.step.mounting);
+    const long tags = tags_of_holder(posed.back(), asked_.rig.holder_tags);
+    if (tags < kFewestHolderTags) {
+      found("tags", Grade::doubtful, static_cast<double>(tags),
+            "'" + seen.step.id + "' shows " + std::to_string(tags) + " of the holder's tags, " +
+                std::to_string(kFewestHolderTags) + " are needed to develop it; uncover them and take it again");
+      return;
+    }
+    found("tags", Grade::good, static_cast<double>(tags));
+    const auto mounted = measure_holder({posed.back()}, calibration_, asked_.rig).platform_from_holder;
+    const double tilt_rad = tilt_from(mounted, seen.step.mounting);
+    const rig::Mounting other =
+        seen.step.mounting == rig::Mounting::horizontal ? rig::Mounting::vertical : rig::Mounting::horizontal;
+    found("orientation", tilt_rad > kMostTilt_rad ? Grade::bad : Grade::good, tilt_rad * 180 / M_PI,
+          "'" + seen.step.id + "' was to show " + mounting_name(seen.step.mounting) + " threads and the holder " +
+              (tilt_from(mounted, other) < kMostTilt_rad
+                   ? "stands with them " + mounting_name(other)
+                   : "stands turned by " + number_text(tilt_rad * 180 / M_PI, 0) + " degrees") +
+              "; turn the holder, then resume");
+  }
+
+  double tilt_from(const Eigen::Isometry3d& mounted, rig::Mounting mounting) const {
+    const Eigen::Isometry3d wanted = nominal_holder_pose(asked_.rig, asked_.spool.wrapping, mounting);
+    return Eigen::AngleAxisd(Eigen::Matrix3d(wanted.linear().transpose() * mounted.linear())).angle();
+  }
+
+  void check_view(const Seen& seen) {
+    const std::string name = "'" + seen.step.id + "'";
+    const cv::Mat1b region = window(seen.step);
+    const double saturated = saturated_fraction(seen.raw, region);
+    found("saturation",
+          saturated > kMostSaturated   ? Grade::bad
+          : saturated > kSomeSaturated ? Grade::doubtful
+                                       : Grade::good,
+          100 * saturated,
+          saturated > kMostSaturated
+              ? name + " is over-exposed at " + number_text(seen.raw.exposure_s, 5) +
+                    " s: more than 5 % of the threads' window is saturated; move the lamp away, then resume"
+              : name + " has " + percent(saturated) + " of the threads' window saturated; look at its bracket");
+    check_focus(seen, region);
+    // A soft picture of the small patch says nothing of the lamp.
+    if (verdict_.findings.back().grade != Grade::bad) check_lamp(seen, developed_of(seen.raw));
+    const double level = bright_level(seen.raw, region, ExposureAim{}.percentile);
+    found("exposure", level < kUnderExposed ? Grade::bad : Grade::good, 100 * level,
+          name + " is dark: the brightest threads reach " + percent(level) + " of the range at " +
+              number_text(seen.raw.exposure_s, 3) +
+              " s; see that the lamp is on and shines on the threads, then resume");
+    found("tags", Grade::good, static_cast<double>(seen.tags.size()));
+  }
+
+  void check_focus(const Seen& seen, const cv::Mat1b& region) {
+    const double here = sharpness(seen.grey, region);
+    std::vector<double>& before = sharpness_[{seen.step.lamp, seen.step.mounting}];
+    Grade grade = Grade::good;
+    double ratio = 1;
+    if (before.size() >= kFewestCompared) {
+      ratio = here / calibration::median(before);
+      grade = ratio < kLeastSharpness ? Grade::bad : ratio < kLittleSharpness ? Grade::doubtful : Grade::good;
+    }
+    found("focus", grade, here,
+          "'" + seen.step.id + "' shows " + percent(ratio) +
+              " of the detail of the views before it; see that nothing touched the lens or stands before it, then "
+              "resume");
+    if (grade != Grade::bad) before.push_back(here);
+  }
+
+  void remember_sharpness(rig::Lamp lamp, rig::Mounting mounting, const Verdict& verdict) {
+    const Finding* focus = verdict.find("focus");
+    if (focus != nullptr && focus->value) sharpness_[{lamp, mounting}].push_back(*focus->value);
+  }
+
+  calibration::Developed developed_of(const calibration::SensorPicture& raw) const {
     calibration::DevelopOptions options{.vignetting = calibration_.light.vignetting};
     if (calibration_.sensor) options.response = &calibration_.sensor->response;
-    const calibration::Developed picture = calibration::develop(raw, options);
+    return calibration::develop(raw, options);
+  }
+
+  void check_lamp(const Seen& seen, const calibration::Developed& developed) {
+    if (!mounted_.contains(seen.step.mounting)) mounted_[seen.step.mounting] = holder_of(seen.step.mounting);
+    const std::optional<Eigen::Isometry3d>& mounted = mounted_.at(seen.step.mounting);
+    if (!mounted) return;
+    const double angle_rad =
+        seen.bench.angle ? seen.bench.angle->angle_rad : calibration_.platform.scale * seen.reading_rad;
+    const Eigen::Isometry3d holder_from_world =
+        (Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()) * *mounted).inverse();
     const renderer::Camera camera =
         camera_of(calibration_.lens.lens, holder_from_world * calibration_.platform.world_from_camera, false);
-    return read_patch(
-        picture.radiance, picture.saturated, camera, *asked_.rig.reference_patch, asked_.spool.wrapping,
-        step.mounting,
-        lamp_in_holder(calibration_, asked_.rig.lamp_radius_mm, step.lamp == rig::Lamp::back, holder_from_world),
+    const std::optional<Finding> side = lamp_side(seen, developed, camera, holder_from_world);
+    const std::optional<double> strength = lamp_strength(seen, developed, camera, holder_from_world);
+    // The calibrated lamp is the one on the right side; a lamp that is off is on no side.
+    const bool wrong_side = side && side->grade == Grade::bad && (!strength || *strength >= kLampOff);
+    if (strength && !wrong_side) {
+      const std::string problem = lamp_problem(seen.step, *strength);
+      found("lamp", problem.empty() ? Grade::good : Grade::bad, 100 * *strength, problem);
+      if (problem.empty()) last_ = LastView{seen.step.lamp, seen.step.mounting, *strength};
+    }
+    if (side) verdict_.findings.push_back(*side);
+  }
+
+  // Measured / expected at the reference patch; nothing where it cannot be read.
+  std::optional<double> lamp_strength(const Seen& seen, const calibration::Developed& developed,
+                                      const renderer::Camera& camera,
+                                      const Eigen::Isometry3d& holder_from_world) const {
+    if (!asked_.rig.reference_patch) return std::nullopt;
+    const auto reading = read_patch(
+        developed.radiance, developed.saturated, camera, *asked_.rig.reference_patch, asked_.spool.wrapping,
+        seen.step.mounting,
+        lamp_in_holder(calibration_, asked_.rig.lamp_radius_mm, seen.step.lamp == rig::Lamp::back, holder_from_world),
         calibration_.light.droop);
+    return reading ? std::optional(reading->strength) : std::nullopt;
+  }
+
+  std::string lamp_problem(const PlanStep& step, double strength) const {
+    const calibration::LampGates limits;
+    const std::string found_there =
+        "'" + step.id + "': the reference patch shows " + percent(strength) + " of the calibrated lamp";
+    if (strength < kLampOff) return found_there + "; switch the lamp on and see that nothing covers it, then resume";
+    if (strength > 1 + limits.largest_change)
+      return found_there + "; switch the room light off and see that only the lamp shines, then resume";
+    if (strength < 1 - limits.largest_change) return found_there + "; cool or replace the lamp and calibrate again";
+    const bool comparable = last_ && last_->lamp == step.lamp && last_->mounting == step.mounting;
+    if (comparable && std::abs(strength / last_->strength - 1) > limits.largest_jump)
+      return found_there + ", " + percent(last_->strength) + " in the view before; let the lamp settle, then resume";
+    return {};
+  }
+
+  // The holder's tags are on its front: bright under the lamp in front, dark under the one behind.
+  std::optional<Finding> lamp_side(const Seen& seen, const calibration::Developed& developed,
+                                   const renderer::Camera& camera, const Eigen::Isometry3d& holder_from_world) const {
+    const inversion::NearLight front =
+        lamp_in_holder(calibration_, asked_.rig.lamp_radius_mm, false, holder_from_world);
+    std::vector<double> parts;
+    for (const calibration::Tag& tag : asked_.rig.holder_tags.tags) {
+      const Eigen::Vector3d centre = tag.object_from_tag.translation();
+      const Eigen::Vector3d to_lamp = front.position - centre,
+                            to_eye = camera.world_from_camera.translation() - centre;
+      const Eigen::Vector3d normal = tag.object_from_tag.linear().col(2);
+      const double cosine = normal.dot(to_lamp.normalized());
+      if (cosine < 0.2 || normal.dot(to_eye) <= 0) continue;
+      std::vector<cv::Point> outline;
+      for (const Eigen::Vector3d& corner : calibration::corners_in_object(tag)) {
+        const Eigen::Vector2d pixel = renderer::project(camera, corner);
+        outline.emplace_back(cvRound(pixel.x()), cvRound(pixel.y()));
+      }
+      const double white = front.intensity.mean() * cosine / to_lamp.squaredNorm() / M_PI;
+      if (const auto light = tag_light(developed.radiance, outline)) parts.push_back(*light / white);
+    }
+    if (parts.empty()) return std::nullopt;
+    const double part = calibration::median(parts);
+    const bool from_front = part > kLitFromTheFront, wanted = seen.step.lamp == rig::Lamp::front;
+    Finding side{.check = "lamp_side", .grade = Grade::good, .value = 100 * part, .reason = {}};
+    if (from_front != wanted) {
+      side.grade = Grade::bad;
+      side.reason = "'" + seen.step.id + "' was to be lit from " + (wanted ? "the front" : "behind") +
+                    " and the holder's front is " + (from_front ? "lit" : "dark") + "; put the lamp " +
+                    (wanted ? "in front of" : "behind") + " the platform, then resume";
+    }
+    return side;
+  }
+
+  static std::optional<double> tag_light(const cv::Mat3f& radiance, const std::vector<cv::Point>& outline) {
+    cv::Mat1b inside(radiance.size(), static_cast<unsigned char>(0));
+    cv::fillConvexPoly(inside, outline, cv::Scalar(255));
+    const cv::Rect box = cv::boundingRect(outline) & cv::Rect({0, 0}, radiance.size());
+    std::vector<double> values;
+    for (int row = box.y; row < box.y + box.height; ++row)
+      for (int column = box.x; column < box.x + box.width; ++column)
+        if (inside(row, column) != 0) {
+          const cv::Vec3f& pixel = radiance(row, column);
+          values.push_back((pixel[0] + pixel[1] + pixel[2]) / 3.0);
+        }
+    if (values.size() < 16) return std::nullopt;
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * kTagPercentile / 100);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
   }
 
   // From this run's pose pictures; a session that goes on has those of an earlier run.
@@ -134,19 +401,26 @@ class Inspection {
   const SessionFolder& session_;
   const SessionFile& asked_;
   RigCalibration calibration_;
+  bool in_order_;
+  Verdict verdict_;
+  std::pair<std::string, calibration::TagObservation> test_tags_;      // of a step's last test picture
+  std::string date_time_;                                              // of the picture before
   std::map<rig::Mounting, std::vector<PosePicture>> posed_;            // this run's
   std::map<rig::Mounting, std::optional<Eigen::Isometry3d>> mounted_;  // platform_from_holder
-  std::optional<LastView> last_;                                       // of this run
+  std::map<std::pair<rig::Lamp, rig::Mounting>, std::vector<double>> sharpness_;
+  std::optional<LastView> last_;  // of this run
 };
 
-}  // namespace
+CaptureChecks::CaptureChecks(const SessionFolder& session, const SessionFile& asked,
+                             const RigCalibration& calibration, bool in_order)
+    : work_(std::make_shared<Work>(session, asked, calibration, in_order)) {}
 
-InspectPicture make_inspection(const SessionFolder& session, const SessionFile& asked,
-                               const RigCalibration& calibration) {
-  const auto inspection = std::make_shared<Inspection>(session, asked, calibration);
-  return [inspection](const PlanStep& step, const rig::Picture& picture, double reading_rad) {
-    (*inspection)(step, picture, reading_rad);
-  };
+ExposureChoice CaptureChecks::choose_exposure(const PlanStep& step, const rig::Picture& test) {
+  return work_->choose(step, test);
+}
+
+Verdict CaptureChecks::judge(const PlanStep& step, const rig::Picture& picture, double platform_reading_rad) {
+  return work_->judge(step, picture, platform_reading_rad);
 }
 
 Eigen::Isometry3d nominal_holder_pose(const RigFile& rig, const inversion::WrappedSpool& spool,

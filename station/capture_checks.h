@@ -1,27 +1,54 @@
-// What a picture of a session must show before it is kept, so that the person hears of it while the spool still stands there.
+// What a picture of a session must show before it is kept, so that the person hears of it while the spool still stands
+// there.
 #pragma once
 
-#include <filesystem>
-#include <functional>
 #include <memory>
 
+#include "station/capture/metering.h"
 #include "station/capture/plan.h"
 #include "station/capture/session_folder.h"
+#include "station/capture/verdict.h"
 #include "station/documents/calibration_file.h"
 #include "station/documents/session_file.h"
 
 namespace station {
 
-// Throws std::runtime_error with one line (what was asked, found, what to do):
-//   views  over-exposed (5 % of the window saturated) or dark (the brightest threads below 2 % of the range);
-//          the reference patch says that the lamp is off or covered (below half of its light), that other light shines or the
-//          lamp has changed (more than 10 % from the calibration), or that it jumped (more than 2 % since this run's last view
-//          under the same lamp and mounting; after a resume the first view is accepted: the person has seen to it)
-//   darks  brighter than the calibration's dark level by 0.1 % of the range
-// Without a rig's reference patch, or before its mounting's pose picture shows two tags, the patch is not looked at.
-using InspectPicture = std::function<void(const PlanStep&, const rig::Picture&, double platform_reading_rad)>;
-InspectPicture make_inspection(const SessionFolder& session, const SessionFile& asked,
-                               const RigCalibration& calibration);
+// Chooses exposures and judges pictures of one run. Findings (verdict.h) with their values' units and limits:
+//   settings     stops between what the file says and the camera said; a sixth of a stop
+//   stale        the file is older than one that came before; may pass again
+//   bench        px that the table's tags moved since the calibration; what 0.1 mm is there
+//   angle        degrees from the turntable's reading to what the ring's tags say; 0.5
+//   motion       px between the last test picture and this one, by their tags; 0.2; may pass again
+//   orientation  degrees of the holder from its nominal pose; 30 (pose pictures)
+//   tags         how many were seen; of the holder's in a pose picture: 2, doubtful below
+//   focus        pose pictures: px that printed edges are soft, doubtful above 2, bad above 3; views: detail of the threads
+//                (picture_measures.h), doubtful below 60 %, bad below 40 % of the median of three or more views before it
+//                under the same lamp and mounting
+//   saturation   % of the window; doubtful above 0.5, bad above 5
+//   exposure     % of the range that the brightest threads reach; 2
+//   lamp         % of the calibrated lamp at the reference patch: below 50 it is off or covered, 10 from the calibration other
+//                light shines or it has changed, 2 from this run's last view under the same lamp and mounting it jumped (after
+//                a resume the first view is accepted: the person has seen to it)
+//   lamp_side    % of the light of the lamp in front that the holder's tags show; 4: the lamp is on the other side
+//   dark         % of the range above the calibration's dark level; 0.1
+// What cannot be looked at (no tags in the picture, no patch on the rig, a mounting whose pose picture shows fewer than two
+// tags) has no finding.
+class CaptureChecks {
+ public:
+  // The first three must outlive the checks. `in_order`: a file that is older than the one before it is stale.
+  CaptureChecks(const SessionFolder& session, const SessionFile& asked, const RigCalibration& calibration,
+                bool in_order = true);
+
+  // Errors: std::runtime_error for a test picture that cannot be read, or of another camera; while the holder can still be
+  // put right, for a bench that does not stand as it was calibrated.
+  ExposureChoice choose_exposure(const PlanStep& step, const rig::Picture& test);
+  // Errors: std::runtime_error for a picture that cannot be read, or of another camera.
+  Verdict judge(const PlanStep& step, const rig::Picture& picture, double platform_reading_rad);
+
+ private:
+  class Work;
+  std::shared_ptr<Work> work_;  // shared: the runner's options copy what they call
+};
 
 // 255 over the holder's window (where it should stand), where threads are metered; raw pixels.
 cv::Mat1b window_region(const RigFile& rig, const inversion::WrappedSpool& spool, const RigCalibration& calibration,

@@ -1,55 +1,25 @@
 #include "station/capture_session.h"
 
-#include <cmath>
+#include <unistd.h>
+
+#include <cstdio>
 #include <fstream>
+#include <iostream>
 #include <stdexcept>
 
-#include "station/bench_reading.h"
 #include "station/calibration_validity.h"
-#include "station/capture_checks.h"
+#include "station/capture/plan_file.h"
 #include "station/documents/calibration_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
-#include "station/exposure.h"
+#include "station/drawing_operator.h"
 #include "station/interrupt.h"
+#include "station/replay/device_log.h"
 #include "station/rig_devices.h"
-#include "station/views.h"
+#include "station/run_session.h"
 
 namespace station {
 namespace {
-
-// Only times whose true length is known, a stop apart; beyond them the wanted one.
-double nearest_measured_s(const calibration::SensorResponse& response, double wanted_s) {
-  double nearest_s = wanted_s, least_stops = 0.6;
-  for (const calibration::ShutterTime& time : response.shutter) {
-    const double stops = std::abs(std::log2(time.nominal_s / wanted_s));
-    if (stops < least_stops) nearest_s = time.nominal_s, least_stops = stops;
-  }
-  return nearest_s;
-}
-
-// Views are metered on the threads; pose pictures on the whole frame, for the tags.
-ChooseExposure exposure_chooser(const RigFile& rig, const Spool& spool, const RigCalibration& calibration) {
-  return [rig, spool, calibration](const PlanStep& step, const rig::Picture& test) -> ExposureChoice {
-    const calibration::SensorPicture picture =
-        calibration::read_sensor_bytes(test.bytes, "test picture of " + step.id);
-    require_same_camera(calibration, picture, "test picture of " + step.id);
-    const cv::Mat1b region = step.kind == StepKind::view ? window_region(rig, spool.wrapping, calibration,
-                                                                         step.mounting, step.platform_angle_rad)
-                                                         : cv::Mat1b();
-    const auto next = next_exposure_s(picture, region, {.level = rig.target_level});
-    const double wanted_s = next.value_or(picture.exposure_s);
-    if (calibration.sensor && step.kind == StepKind::view) {
-      const double measured_s = nearest_measured_s(calibration.sensor->response, wanted_s);
-      return {.exposure_s = measured_s, .done = std::abs(std::log2(measured_s / picture.exposure_s)) < 0.1};
-    }
-    // While the holder can still be put right; the reading was checked by the runner.
-    if (!next && step.kind == StepKind::pose)
-      require_calibrated_bench(calibration, read_bench(calibration, rig, tags_in(picture)), step.platform_angle_rad,
-                               "step " + step.id);
-    return {.exposure_s = wanted_s, .done = !next};
-  };
-}
 
 void require_same_sensor(rig::Camera& camera, const calibration::Lens& lens) {
   const rig::CameraIdentity found = camera.identity();
@@ -60,28 +30,73 @@ void require_same_sensor(rig::Camera& camera, const calibration::Lens& lens) {
                              "; calibrate the rig with this camera");
 }
 
-RunOutcome run(SessionFolder& session, RigDevices& devices, const SessionFile& asked,
-               const RigCalibration& calibration, ProgressStyle progress_style) {
-  ProgressDisplay display("capture", progress_style);
-  RunOptions options;
-  options.settings.exposure_s = 0.125;
-  options.choose_exposure = exposure_chooser(asked.rig, asked.spool, calibration);
-  options.inspect = make_inspection(session, asked, calibration);
-  options.nominal_holder_pose = [&](rig::Mounting mounting) {
-    return nominal_holder_pose(asked.rig, asked.spool.wrapping, mounting);
-  };
-  options.progress = [&](const Progress& p) {
+StopWish wish() {
+  return interrupts() == 0 ? StopWish::none : interrupts() == 1 ? StopWish::pause : StopWish::now;
+}
+
+// The second ctrl-C: the stop is on the disk before anything else, and nobody waits for a device that hangs.
+[[noreturn]] void stop_now(SessionFolder& session, RigDevices& devices) {
+  try {
+    session.append_last("stop", {{"outcome", state_name(RunState::aborted)}});
+  } catch (...) {
+  }
+  try {
+    devices.turntable->stop();
+  } catch (...) {
+  }
+  std::fputs("threadstation: capture was stopped at once; go on with capture --resume\n", stderr);
+  ::_exit(1);
+}
+
+// Uncompressed pictures of 16 bits, and as much again for what is made of them; before anything is written.
+void require_space(const std::filesystem::path& out, const Plan& plan, const calibration::Lens& lens) {
+  constexpr double kHeader_bytes = 65536;
+  const double needed =
+      static_cast<double>(plan.steps.size()) * (2.0 * lens.width_px * lens.height_px + kHeader_bytes);
+  std::filesystem::path place = std::filesystem::absolute(out);
+  std::error_code code;
+  while (!std::filesystem::exists(place, code) && place.has_relative_path()) place = place.parent_path();
+  const auto space = std::filesystem::space(place, code);
+  if (code || static_cast<double>(space.available) >= 2 * needed) return;
+  const auto megabytes = [](double bytes) { return std::to_string(static_cast<long>(bytes / 1e6)) + " MB"; };
+  throw std::runtime_error("'" + out.string() + "' would need " + megabytes(2 * needed) +
+                           " (pictures and what is made of " + "them) and its disk has " +
+                           megabytes(static_cast<double>(space.available)) +
+                           " free; free space there or choose another disk");
+}
+
+std::string last_line(RunState state, const std::string& session) {
+  return state == RunState::complete ? "complete: " + session
+                                     : state_name(state) + "; go on with capture --resume --out " + session;
+}
+
+RunState run(SessionFolder& session, RigDevices& devices, const SessionFile& asked, const RigCalibration& calibration,
+             const ResumeRequest& request) {
+  ProgressDisplay display("capture", request.progress_style);
+  SessionRun run{
+      .reshoot = request.reshoot, .record = request.record || is_recorded(session.path()), .stop_wish = wish};
+  run.progress = [&](const Progress& p) {
     display.show(static_cast<int>(p.done), static_cast<int>(p.total), p.step, devices.bench ? -1 : p.seconds_left);
   };
-  watch_interrupts();
-  options.should_stop = interrupted;
-  const StopOnInterrupt emergency([&devices] { devices.turntable->stop(); });
-  const RunDevices run_devices{*devices.camera, *devices.turntable, *devices.person, *devices.clock};
-  const RunOutcome outcome = run_plan(asked.plan, run_devices, session, options);
-  display.finish(outcome == RunOutcome::complete
-                     ? "complete: " + session.path().string()
-                     : "interrupted; go on with capture --resume --out " + session.path().string());
-  return outcome;
+  run.judged = [&](const PlanStep& step, const Verdict& verdict) {
+    if (verdict.grade() == Grade::doubtful) display.note(step.id + " is doubtful: " + verdict.reason());
+    if (verdict.grade() == Grade::bad && verdict.may_pass_again())
+      display.note(step.id + " is refused: " + verdict.reason());
+  };
+  watch_interrupts(2);
+  const StopOnInterrupt emergency(
+      [&] {
+        devices.turntable->stop();
+        display.note("pausing after the picture under way; ctrl-C again stops at once");
+      },
+      [&] { stop_now(session, devices); });
+  std::unique_ptr<rig::Operator> drawing;
+  if (asked.rig.operator_driver == "console") drawing = make_drawing_operator(*devices.person, std::cout);
+  const RunDevices run_devices{*devices.camera, *devices.turntable, drawing ? *drawing : *devices.person,
+                               *devices.clock};
+  const RunState state = run_session(session, run_devices, asked, calibration, run);
+  display.finish(last_line(state, session.path().string()));
+  return state;
 }
 
 std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
@@ -92,7 +107,10 @@ std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
   return bytes;
 }
 
-CalibrationFiles calibration_files(const std::filesystem::path& folder, const RigCalibration& calibration) {
+}  // namespace
+
+CalibrationFiles calibration_files(const std::filesystem::path& place, const RigCalibration& calibration) {
+  const std::filesystem::path folder = std::filesystem::is_directory(place) ? place : place.parent_path();
   const std::string text = read_json_file(folder / "calibration.json").dump(2) + "\n";
   const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
   CalibrationFiles files{{"calibration.json", {bytes, bytes + text.size()}}};
@@ -104,39 +122,53 @@ CalibrationFiles calibration_files(const std::filesystem::path& folder, const Ri
   return files;
 }
 
-}  // namespace
+Plan plan_of(const RigFile& rig) {
+  return make_capture_plan({.reflection_angles_deg = rig.reflection_angles_deg,
+                            .transmission_angles_deg = rig.transmission_angles_deg,
+                            .bracket_stops = rig.bracket_stops});
+}
 
-RunOutcome capture_session(const CaptureRequest& request) {
-  const nlohmann::json rig_document = read_json_file(request.rig), spool_document = read_json_file(request.spool);
+RunState capture_session(const CaptureRequest& request) {
+  const nlohmann::json rig_document = read_json_file(request.rig);
+  nlohmann::json spool_document = read_json_file(request.spool);
+  if (request.sample && spool_document.is_object()) {
+    if (!request.sample->name.empty()) spool_document["name"] = request.sample->name;
+    if (!request.sample->material.empty()) spool_document["material"] = request.sample->material;
+  }
   const RigFile rig = parse_rig(rig_document, request.rig.string());
   const Spool spool = parse_spool(spool_document, request.spool.string());
   const RigCalibration calibration = read_calibration(request.calibration);
   if (is_session(request.out))
     throw std::runtime_error(request.out.string() +
                              " is a session already; choose another folder, or go on with capture --resume");
-  const Plan plan = make_capture_plan({.reflection_angles_deg = rig.reflection_angles_deg,
-                                       .transmission_angles_deg = rig.transmission_angles_deg,
-                                       .bracket_stops = rig.bracket_stops});
+  const Plan plan =
+      request.plan.empty() ? plan_of(rig) : plan_from_json(read_json_file(request.plan), request.plan.string());
+  require_space(request.out, plan, calibration.lens.lens);
   RigDevices devices = open_rig(rig, spool, request.unattended);
   require_valid(calibration, rig, devices.clock->utc(), request.accept_calibration);
   require_same_sensor(*devices.camera, calibration.lens.lens);
   FileSystem disk;
-  const std::filesystem::path calibration_folder =
-      std::filesystem::is_directory(request.calibration) ? request.calibration : request.calibration.parent_path();
   SessionFolder session = SessionFolder::create(
-      request.out, make_session_document(devices.clock->utc(), rig_document, spool_document, plan),
-      calibration_files(calibration_folder, calibration), *devices.clock, disk);
-  return run(session, devices, read_session_file(request.out), calibration, request.progress_style);
+      request.out,
+      make_session_document(devices.clock->utc(), rig_document, spool_document, plan, request.person, request.sample),
+      calibration_files(request.calibration, calibration), *devices.clock, disk);
+  return run(session, devices, read_session_file(request.out), calibration,
+             {.session = request.out,
+              .unattended = request.unattended,
+              .record = request.record,
+              .reshoot = {},
+              .progress_style = request.progress_style});
 }
 
-RunOutcome resume_session(const std::filesystem::path& folder, bool unattended, ProgressStyle progress_style) {
-  const SessionFile asked = read_session_file(folder);
-  const RigCalibration calibration = read_calibration(folder / "calibration");
-  RigDevices devices = open_rig(asked.rig, asked.spool, unattended);
+RunState resume_session(const ResumeRequest& request) {
+  const SessionFile asked = read_session_file(request.session);
+  steps_to_reshoot(asked.plan, request.reshoot);  // before any device is asked
+  const RigCalibration calibration = read_calibration(request.session / "calibration");
+  RigDevices devices = open_rig(asked.rig, asked.spool, request.unattended);
   require_same_sensor(*devices.camera, calibration.lens.lens);
   FileSystem disk;
-  SessionFolder session = SessionFolder::open(folder, *devices.clock, disk);
-  return run(session, devices, asked, calibration, progress_style);
+  SessionFolder session = SessionFolder::open(request.session, *devices.clock, disk);
+  return run(session, devices, asked, calibration, request);
 }
 
 }  // namespace station

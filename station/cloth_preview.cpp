@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "renderer/image_file.h"
-#include "renderer/weave/relaxation.h"
+#include "renderer/weave/woven_patch.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/patch_file.h"
 #include "station/documents/reader.h"
@@ -72,7 +72,7 @@ void preview_cloth(const ClothPreviewRequest& request) {
                              "; is the session's folder writable?");
   const renderer::Draft draft = scaled_draft(read_draft(request.draft), thread.diameter_mm);
   write_json_file(folder / "draft.json", to_json(draft));
-  write_json_file(folder / "patch.json", to_json(renderer::relax(draft).patch));
+  write_json_file(folder / "patch.json", to_json(renderer::woven_patch(draft).patch));
   for (const Stage& stage : kStages) {
     const std::filesystem::path scene = folder / (std::string(stage.name) + ".json");
     write_json_file(scene, scene_of(stage, request.quick));

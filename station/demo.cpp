@@ -52,15 +52,16 @@ DemoResult run_demo(const DemoRequest& request) {
   const bool kept = prepare_folder(request.out, demo_rig(request.quick), request.fresh);
   const std::filesystem::path rig = request.out / "rig.json", session = request.out / "session";
   calibrate_rig({.rig = rig, .out = request.out / "calibration", .progress_style = request.progress_style});
-  const RunOutcome outcome =
-      is_session(session) ? resume_session(session, true, request.progress_style)
-                          : capture_session({.rig = rig,
-                                             .calibration = request.out / "calibration",
-                                             .spool = std::filesystem::path(kFixtures) / "spools" / "silk_blue.json",
-                                             .out = session,
-                                             .unattended = true,
-                                             .progress_style = request.progress_style});
-  if (outcome == RunOutcome::interrupted)
+  const RunState state =
+      is_session(session)
+          ? resume_session({.session = session, .unattended = true, .progress_style = request.progress_style})
+          : capture_session({.rig = rig,
+                             .calibration = request.out / "calibration",
+                             .spool = std::filesystem::path(kFixtures) / "spools" / "silk_blue.json",
+                             .out = session,
+                             .unattended = true,
+                             .progress_style = request.progress_style});
+  if (state != RunState::complete)
     throw std::runtime_error("the demo was interrupted; the same command goes on from here");
   develop_session(session, request.progress_style);
   InvertRequest inversion{.session = session, .progress_style = request.progress_style};

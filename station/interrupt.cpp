@@ -4,6 +4,7 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <csignal>
@@ -16,7 +17,8 @@ namespace {
 
 constexpr int kStopAgainMs = 50;
 
-std::atomic<bool> interrupt_seen{false};  // a signal handler can reach nothing else
+std::atomic<int> interrupts_seen{0};  // a signal handler can reach nothing else
+std::atomic<int> interrupts_watched{1};
 
 // Becomes readable with the first signal, for threads that wait for it.
 std::atomic<int> interrupt_event{-1};
@@ -27,7 +29,7 @@ void signal_event(int event) {
 }
 
 void on_signal(int signal) {
-  if (interrupt_seen.exchange(true)) {
+  if (interrupts_seen.fetch_add(1) >= interrupts_watched) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
   }
@@ -38,8 +40,9 @@ void on_signal(int signal) {
 
 }  // namespace
 
-void watch_interrupts() {
-  interrupt_seen = false;
+void watch_interrupts(int watched) {
+  interrupts_seen = 0;
+  interrupts_watched = watched;
   if (interrupt_event < 0) {
     interrupt_event = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   }
@@ -52,38 +55,55 @@ void watch_interrupts() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
+int interrupts() {
+  return interrupts_seen;
+}
+
 bool interrupted() {
-  return interrupt_seen;
+  return interrupts() > 0;
 }
 
 struct StopOnInterrupt::Watch {
-  explicit Watch(std::function<void()> action)
-      : stop(std::move(action)), over(eventfd(0, EFD_CLOEXEC)), thread([this] { wait(); }) {}
+  Watch(std::function<void()> first, std::function<void()> second)
+      : actions{std::move(first), std::move(second)}, over(eventfd(0, EFD_CLOEXEC)), thread([this] { wait(); }) {}
   ~Watch() {
     signal_event(over);
     thread.join();
     close(over);
   }
 
+  // The last action goes on until it is over: a move that was begun at the very moment is stopped as well.
   void wait() const {
-    std::array<pollfd, 2> watched{pollfd{interrupt_event, POLLIN, 0}, pollfd{over, POLLIN, 0}};
-    while (poll(watched.data(), watched.size(), -1) < 0) {
-    }
-    while (watched[1].revents == 0) {
-      try {
-        stop();
-      } catch (...) {
+    const int last = actions[1] ? 1 : 0;
+    for (int done = 0; done <= last;) {
+      std::array<pollfd, 2> watched{pollfd{interrupt_event, POLLIN, 0}, pollfd{over, POLLIN, 0}};
+      if (interrupts() <= done) {
+        while (poll(watched.data(), watched.size(), -1) < 0) {
+        }
+        if (watched[1].revents != 0 && watched[0].revents == 0) return;
+        std::uint64_t count = 0;
+        [[maybe_unused]] const ssize_t drained = read(interrupt_event, &count, sizeof count);
       }
-      poll(&watched[1], 1, kStopAgainMs);
+      while (done <= last && done < interrupts()) act(actions.at(static_cast<std::size_t>(done++)));
+    }
+    pollfd ended{over, POLLIN, 0};
+    while (poll(&ended, 1, kStopAgainMs) <= 0) act(actions.at(static_cast<std::size_t>(last)));
+  }
+
+  static void act(const std::function<void()>& action) {
+    try {
+      action();
+    } catch (...) {
     }
   }
 
-  std::function<void()> stop;
+  std::array<std::function<void()>, 2> actions;
   int over;
   std::thread thread;
 };
 
-StopOnInterrupt::StopOnInterrupt(std::function<void()> stop) : watch_(std::make_unique<Watch>(std::move(stop))) {}
+StopOnInterrupt::StopOnInterrupt(std::function<void()> stop, std::function<void()> stop_now)
+    : watch_(std::make_unique<Watch>(std::move(stop), std::move(stop_now))) {}
 
 StopOnInterrupt::~StopOnInterrupt() = default;
 

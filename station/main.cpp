@@ -35,10 +35,15 @@ int main(int argc, char** argv) {
   station::add_simulate_hardware_command(app);
   station::add_calibrate_command(app);
   station::add_capture_command(app);
+  station::add_import_command(app);
+  station::add_plan_command(app);
+  station::add_replay_command(app);
   station::add_verify_command(app);
   station::add_develop_command(app);
   station::add_invert_command(app);
   station::add_report_command(app);
+  station::add_compare_command(app);
+  station::add_library_command(app);
   station::add_scatter_command(app);
   station::add_target_command(app);
   station::add_validate_command(app);

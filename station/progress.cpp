@@ -35,6 +35,7 @@ ProgressDisplay::~ProgressDisplay() {
 
 void ProgressDisplay::show(int done, int total, const std::string& label, double seconds_left) {
   if (style_ == ProgressStyle::quiet) return;
+  const std::lock_guard lock(mutex_);
   const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   if (seconds_left < 0 && done > 0) seconds_left = elapsed / done * (total - done);
   if (style_ == ProgressStyle::json) {
@@ -55,8 +56,19 @@ void ProgressDisplay::show(int done, int total, const std::string& label, double
   std::fflush(stderr);
 }
 
+void ProgressDisplay::note(const std::string& text) {
+  if (style_ == ProgressStyle::quiet) return;
+  const std::lock_guard lock(mutex_);
+  if (style_ == ProgressStyle::json)
+    std::fprintf(stderr, "%s\n", nlohmann::json{{"task", task_}, {"note", text}}.dump().c_str());
+  else
+    std::fprintf(stderr, "%s%s: %s\n", open_line_ ? "\r\033[K" : "", task_.c_str(), text.c_str());
+  open_line_ = false;
+}
+
 void ProgressDisplay::finish(const std::string& summary) {
   if (style_ != ProgressStyle::automatic) return;
+  const std::lock_guard lock(mutex_);
   std::fprintf(stderr, "%s%s: %s\n", open_line_ ? "\r\033[K" : "", task_.c_str(), summary.c_str());
   open_line_ = false;
 }

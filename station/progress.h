@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <mutex>
 #include <string>
 
 namespace station {
@@ -18,12 +19,15 @@ class ProgressDisplay {
   // `done` of `total` units are finished; `label` says what comes now. The time left is guessed from the pace so far
   // unless it is given.
   void show(int done, int total, const std::string& label, double seconds_left = -1);
+  // A line that stays, from any thread.
+  void note(const std::string& text);
   void finish(const std::string& summary);
 
  private:
   std::string task_;
   ProgressStyle style_;
   bool terminal_;
+  std::mutex mutex_;
   bool open_line_ = false;
   std::chrono::steady_clock::time_point start_;
 };

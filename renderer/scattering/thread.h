@@ -11,10 +11,11 @@
 //   beta       | 0.02 .. 1         | 3     | yes   azimuthal roughness of each lobe (perceptual, mapped as fibers')
 //   r          | -                 | 7     | yes   energies of the lobes, all colours alike; each lambda must stay >= 0
 //
-// Two options that fits leave alone, equal to the printed model by default:
+// Three options that fits leave alone; the first two are equal to the printed model by default:
 //
 //   lambda0_rgb          | 0 .. 1 | 1 1 1 | dual numbers only   tint of A_R: highlights of metallic threads have a colour
 //   transmittance_powers | >= 0   | 1 1   | no                  A_TT = lambda_1 T^first, A_TRT = lambda_2 T^second
+//   exit                 | -      | far_side |                  where scattered light leaves (ThreadExit)
 //
 // f_cos includes the cosine (lobes.h). theta_o, h and the attenuations belong to the known direction o, as for
 // fibers. Lobe centres Phi_p are a fiber's, with the refractive index fixed at kThreadEta. Nothing in the paper bounds
@@ -37,6 +38,11 @@ inline constexpr double kMostEnergy = 0.999;
 // estimated.
 inline constexpr double kLobeFloor = 0.05;
 
+// Where scattered light leaves a thread (path_vertex.h, leaving_position).
+//   entry_point | where it came in, as curves with a fiber's scattering do
+//   far_side    | there if it leaves on that side, else anywhere across the far side: what many fibers do
+enum class ThreadExit { entry_point, far_side };
+
 template <class S>
 struct BasicThreadParameters {
   Eigen::Matrix<S, 3, 1> sigma_a{S(0.0), S(0.0), S(0.0)};  // absorption per thread radius, RGB
@@ -48,6 +54,7 @@ struct BasicThreadParameters {
   bool limit_energy = true;
   Eigen::Matrix<S, 3, 1> lambda0_rgb{S(1.0), S(1.0), S(1.0)};  // tint of R, at most 1
   std::array<double, 2> transmittance_powers{1, 1};            // of TT and TRT
+  ThreadExit exit = ThreadExit::far_side;
 };
 using ThreadParameters = BasicThreadParameters<double>;
 
@@ -65,11 +72,20 @@ BasicThreadParameters<T> in_scalar(const BasicThreadParameters<S>& p) {
   const auto three = [](const std::array<S, 3>& v) {
     return std::array<T, 3>{static_cast<T>(v[0]), static_cast<T>(v[1]), static_cast<T>(v[2])};
   };
-  return {p.sigma_a.template cast<T>(), three(p.alpha),        three(p.beta),
-          static_cast<T>(p.r0a),        static_cast<T>(p.r0b), static_cast<T>(p.r0c),
-          static_cast<T>(p.r1a),        static_cast<T>(p.r2a), static_cast<T>(p.r2b),
-          static_cast<T>(p.r2c),        p.limit_energy,        p.lambda0_rgb.template cast<T>(),
-          p.transmittance_powers};
+  return {p.sigma_a.template cast<T>(),
+          three(p.alpha),
+          three(p.beta),
+          static_cast<T>(p.r0a),
+          static_cast<T>(p.r0b),
+          static_cast<T>(p.r0c),
+          static_cast<T>(p.r1a),
+          static_cast<T>(p.r2a),
+          static_cast<T>(p.r2b),
+          static_cast<T>(p.r2c),
+          p.limit_energy,
+          p.lambda0_rgb.template cast<T>(),
+          p.transmittance_powers,
+          p.exit};
 }
 
 // T^first and T^second, what is left of TT and TRT after a chord, RGB.
@@ -136,6 +152,8 @@ class ThreadModel {
     set_probabilities(lobes);
     return lobes;
   }
+
+  ThreadExit exit() const { return parameters_.exit; }
 
  private:
   template <class>

@@ -1,6 +1,6 @@
 #include "renderer/weave/minimizer.h"
 
-#include <Eigen/CholmodSupport>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -97,59 +97,44 @@ void run_quasi_newton(const Objective& objective, const MinimizerOptions& option
   }
 }
 
+// One thread, so the same bits everywhere; a factor with a diagonal tells how many eigenvalues are negative.
 class Factorization {
  public:
-  // Simplicial: one thread, so the same bits everywhere. The supernodal method is no faster at these sizes and its threads
-  // wait for each other: on a busy machine it took thirteen times as long.
-  Factorization() {
-    solver_.setMode(Eigen::CholmodSimplicialLLt);
-    solver_.cholmod().print = 0;  // a matrix that is not positive definite is not worth a word
-  }
   // Of the matrix + shift x its mean diagonal; false where that is not positive definite.
-  bool compute(Eigen::SparseMatrix<double> matrix, double shift, MinimizerReport& report) {
-    const double mean = matrix.diagonal().cwiseAbs().mean();
-    for (Eigen::Index i = 0; i < matrix.rows(); ++i) matrix.coeffRef(i, i) += shift * mean;
+  bool compute(BorderedMatrix matrix, double shift, MinimizerReport& report) {
+    const Eigen::Index unknowns = matrix.lower.rows() - matrix.borders;
+    const Eigen::VectorXd diagonal = matrix.lower.diagonal().head(unknowns);
+    const double mean = diagonal.cwiseAbs().mean();
+    for (Eigen::Index i = 0; i < unknowns; ++i) matrix.lower.coeffRef(i, i) += shift * mean;
+    borders_ = matrix.borders;
     ++report.factorizations;
-    solver_.compute(matrix);
-    return solver_.info() == Eigen::Success;
+    solver_.compute(matrix.lower);
+    return solver_.info() == Eigen::Success && (solver_.vectorD().array() < 0).count() == borders_;
   }
-  VectorXd solve(const VectorXd& right) { return solver_.solve(right); }
-
- private:
-  Eigen::CholmodDecomposition<Eigen::SparseMatrix<double>, Eigen::Lower> solver_;
-};
-
-// Newton's direction with the true second derivatives, shifted by as little as makes them positive definite: by what the
-// step before needed, less each time.
-class NewtonDirection {
- public:
-  VectorXd at(const Objective& objective, const Place& place, MinimizerReport& report) {
-    const Eigen::SparseMatrix<double> exact = objective.hessian(place.x, true);
-    for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
-      if (factors_.compute(exact, shift_, report)) {
-        const VectorXd direction = -factors_.solve(place.gradient);
-        shift_ = shift_ / 8 < kLeastWorking ? kLeastShift : shift_ / 8;
-        return direction;
-      }
-      shift_ = std::max(8 * shift_, kLeastWorking);
-    }
-    shift_ = kLeastShift;
-    factors_.compute(objective.hessian(place.x, false), kLeastWorking, report);
-    return -factors_.solve(place.gradient);
+  VectorXd solve(const VectorXd& right) const {
+    VectorXd bordered = VectorXd::Zero(right.size() + borders_);
+    bordered.head(right.size()) = right;
+    return solver_.solve(bordered).head(right.size());
   }
 
  private:
-  // Of the mean diagonal. Moves that cost nothing, such as lifting the whole cloth, stay small.
-  static constexpr double kLeastShift = 1e-9, kLeastWorking = 1e-6;
-  static constexpr int kMostAttempts = 6;
-  Factorization factors_;
-  double shift_ = kLeastShift;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver_;
+  Eigen::Index borders_ = 0;
 };
+
+// Newton's direction with the true second derivatives, or where they lead uphill somewhere, with their positive part. (Shifts
+// of the true ones, eight times larger until one worked, took twice the factors for no fewer steps.)
+VectorXd newton_direction(const Objective& objective, const Place& place, MinimizerReport& report) {
+  constexpr double kShift = 1e-9, kPositiveShift = 1e-6;  // of the mean diagonal
+  Factorization factors;
+  if (!factors.compute(objective.hessian(place.x, true), kShift, report))
+    factors.compute(objective.hessian(place.x, false), kPositiveShift, report);
+  return -factors.solve(place.gradient);
+}
 
 void run_newton(const Objective& objective, const MinimizerOptions& options, Place& place, MinimizerReport& report) {
-  NewtonDirection newton;
   for (int step = 0; step < options.most_newton && largest(place.gradient) > options.gradient_goal; ++step) {
-    VectorXd direction = newton.at(objective, place, report);
+    VectorXd direction = newton_direction(objective, place, report);
     if (!direction.allFinite() || direction.dot(place.gradient) >= 0) direction = -place.gradient;
     const double length = std::min(1.0, options.largest_move / largest(direction));
     if (!search_line(objective, direction, length, place)) return;

@@ -1,23 +1,23 @@
 // Minimizer of smooth energies of many unknowns: limited-memory BFGS from afar, Newton's method to the end.
 //
 // No step moves an unknown by more than a cap, so that yarns cannot pass through each other in one step, and each step
-// lowers the energy (Armijo). Newton takes the true second derivatives, shifted where they are not positive definite, and
-// a positive part of them (Curvature) where no small shift helps. From the shapes of yarn_path.h Newton alone needs half
-// the time of L-BFGS followed by Newton (measured on all ready weaves), so L-BFGS is an option. Everything is sequential: the same start ends in the same place.
+// lowers the energy (Armijo). From the shapes of yarn_path.h Newton alone needs half the time of L-BFGS followed by Newton
+// (measured on all ready weaves), so L-BFGS is an option. Everything is sequential: the same start ends in the same place.
 // Source: Nocedal and Wright 2006, algorithms 7.4 (L-BFGS) and 3.2 (line-search Newton). Ceres' L-BFGS was not taken:
 // its line search cannot cap the step.
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/SparseCore>
 #include <functional>
+
+#include "renderer/weave/weave_model.h"
 
 namespace renderer {
 
 struct Objective {
   std::function<double(const Eigen::VectorXd&, Eigen::VectorXd& gradient)> value;
-  // Lower triangle; `exact` or a positive semidefinite part.
-  std::function<Eigen::SparseMatrix<double>(const Eigen::VectorXd&, bool exact)> hessian;
+  // `exact` or a positive semidefinite part.
+  std::function<BorderedMatrix(const Eigen::VectorXd&, bool exact)> hessian;
 };
 
 struct MinimizerOptions {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -79,6 +80,29 @@ void check_cloth(const YarnPatch& patch, std::size_t threads) {
   if (!(reach <= kMostReach))
     throw std::runtime_error("cloth: yarns of the patch \"" + patch.name + "\" reach " + std::to_string(reach) +
                              " periods beyond their cell or its plane; correct its periods or control points");
+}
+
+std::vector<RoundYarns> round_yarns_of(const YarnPatch& patch) {
+  std::map<std::pair<bool, double>, RoundYarns> parts;  // by system, flatness
+  for (const Yarn& yarn : patch.yarns) {
+    const bool round = yarn.flatness == 1;
+    RoundYarns& part = parts[{round || yarn.warp, yarn.flatness}];
+    if (part.patch.yarns.empty()) {
+      part.patch = patch;
+      part.patch.yarns.clear();
+      part.stretch[yarn.warp ? 0 : 1] = yarn.flatness;
+      part.patch.period_x_mm /= part.stretch.x();
+      part.patch.period_y_mm /= part.stretch.y();
+    }
+    Yarn unstretched = yarn;
+    unstretched.radius_mm = half_height(yarn);
+    unstretched.flatness = 1;
+    for (Eigen::Vector3d& point : unstretched.control_points) point = point.cwiseQuotient(part.stretch);
+    part.patch.yarns.push_back(std::move(unstretched));
+  }
+  std::vector<RoundYarns> all;
+  for (auto& [key, part] : parts) all.push_back(std::move(part));
+  return all;
 }
 
 CurveSet curves_of(const YarnPatch& patch, int tiles_x, int tiles_y, int thread) {

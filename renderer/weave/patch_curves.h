@@ -18,6 +18,15 @@ std::vector<int> threads_of(const YarnPatch& patch);
 inline constexpr double kMostReach = 50;
 void check_cloth(const YarnPatch& patch, std::size_t threads);
 
+// Yarns that become those of the cloth when stretched by `stretch` (x, y, z), and are round before.
+struct RoundYarns {
+  YarnPatch patch;
+  Eigen::Vector3d stretch = Eigen::Vector3d::Ones();
+};
+// The patch by the shape of its sections; one part for a cloth of round yarns. Elliptical sections are stretched in the
+// plane of the cloth, across the yarn's system, as the contact of flattened yarns has them (yarn_contact.h).
+std::vector<RoundYarns> round_yarns_of(const YarnPatch& patch);
+
 // tiles_x x tiles_y periods, for brute-force rendering: every yarn runs in one piece from one border of the sheet
 // [0, tiles_x period_x] x [0, tiles_y period_y] to the other and ends there; curves have no end caps.
 CurveSet curves_of(const YarnPatch& patch, int tiles_x, int tiles_y, int thread);

@@ -2,10 +2,13 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iomanip>
 #include <limits>
-#include <utility>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <tuple>
 
 #include "renderer/weave/crossings.h"
 #include "renderer/weave/patch_measures.h"
@@ -44,7 +47,6 @@ Cell cell_of(const YarnPatch& patch, const Draft& draft) {
     } else {
       model.tension_n = system.tension_n;
     }
-    model.spread_n = model.tension_n + bending_force;
     cell.model.points += model.count;
     cell.model.yarns.push_back(model);
   }
@@ -55,18 +57,15 @@ Cell cell_of(const YarnPatch& patch, const Draft& draft) {
   return cell;
 }
 
-// Without friction a yarn slides along itself, and the cloth about, at no cost; to the sums over samples that cost is
-// not nothing but tiny bumps of either sign. One point per yarn is held along the yarn, one of each system across. At
-// rest these springs carry what the bumps push.
+// The cloth moves about as a whole at no cost: the mean heights of all yarns and the mean places of each system across
+// it are held, softly.
 void add_anchors(Cell& cell, double stiffness_n_mm) {
-  std::array<bool, 2> held{false, false};
-  for (const ModelYarn& yarn : cell.model.yarns) {
-    const int along = yarn.warp ? 1 : 0, across = 1 - along;
-    const auto hold = [&](int axis) {
-      cell.model.anchors.push_back({yarn.first, axis, cell.points(axis, yarn.first), stiffness_n_mm});
-    };
-    hold(along);
-    if (!std::exchange(held[static_cast<std::size_t>(across)], true)) hold(across);
+  for (const int axis : {0, 1, 2}) {
+    Eigen::Matrix3Xd weights = Eigen::Matrix3Xd::Zero(3, cell.model.points);
+    for (const ModelYarn& yarn : cell.model.yarns)
+      if (axis == 2 || yarn.warp == (axis == 0)) weights.row(axis).segment(yarn.first, yarn.count).setOnes();
+    weights /= weights.sum();
+    cell.model.anchors.push_back({weights, weights.cwiseProduct(cell.points).sum(), stiffness_n_mm});
   }
 }
 
@@ -95,26 +94,42 @@ WeaveDerivatives derivatives(Cell& cell, const Eigen::Matrix3Xd& points, Curvatu
   return sum;
 }
 
+// Slope of the energy to the periods of the cell when all in it is widened with it.
+Eigen::Vector2d cell_force(const Cell& cell, const WeaveDerivatives& sum) {
+  return sum.period_gradient +
+         sum.gradient.cwiseProduct(cell.points).rowwise().sum().head<2>().cwiseQuotient(cell.model.period_mm);
+}
+
 MinimizerReport come_to_rest(Cell& cell, double gradient_goal_n, bool quasi_newton) {
-  const auto as_points = [&](const Eigen::VectorXd& x) -> Eigen::Matrix3Xd {
-    return Eigen::Map<const Eigen::Matrix3Xd>(x.data(), 3, cell.model.points);
+  const Eigen::VectorXi unknowns = unknowns_of(cell.model);
+  const auto as_points = [&](const Eigen::VectorXd& x) {
+    Eigen::Matrix3Xd points = cell.points;
+    for (Eigen::Index i = 0; i < unknowns.size(); ++i)
+      if (unknowns[i] >= 0) points.reshaped()[i] = x[unknowns[i]];
+    return points;
+  };
+  const auto as_unknowns = [&](const Eigen::Matrix3Xd& points) {
+    Eigen::VectorXd x(unknowns.maxCoeff() + 1);
+    for (Eigen::Index i = 0; i < unknowns.size(); ++i)
+      if (unknowns[i] >= 0) x[unknowns[i]] = points.reshaped()[i];
+    return x;
   };
   const Objective objective{
       .value =
           [&](const Eigen::VectorXd& x, Eigen::VectorXd& gradient) {
             const WeaveDerivatives sum = derivatives(cell, as_points(x), Curvature::none);
-            gradient = sum.gradient.reshaped();
+            gradient = as_unknowns(sum.gradient);
             return sum.energy;
           },
       .hessian =
           [&](const Eigen::VectorXd& x, bool exact) {
-            return derivatives(cell, as_points(x), exact ? Curvature::exact : Curvature::positive).hessian();
+            return derivatives(cell, as_points(x), exact ? Curvature::exact : Curvature::positive).hessian(unknowns);
           }};
   const MinimizerOptions options{.largest_move = 0.2 * thinnest_radius(cell.model),
                                  .gradient_goal = gradient_goal_n,
                                  .newton_below = 1e-3 * force_scale(cell.model),
                                  .most_quasi_newton = quasi_newton ? 200 : 0};
-  Eigen::VectorXd x = cell.points.reshaped();
+  Eigen::VectorXd x = as_unknowns(cell.points);
   const MinimizerReport report = minimize(objective, options, x);
   cell.points = as_points(x);
   return report;
@@ -124,8 +139,8 @@ void add_steps(RelaxationReport& report, const MinimizerReport& minimum) {
   report.quasi_newton_steps += minimum.quasi_newton_steps;
   report.newton_steps += minimum.newton_steps;
   report.factorizations += minimum.factorizations;
-  report.converged = minimum.converged;
   report.gradient = minimum.gradient / report.force_scale_n;
+  report.converged = report.gradient <= kAtRest;
   report.energy_n_mm = minimum.energy;
 }
 
@@ -153,7 +168,7 @@ void stiffen_contact(Cell& cell, const RelaxationOptions& options, RelaxationRep
 void resize(Cell& cell, const Eigen::Vector2d& period_mm) {
   const Eigen::Vector2d ratio = period_mm.cwiseQuotient(cell.model.period_mm);
   cell.points.topRows<2>().array().colwise() *= ratio.array();
-  for (Anchor& anchor : cell.model.anchors) anchor.value_mm *= ratio[anchor.axis];
+  for (Anchor& anchor : cell.model.anchors) anchor.value_mm = anchor.weights.cwiseProduct(cell.points).sum();
   cell.model.period_mm = period_mm;
 }
 
@@ -164,7 +179,7 @@ void settle_periods(Cell& cell, const RelaxationOptions& options, RelaxationRepo
   const auto force_at = [&](const Eigen::Vector2d& period_mm) -> Eigen::Vector2d {
     resize(cell, period_mm);
     add_steps(report, come_to_rest(cell, options.gradient_goal * report.force_scale_n, false));
-    return derivatives(cell, cell.points, Curvature::none).period_gradient;
+    return cell_force(cell, derivatives(cell, cell.points, Curvature::none));
   };
   Eigen::Vector2d period = cell.model.period_mm, force = force_at(period);
   Eigen::Matrix2d slope;
@@ -207,10 +222,7 @@ YarnPatch patch_of(const Cell& cell, YarnPatch patch) {
 
 }  // namespace
 
-RelaxedPatch relax(const Draft& draft, const RelaxationOptions& options) {
-  Draft unscaled = draft;
-  unscaled.height_scale = 1;
-  const YarnPatch start = initial_patch(unscaled, options.points_per_crossing);
+RelaxedPatch relax(const YarnPatch& start, const Draft& draft, const RelaxationOptions& options) {
   Cell cell = cell_of(start, draft);
   RelaxedPatch relaxed;
   RelaxationReport& report = relaxed.report;
@@ -220,8 +232,8 @@ RelaxedPatch relax(const Draft& draft, const RelaxationOptions& options) {
   if (draft.free_periods) settle_periods(cell, options, report);
 
   report.contact_n_mm2 = cell.model.contact_n_mm2;
-  report.contact_forces_n = cell.contacts.forces(cell.model, cell.points);
-  report.cell_force_n = derivatives(cell, cell.points, Curvature::none).period_gradient;
+  std::tie(report.contact_forces_n, report.contact_loads_n) = cell.contacts.forces(cell.model, cell.points);
+  report.cell_force_n = cell_force(cell, derivatives(cell, cell.points, Curvature::none));
   YarnPatch patch = patch_of(cell, start);
   report.as_drafted = is_as_drafted(patch, draft);
   report.crown_gap = least_crown_gap(patch);
@@ -230,10 +242,30 @@ RelaxedPatch relax(const Draft& draft, const RelaxationOptions& options) {
   for (Yarn& yarn : patch.yarns)
     for (Eigen::Vector3d& point : yarn.control_points) point.z() *= draft.height_scale;
   measure(patch);
-  const bool flattened = draft.warp.flatness > 1 || draft.weft.flatness > 1;
+  const bool flattened =
+      std::any_of(patch.yarns.begin(), patch.yarns.end(), [](const Yarn& yarn) { return yarn.flatness > 1; });
   if (flattened && report.overlap > 0) patch.least_gap_mm = -report.overlap * thinnest_radius(cell.model);
   relaxed.patch = std::move(patch);
   return relaxed;
+}
+
+RelaxedPatch relax(const Draft& draft, const RelaxationOptions& options) {
+  Draft unscaled = draft;
+  unscaled.height_scale = 1;
+  return relax(initial_patch(unscaled, options.points_per_crossing), draft, options);
+}
+
+void check_at_rest(const RelaxedPatch& relaxed) {
+  const std::string name = "draft \"" + relaxed.patch.name + "\": ";
+  if (!relaxed.report.as_drafted)
+    throw std::runtime_error(name +
+                             "yarns slipped past each other on the way to rest, so the cloth is not as drafted; open "
+                             "the sett, take thinner yarns or more tension");
+  std::ostringstream gradient;
+  gradient << std::setprecision(2) << relaxed.report.gradient;
+  if (!relaxed.report.converged)
+    throw std::runtime_error(name + "yarns did not come to rest (largest force " + gradient.str() +
+                             " of the pull on them); open the sett, take thinner yarns or more tension");
 }
 
 }  // namespace renderer

@@ -1,13 +1,19 @@
 // Weave model: what stays the same while the yarns of a patch move, and where the derivatives of their energy are added.
 //
-// The unknowns are the control points of all yarns (periodic_spline.h), side by side as the columns of one 3 x n
-// matrix, mm. Control point k of a yarn, any k, is a column moved by whole periods of the cell: a PointRef. Forces in
-// newtons, energies in N mm.
+// The control points of all yarns (periodic_spline.h) stand side by side as the columns of one 3 x n matrix, mm.
+// Control point k of a yarn, any k, is a column moved by whole periods of the cell: a PointRef. Forces in newtons,
+// energies in N mm.
+//
+// The unknowns are two coordinates of each control point, sideways and up; the third, along the yarn, stays where it is
+// drawn. Energies do not know where on a yarn its points lie, so without friction that third costs nothing: with it as an
+// unknown, yarns slid along themselves into the small dents that points and samples leave in their energy, each yarn into
+// its own, Newton's method took three times the steps, and repeats of a patch came to rest differently.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "renderer/weave/patch.h"
@@ -23,13 +29,12 @@ struct ModelYarn {
   double tension_n = 0.0;       // dead load: energy tension x length
   double axial_n = 0.0;         // spring: energy axial / 2 x (length / rest length - 1)^2 x rest length
   double rest_length_mm = 0.0;  // of one period; for the spring
-  double spread_n = 0.0;        // keeps the control points evenly spaced; no force when they are
   double length_mm = 0.0;       // of one period at the start, for the weights of contact samples
 };
 
-// A spring that holds one coordinate of one control point where it was.
+// A spring that holds the mean of one coordinate of some control points where it was.
 struct Anchor {
-  int column = 0, axis = 0;
+  Eigen::Matrix3Xd weights;  // the mean is the sum of weights x points
   double value_mm = 0, stiffness_n_mm = 0;
 };
 
@@ -53,6 +58,14 @@ Eigen::Vector3d position(const WeaveModel& model, const Eigen::Matrix3Xd& points
 // Which second derivatives are wanted: none; those of the energy; or a positive semidefinite part of them, which leads
 // downhill from anywhere.
 enum class Curvature { none, exact, positive };
+
+// Second derivatives in which a vector v x v^T couples many unknowns: instead of that dense part, a row for v with -1 on
+// the diagonal. Eliminating those rows gives the second derivatives; they are positive definite exactly where the matrix
+// has as many negative eigenvalues as it has such rows.
+struct BorderedMatrix {
+  Eigen::SparseMatrix<double> lower;  // triangle
+  Eigen::Index borders = 0;           // last rows
+};
 
 // Sum of energies and of their derivatives.
 class WeaveDerivatives {
@@ -98,10 +111,17 @@ class WeaveDerivatives {
   Eigen::Vector2d period_gradient = Eigen::Vector2d::Zero();  // to the periods of the cell, control points held
   Curvature curvature;
 
-  // Lower triangle of the 3 n x 3 n matrix, 3 x 3 blocks summed. Ordered, so the same everywhere.
-  Eigen::SparseMatrix<double> hessian();
+  // Adds slope x slope^T to the second derivatives, where slope is given to the control points from `first` on.
+  void add_border(int first, Eigen::Matrix3Xd slope) { borders_.push_back({first, std::move(slope)}); }
+
+  // Of the 3 n coordinates those that are unknowns: unknowns[coordinate] counts them from 0, or is -1.
+  BorderedMatrix hessian(const Eigen::VectorXi& unknowns) const;
 
  private:
+  struct Border {
+    int first;
+    Eigen::Matrix3Xd slope;
+  };
   struct Block {
     int row, column;
     Eigen::Matrix3d value;
@@ -111,6 +131,10 @@ class WeaveDerivatives {
     period_gradient += ref.cell.cast<double>().cwiseProduct(value.head<2>());
   }
   std::vector<Block> blocks_;
+  std::vector<Border> borders_;
 };
+
+// Numbers the unknowns of a model, as WeaveDerivatives::hessian() wants them.
+Eigen::VectorXi unknowns_of(const WeaveModel& model);
 
 }  // namespace renderer

@@ -97,56 +97,83 @@ void ContactList::update(const WeaveModel& model, const Eigen::Matrix3Xd& points
   if (!same) search(model, points);
 }
 
+// Segments first, by the spheres round their samples; then the samples of those that are near each other.
 void ContactList::search(const WeaveModel& model, const Eigen::Matrix3Xd& points) {
   searched_at_ = points;
   searched_period_mm_ = model.period_mm;
   pairs_.clear();
-  double widest = 0;
-  for (const ModelYarn& yarn : model.yarns) widest = std::max(widest, 2 * half_width(yarn));
-  Grid grid(model.period_mm, widest + skin_mm_);
   const Eigen::Matrix3Xd at = positions(model, points);
-  std::vector<Eigen::Vector2i> home(samples_.size());  // periods that bring a sample into the cell
-  for (Eigen::Index s = 0; s < at.cols(); ++s) {
-    Eigen::Vector2i inside, cell;
-    for (int axis = 0; axis < 2; ++axis) {
-      const int square = static_cast<int>(std::floor(at(axis, s) / model.period_mm[axis] * grid.squares[axis]));
-      cell[axis] = -floor_divide(square, grid.squares[axis]);
-      inside[axis] = square + cell[axis] * grid.squares[axis];
-    }
-    home[static_cast<std::size_t>(s)] = cell;
-    grid.at(inside.x(), inside.y()).push_back(static_cast<int>(s));
+  struct Segment {
+    int yarn, first, last;  // samples
+    Eigen::Vector3d center;
+    double radius = 0;
+    Eigen::Vector2i home = Eigen::Vector2i::Zero();  // periods that bring it into the cell
+  };
+  std::vector<Segment> segments;
+  const auto samples = static_cast<int>(samples_.size());
+  double largest = 0, widest = 0;
+  for (int first = 0, last = 0; first < samples; first = last) {
+    const Sample& sample = samples_[static_cast<std::size_t>(first)];
+    const auto together = [&](const Sample& other) {
+      return other.yarn == sample.yarn && other.segment == sample.segment;
+    };
+    while (last < samples && together(samples_[static_cast<std::size_t>(last)])) ++last;
+    Segment segment{sample.yarn, first, last, at.middleCols(first, last - first).rowwise().mean()};
+    for (int s = first; s < last; ++s) segment.radius = std::max(segment.radius, (at.col(s) - segment.center).norm());
+    largest = std::max(largest, segment.radius);
+    segments.push_back(segment);
   }
-  const auto visit_squares = [&](int a, const std::vector<int>& others, const Eigen::Vector2i& turn) {
-    const auto yarn_a = static_cast<std::size_t>(samples_[static_cast<std::size_t>(a)].yarn);
-    for (const int b : others) {
-      const auto yarn_b = static_cast<std::size_t>(samples_[static_cast<std::size_t>(b)].yarn);
-      if (yarn_a >= yarn_b) continue;
-      const Eigen::Vector2i cell = home[static_cast<std::size_t>(b)] + turn - home[static_cast<std::size_t>(a)];
-      Eigen::Vector3d difference = at.col(a) - at.col(b);
-      difference.head<2>() -= model.period_mm.cwiseProduct(cell.cast<double>());
-      const Metric metric(model.yarns[yarn_a], model.yarns[yarn_b]);
-      if (metric.scale.cwiseProduct(difference).norm() < metric.contact + skin_mm_) pairs_.push_back({a, b, cell});
+  for (const ModelYarn& yarn : model.yarns) widest = std::max(widest, 2 * half_width(yarn));
+  Grid grid(model.period_mm, widest + skin_mm_ + 2 * largest);
+  std::vector<Eigen::Vector2i> squares;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    Eigen::Vector2i inside;
+    for (int axis = 0; axis < 2; ++axis) {
+      const int square =
+          static_cast<int>(std::floor(segments[i].center[axis] / model.period_mm[axis] * grid.squares[axis]));
+      segments[i].home[axis] = -floor_divide(square, grid.squares[axis]);
+      inside[axis] = square + segments[i].home[axis] * grid.squares[axis];
+    }
+    grid.at(inside.x(), inside.y()).push_back(static_cast<int>(i));
+    squares.push_back(inside);
+  }
+  const auto add_pairs = [&](const Segment& a, const Segment& b, const Eigen::Vector2i& cell) {
+    Eigen::Vector3d image = Eigen::Vector3d::Zero();
+    image.head<2>() = model.period_mm.cwiseProduct(cell.cast<double>());
+    if ((a.center - b.center - image).norm() > widest + skin_mm_ + a.radius + b.radius) return;
+    const Metric metric(model.yarns[static_cast<std::size_t>(a.yarn)], model.yarns[static_cast<std::size_t>(b.yarn)]);
+    const double reach = metric.contact + skin_mm_;
+    for (int s = a.first; s < a.last; ++s) {
+      const Eigen::Vector3d from = at.col(s) - image;
+      for (int t = b.first; t < b.last; ++t)
+        if (metric.scale.cwiseProduct(from - at.col(t)).squaredNorm() < reach * reach) pairs_.push_back({s, t, cell});
     }
   };
-  for (int row = 0; row < grid.squares.y(); ++row) {
-    for (int column = 0; column < grid.squares.x(); ++column) {
-      for (const int a : grid.at(column, row)) {
-        for (int dy = -1; dy <= 1; ++dy) {
-          for (int dx = -1; dx <= 1; ++dx) {
-            const Eigen::Vector2i turn(floor_divide(column + dx, grid.squares.x()),
-                                       floor_divide(row + dy, grid.squares.y()));
-            visit_squares(
-                a, grid.at(column + dx - turn.x() * grid.squares.x(), row + dy - turn.y() * grid.squares.y()), turn);
-          }
+  struct Neighbour {
+    int segment;
+    Eigen::Vector2i cell;
+  };
+  std::vector<Neighbour> neighbours;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const Segment& a = segments[i];
+    neighbours.clear();
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const Eigen::Vector2i square = squares[i] + Eigen::Vector2i(dx, dy);
+        const Eigen::Vector2i turn(floor_divide(square.x(), grid.squares.x()),
+                                   floor_divide(square.y(), grid.squares.y()));
+        const Eigen::Vector2i inside = square - turn.cwiseProduct(grid.squares);
+        for (const int k : grid.at(inside.x(), inside.y())) {
+          const Segment& b = segments[static_cast<std::size_t>(k)];
+          if (a.yarn < b.yarn) neighbours.push_back({k, b.home + turn - a.home});
         }
       }
     }
+    std::sort(neighbours.begin(), neighbours.end(), [](const Neighbour& p, const Neighbour& q) {
+      return std::tuple(p.segment, p.cell.x(), p.cell.y()) < std::tuple(q.segment, q.cell.x(), q.cell.y());
+    });
+    for (const Neighbour& n : neighbours) add_pairs(a, segments[static_cast<std::size_t>(n.segment)], n.cell);
   }
-  const auto order = [&](const Pair& pair) {
-    const Sample &a = samples_[static_cast<std::size_t>(pair.a)], &b = samples_[static_cast<std::size_t>(pair.b)];
-    return std::tuple(a.yarn, a.segment, b.yarn, b.segment, pair.cell.x(), pair.cell.y(), pair.a, pair.b);
-  };
-  std::sort(pairs_.begin(), pairs_.end(), [&](const Pair& p, const Pair& q) { return order(p) < order(q); });
 }
 
 template <typename Visit>
@@ -243,15 +270,22 @@ double ContactList::deepest_overlap(const WeaveModel& model, const Eigen::Matrix
   return deepest;
 }
 
-Eigen::Matrix3Xd ContactList::forces(const WeaveModel& model, const Eigen::Matrix3Xd& points) const {
-  Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(model.yarns.size()));
+std::pair<Eigen::Matrix3Xd, Eigen::VectorXd> ContactList::forces(const WeaveModel& model,
+                                                                 const Eigen::Matrix3Xd& points) const {
+  const auto yarns = static_cast<Eigen::Index>(model.yarns.size());
+  Eigen::Matrix3Xd sums = Eigen::Matrix3Xd::Zero(3, yarns);
+  Eigen::VectorXd loads = Eigen::VectorXd::Zero(yarns);
   for_each_touch(model, points, [&](const Touch& touch) {
     const double q = touch.distance / touch.contact;
     const Eigen::Vector3d force = touch.factor * 2 * (1 / q - q) * (1 / (q * q) + 1) / touch.contact * touch.slope;
-    forces.col(samples_[static_cast<std::size_t>(pairs_[touch.pair].a)].yarn) += force;
-    forces.col(samples_[static_cast<std::size_t>(pairs_[touch.pair].b)].yarn) -= force;
+    const int a = samples_[static_cast<std::size_t>(pairs_[touch.pair].a)].yarn,
+              b = samples_[static_cast<std::size_t>(pairs_[touch.pair].b)].yarn;
+    sums.col(a) += force;
+    sums.col(b) -= force;
+    loads[a] += force.norm();
+    loads[b] += force.norm();
   });
-  return forces;
+  return {sums, loads};
 }
 
 }  // namespace renderer

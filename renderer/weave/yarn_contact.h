@@ -26,9 +26,9 @@ class ContactList {
   void update(const WeaveModel& model, const Eigen::Matrix3Xd& points);
   void add(const WeaveModel& model, const Eigen::Matrix3Xd& points, WeaveDerivatives& sum) const;
 
-  // Deepest overlap, mm, and the sum of contact forces on each yarn (columns), N.
+  // Deepest overlap, mm; and of the contact forces on each yarn, N, the sum and the sum of their magnitudes.
   double deepest_overlap(const WeaveModel& model, const Eigen::Matrix3Xd& points) const;
-  Eigen::Matrix3Xd forces(const WeaveModel& model, const Eigen::Matrix3Xd& points) const;
+  std::pair<Eigen::Matrix3Xd, Eigen::VectorXd> forces(const WeaveModel& model, const Eigen::Matrix3Xd& points) const;
 
  private:
   struct Sample {

@@ -11,39 +11,20 @@ struct Density {
   double value = 0, a = 0, c = 0, d = 0, aa = 0, ac = 0, ad = 0, dd = 0;
 };
 
-Density density(const ModelYarn& yarn, double A, double C, double D) {
-  const double speed = std::sqrt(A), per_knot = 1.0 / yarn.count;
+// Of bending and of a pull along the yarn.
+Density density(double bending_n_mm2, double pull_n, double A, double C, double D) {
+  const double speed = std::sqrt(A);
   Density e;
-  const double N = A * C - D * D, half_bending = yarn.bending_n_mm2 / 2;
+  const double N = A * C - D * D, half_bending = bending_n_mm2 / 2;
   const double A5 = 1 / (A * A * speed), A7 = A5 / A, A9 = A7 / A;  // A^(-5/2) and on
-  e.value = half_bending * N * A5;
+  e.value = half_bending * N * A5 + pull_n * speed;
   e.c = half_bending * A * A5;
   e.d = -2 * half_bending * D * A5;
-  e.a = half_bending * (C * A5 - 2.5 * N * A7);
-  e.aa = half_bending * (-5 * C * A7 + 8.75 * N * A9);
+  e.a = half_bending * (C * A5 - 2.5 * N * A7) + pull_n / (2 * speed);
+  e.aa = half_bending * (-5 * C * A7 + 8.75 * N * A9) - pull_n / (4 * A * speed);
   e.ac = -1.5 * half_bending * A5;
   e.ad = 5 * half_bending * D * A7;
   e.dd = -2 * half_bending * A5;
-
-  const double rest = yarn.rest_length_mm * per_knot;
-  double pull = yarn.tension_n, stiffness = 0;  // force along the yarn and its derivative to the speed
-  e.value += yarn.tension_n * speed;
-  if (yarn.axial_n > 0) {
-    const double strain = speed / rest - 1;
-    e.value += yarn.axial_n / 2 * strain * strain * rest;
-    pull += yarn.axial_n * strain;
-    stiffness = yarn.axial_n / rest;
-  }
-  e.a += pull / (2 * speed);
-  e.aa += stiffness / (4 * A) - pull / (4 * A * speed);
-
-  const double spread = yarn.spread_n / (yarn.length_mm * per_knot);
-  e.value += spread / 2 * D * D / A;
-  e.d += spread * D / A;
-  e.a -= spread / 2 * D * D / (A * A);
-  e.dd += spread / A;
-  e.ad -= spread * D / (A * A);
-  e.aa += spread * D * D / (A * A * A);
   return e;
 }
 
@@ -78,41 +59,76 @@ std::array<GaussPoint, 3> gauss_points() {
   return {at(0.5 - offset, 5.0 / 18), at(0.5, 8.0 / 18), at(0.5 + offset, 5.0 / 18)};
 }
 
+const std::array<GaussPoint, 3>& gauss() {
+  static const std::array<GaussPoint, 3> kGauss = gauss_points();
+  return kGauss;
+}
+
+struct Segment {
+  std::array<PointRef, 4> refs;
+  Eigen::Matrix<double, 3, 4> controls;
+
+  Segment(const WeaveModel& model, const ModelYarn& yarn, int k, const Eigen::Matrix3Xd& points) {
+    for (int i = 0; i < 4; ++i) {
+      refs[static_cast<std::size_t>(i)] = point_ref(yarn, k - 1 + i);
+      controls.col(i) = position(model, points, refs[static_cast<std::size_t>(i)]);
+    }
+  }
+};
+
+// The spring's energy and the border of its second derivatives; returns its pull.
+double add_spring(const WeaveModel& model, const ModelYarn& yarn, const Eigen::Matrix3Xd& points,
+                  WeaveDerivatives& sum) {
+  double length = 0;
+  Eigen::Matrix3Xd slope = Eigen::Matrix3Xd::Zero(3, yarn.count);  // of the length
+  for (int k = 0; k < yarn.count; ++k) {
+    const Segment segment(model, yarn, k, points);
+    for (const GaussPoint& point : gauss()) {
+      const Eigen::Vector3d a = segment.controls * point.first;
+      length += point.weight * a.norm();
+      for (int i = 0; i < 4; ++i)
+        slope.col(segment.refs[static_cast<std::size_t>(i)].column - yarn.first) +=
+            point.weight * point.first[i] * a.normalized();
+    }
+  }
+  const double strain = length / yarn.rest_length_mm - 1;
+  sum.energy +=
+      yarn.axial_n * (strain * strain * yarn.rest_length_mm / 2 - strain * length);  // the pull adds the last
+  if (sum.curvature != Curvature::none)
+    sum.add_border(yarn.first, std::sqrt(yarn.axial_n / yarn.rest_length_mm) * slope);
+  return yarn.axial_n * strain;
+}
+
 }  // namespace
 
 void add_elasticity(const WeaveModel& model, const Eigen::Matrix3Xd& points, WeaveDerivatives& sum) {
-  static const std::array<GaussPoint, 3> kGauss = gauss_points();
   for (const ModelYarn& yarn : model.yarns) {
+    const double pull = yarn.tension_n + (yarn.axial_n > 0 ? add_spring(model, yarn, points, sum) : 0);
     for (int k = 0; k < yarn.count; ++k) {
-      std::array<PointRef, 4> refs;
-      Eigen::Matrix<double, 3, 4> controls;
-      for (int i = 0; i < 4; ++i) {
-        refs[static_cast<std::size_t>(i)] = point_ref(yarn, k - 1 + i);
-        controls.col(i) = position(model, points, refs[static_cast<std::size_t>(i)]);
-      }
+      const Segment segment(model, yarn, k, points);
       Eigen::Matrix<double, 3, 4> gradient = Eigen::Matrix<double, 3, 4>::Zero();
       Eigen::Matrix<double, 12, 12> hessian = Eigen::Matrix<double, 12, 12>::Zero();
-      for (const GaussPoint& gauss : kGauss) {
-        const Eigen::Vector3d a = controls * gauss.first, b = controls * gauss.second;
-        const Density e = density(yarn, a.squaredNorm(), b.squaredNorm(), a.dot(b));
-        sum.energy += gauss.weight * e.value;
-        gradient += gauss.weight * ((2 * e.a * a + e.d * b) * gauss.first.transpose() +
-                                    (2 * e.c * b + e.d * a) * gauss.second.transpose());
+      for (const GaussPoint& point : gauss()) {
+        const Eigen::Vector3d a = segment.controls * point.first, b = segment.controls * point.second;
+        const Density e = density(yarn.bending_n_mm2, pull, a.squaredNorm(), b.squaredNorm(), a.dot(b));
+        sum.energy += point.weight * e.value;
+        gradient += point.weight * ((2 * e.a * a + e.d * b) * point.first.transpose() +
+                                    (2 * e.c * b + e.d * a) * point.second.transpose());
         if (sum.curvature == Curvature::none) continue;
         Matrix6d h = second_derivatives(e, a, b);
         if (sum.curvature == Curvature::positive) h = positive_part(h);
-        h *= gauss.weight;
+        h *= point.weight;
         for (int p = 0; p < 4; ++p) {
           for (int q = 0; q < 4; ++q) {
-            hessian.block<3, 3>(3 * p, 3 * q) += gauss.first[p] * gauss.first[q] * h.topLeftCorner<3, 3>() +
-                                                 gauss.first[p] * gauss.second[q] * h.topRightCorner<3, 3>() +
-                                                 gauss.second[p] * gauss.first[q] * h.bottomLeftCorner<3, 3>() +
-                                                 gauss.second[p] * gauss.second[q] * h.bottomRightCorner<3, 3>();
+            hessian.block<3, 3>(3 * p, 3 * q) += point.first[p] * point.first[q] * h.topLeftCorner<3, 3>() +
+                                                 point.first[p] * point.second[q] * h.topRightCorner<3, 3>() +
+                                                 point.second[p] * point.first[q] * h.bottomLeftCorner<3, 3>() +
+                                                 point.second[p] * point.second[q] * h.bottomRightCorner<3, 3>();
           }
         }
       }
-      sum.add<4>(refs, gradient);
-      if (sum.curvature != Curvature::none) sum.add_curvature<4>(refs, hessian);
+      sum.add<4>(segment.refs, gradient);
+      if (sum.curvature != Curvature::none) sum.add_curvature<4>(segment.refs, hessian);
     }
   }
 }

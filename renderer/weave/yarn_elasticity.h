@@ -1,13 +1,11 @@
 // Elastic energy of the yarns by themselves: tension or an axial spring, and bending.
 //
-// With y(t) the spline and ' = d/dt, per yarn
-//   tension    T integral |y'| dt
-//   axial      EA / 2 integral (|y'| / s0 - 1)^2 s0 dt,  s0 = rest length per knot
+// With y(t) the spline, ' = d/dt and L = integral |y'| dt the length of one period, per yarn
+//   tension    T L
+//   axial      EA / 2 (L / L0 - 1)^2 L0: without friction the strain is the same all along the yarn
 //   bending    B / 2 integral kappa^2 ds = B / 2 integral |y' x y''|^2 / |y'|^5 dt      (straight at rest, no twist)
-//   spread     S / (2 s) integral (d|y'|/dt)^2 dt,  s = length per knot: nothing when the points are evenly spaced
-// by three Gauss points per segment. The first three do not know where on the yarn its points lie; the last one does,
-// so that points do not drift along it. Source: models.md section 4.2 (there on nodes; here on the spline that is
-// rendered, so that both are one curve).
+// by three Gauss points per segment. None knows where on the yarn its points lie. Source: models.md section 4.2 (there on
+// nodes; here on the spline that is rendered, so that both are one curve).
 #pragma once
 
 #include "renderer/weave/weave_model.h"

@@ -28,6 +28,11 @@ std::string holder_of(const std::filesystem::path& file) {
 
 }  // namespace
 
+bool folder_in_use(const std::filesystem::path& folder) {
+  const OpenFile file(::open((folder / kLockFile).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+  return file.descriptor() >= 0 && ::flock(file.descriptor(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+}
+
 OpenFile lock_folder(const std::filesystem::path& folder, FileSystem& file_system) {
   const std::filesystem::path path = folder / kLockFile;
   try {

@@ -12,6 +12,9 @@ namespace station {
 // Errors: std::runtime_error that says which process holds the lock, or why it cannot be made.
 OpenFile lock_folder(const std::filesystem::path& folder, FileSystem& file_system);
 
+// Whether a process holds it now. Changes nothing.
+bool folder_in_use(const std::filesystem::path& folder);
+
 inline constexpr const char* kLockFile = ".lock";
 
 }  // namespace station

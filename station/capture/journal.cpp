@@ -135,6 +135,20 @@ Journal::Journal(const std::filesystem::path& file, rig::Clock& clock, FileSyste
 }
 
 void Journal::append(std::string_view event, const json& data) {
+  const std::lock_guard lock(*mutex_);
+  append_record(event, data);
+}
+
+void Journal::append_last(std::string_view event, const json& data) {
+  const std::lock_guard lock(*mutex_);
+  append_record(event, data);
+  closed_ = true;
+}
+
+void Journal::append_record(std::string_view event, const json& data) {
+  if (closed_) {
+    throw std::runtime_error("'" + path_.string() + "' was ended by a stop at once; resume the session");
+  }
   JournalRecord record{
       .seq = records_.size() + 1, .utc = clock_->utc(), .event = std::string(event), .data = data, .sha256 = {}};
   const std::string content = line_content(record);

@@ -15,6 +15,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -47,11 +49,15 @@ class Journal {
   Journal(const std::filesystem::path& file, rig::Clock& clock, FileSystem& file_system);
 
   // Returns when the record is on the disk. After an error the journal ends as it did before.
+  // From any thread.
   void append(std::string_view event, const nlohmann::json& data);
+  // And refuses all that comes after it.
+  void append_last(std::string_view event, const nlohmann::json& data);
 
   const std::vector<JournalRecord>& records() const { return records_; }
 
  private:
+  void append_record(std::string_view event, const nlohmann::json& data);
   void write_line(const std::string& line);
 
   std::filesystem::path path_;
@@ -59,6 +65,8 @@ class Journal {
   FileSystem* file_system_;
   OpenFile file_;
   std::uintmax_t size_ = 0;
+  std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();
+  bool closed_ = false;
   bool broken_ = false;  // it is not known what stands on the disk
   std::vector<JournalRecord> records_;
 };

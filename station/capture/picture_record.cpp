@@ -36,7 +36,8 @@ json picture_to_json(const PictureRecord& picture) {
                    {"platform_angle_read_deg", file_degrees(picture.read_angle_rad)},
                    {"camera_asked", rig::settings_to_json(picture.asked)},
                    {"camera_read", rig::settings_to_json(picture.read)},
-                   {"exposure_utc", picture.utc}};
+                   {"exposure_utc", picture.utc},
+                   {"verdict", verdict_to_json(picture.verdict)}};
   if (!picture.same_as.empty()) {
     document["same_as"] = picture.same_as;
   }
@@ -59,7 +60,8 @@ PictureRecord picture_from_json(const JournalRecord& record) {
             .asked = rig::settings_from_json(data.at("camera_asked")),
             .read = rig::settings_from_json(data.at("camera_read")),
             .utc = data.at("exposure_utc").get<std::string>(),
-            .same_as = data.value("same_as", std::string())};
+            .same_as = data.value("same_as", std::string()),
+            .verdict = verdict_from_json(data.at("verdict"))};
   } catch (const std::exception& error) {
     throw std::runtime_error("journal record " + std::to_string(record.seq) + " is no picture that can be read (" +
                              error.what() + "); it may come from another version of the program");

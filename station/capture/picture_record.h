@@ -13,6 +13,7 @@
 #include "rig/camera.h"
 #include "station/capture/journal.h"
 #include "station/capture/plan.h"
+#include "station/capture/verdict.h"
 
 namespace station {
 
@@ -29,6 +30,7 @@ struct PictureRecord {
   rig::ExposureSettings asked, read;               // of the camera; `read` came with the picture
   std::string utc;                                 // when the exposure began
   std::string same_as;                             // a dark's only: the step whose file this is
+  Verdict verdict;
 };
 
 nlohmann::json picture_to_json(const PictureRecord& picture);

@@ -116,11 +116,11 @@ std::optional<std::string> light_problem(const PlanStep& step) {
 
 // `earlier`: the steps before this one.
 std::optional<std::string> order_problem(const PlanStep& step, const std::map<std::string, StepKind>& earlier,
-                                         const std::set<rig::Mounting>& posed) {
+                                         const std::set<rig::Mounting>& posed, bool any_pose) {
   if (earlier.contains(step.id)) {
     return "the id stands twice in the plan";
   }
-  if (step.kind == StepKind::view && !posed.contains(step.mounting)) {
+  if (any_pose && step.kind == StepKind::view && !posed.contains(step.mounting)) {
     return "a pose picture with its mounting has to come before it";
   }
   const bool repeats = step.kind == StepKind::dark || step.kind == StepKind::exposure;
@@ -130,6 +130,9 @@ std::optional<std::string> order_problem(const PlanStep& step, const std::map<st
   if (step.kind == StepKind::exposure ? !(std::abs(step.stops) >= 0.3 && std::abs(step.stops) <= 10)
                                       : step.stops != 0) {
     return "a bracket's exposure, and nothing else, is 0.3 to 10 stops from its view's";
+  }
+  if (step.exposure_s && (repeats || !(*step.exposure_s > 0 && *step.exposure_s <= 3600))) {
+    return "exposure_s is for a pose or a view, above 0 and up to 3600 s";
   }
   const auto view = earlier.find(step.exposure_of);
   if (repeats && (view == earlier.end() || view->second != StepKind::view)) {
@@ -155,6 +158,15 @@ bool is_transmission(const PlanStep& step) {
 std::size_t view_count(const Plan& plan) {
   return static_cast<std::size_t>(std::count_if(plan.steps.begin(), plan.steps.end(),
                                                 [](const PlanStep& step) { return step.kind == StepKind::view; }));
+}
+
+const PlanStep* find_view(const Plan& plan, std::size_t number) {
+  for (const PlanStep& step : plan.steps) {
+    if (step.kind == StepKind::view && number-- == 1) {
+      return &step;
+    }
+  }
+  return nullptr;
 }
 
 const PlanStep* find_step(const Plan& plan, const std::string& id) {
@@ -186,10 +198,12 @@ Plan make_capture_plan(const PlanRequest& request) {
 std::optional<std::string> check_plan(const Plan& plan, double largest_angle_rad) {
   std::map<std::string, StepKind> earlier;
   std::set<rig::Mounting> posed;
+  const bool any_pose = std::any_of(plan.steps.begin(), plan.steps.end(),
+                                    [](const PlanStep& step) { return step.kind == StepKind::pose; });
   for (const PlanStep& step : plan.steps) {
     std::optional<std::string> problem = problem_with_name(step.id);
     if (!problem) {
-      problem = order_problem(step, earlier, posed);
+      problem = order_problem(step, earlier, posed, any_pose);
     }
     if (!problem) {
       problem = angle_problem(step, largest_angle_rad);

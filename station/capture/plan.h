@@ -24,8 +24,9 @@ struct PlanStep {
   rig::Lamp lamp = rig::Lamp::off;
   bool room_light = false;
   double platform_angle_rad = 0.0;
-  std::string exposure_of;  // dark and exposure only: the view whose camera settings it repeats
-  double stops = 0.0;       // exposure only: from the view's
+  std::string exposure_of;             // dark and exposure only: the view whose camera settings it repeats
+  double stops = 0.0;                  // exposure only: from the view's
+  std::optional<double> exposure_s{};  // pose and view only: this one, without metering
 
   bool operator==(const PlanStep&) const = default;
 };
@@ -39,6 +40,7 @@ struct Plan {
 bool is_reflection(const PlanStep& step);    // a view with the lamp in front
 bool is_transmission(const PlanStep& step);  // a view with the lamp behind
 std::size_t view_count(const Plan& plan);
+const PlanStep* find_view(const Plan& plan, std::size_t number);     // 1: the first view; nullptr: there are fewer
 const PlanStep* find_step(const Plan& plan, const std::string& id);  // nullptr: no such step
 
 struct PlanRequest {
@@ -52,7 +54,8 @@ struct PlanRequest {
 // Errors: std::runtime_error when the angles are not 6 and 5, or check_plan finds something.
 Plan make_capture_plan(const PlanRequest& request);
 
-// One clear line about the first thing that makes the plan impossible.
+// One clear line about the first thing that makes the plan impossible. A plan has a pose picture before the first view of
+// each mounting, or none at all (pictures taken by hand: the holder is believed to stand where it should).
 std::optional<std::string> check_plan(const Plan& plan, double largest_angle_rad = std::numbers::pi);
 
 // Rough durations for the time left before the session has measured its own.

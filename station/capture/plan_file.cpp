@@ -35,6 +35,9 @@ json step_to_json(const PlanStep& step) {
   if (step.kind == StepKind::exposure) {
     document["stops"] = step.stops;
   }
+  if (step.exposure_s) {
+    document["exposure_s"] = *step.exposure_s;
+  }
   return document;
 }
 
@@ -52,6 +55,9 @@ PlanStep read_step(ObjectReader& reader) {
   }
   if (step.kind == StepKind::exposure) {
     step.stops = reader.number("stops", -10, 10);
+  }
+  if (reader.has("exposure_s")) {
+    step.exposure_s = reader.number("exposure_s", 1e-6, 3600);
   }
   reader.finish();
   return step;

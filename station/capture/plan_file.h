@@ -9,8 +9,9 @@
 
 namespace station {
 
-// {"format": "threadstation/plan", "version": 1, "steps": [{"id", "kind": "pose" | "view" | "dark", "mounting",
-//  "lamp", "room_light", "platform_angle_deg", "exposure_of" (dark only)}, ...]}
+// {"format": "threadstation/plan", "version": 1, "steps": [{"id", "kind": "pose" | "view" | "exposure" | "dark", "mounting",
+//  "lamp", "room_light", "platform_angle_deg", "exposure_of" (dark and exposure), "stops" (exposure), "exposure_s" (pose and
+//  view, may be left out: metered)}, ...]}
 nlohmann::json plan_to_json(const Plan& plan);
 
 // `source` is the file that error messages name.

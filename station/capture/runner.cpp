@@ -1,32 +1,27 @@
 #include "station/capture/runner.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <vector>
 
 #include "station/capture/picture_record.h"
-#include "station/capture/plan_file.h"
+#include "station/capture/recorder.h"
 #include "station/capture/sha256.h"
 
 namespace station {
 namespace {
 
-using nlohmann::json;
+struct Stopped {  // thrown by poll(), caught in run_plan only
+  StopWish wish;
+};
 
-struct Interrupted {};  // thrown by poll(), caught in run_plan only
-
-std::string plan_hash(const Plan& plan) {
-  return sha256_hex(plan_to_json(plan).dump());
-}
-
-const JournalRecord* first_record(const SessionFolder& session, const std::string& event) {
-  const auto found = std::find_if(session.records().begin(), session.records().end(),
-                                  [&](const JournalRecord& record) { return record.event == event; });
-  return found == session.records().end() ? nullptr : &*found;
-}
+// What may have been wrong before it was seen, by the name of its finding.
+constexpr std::array kLasting = {"angle", "bench", "lamp", "focus"};
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -38,14 +33,21 @@ std::string degrees(double angle_rad) {
   return std::to_string(angle_rad * 180 / std::numbers::pi) + " deg";
 }
 
+Finding bad(const std::string& check, const std::string& reason, bool may_pass_again = false) {
+  return {
+      .check = check, .grade = Grade::bad, .value = std::nullopt, .reason = reason, .may_pass_again = may_pass_again};
+}
+
 class CaptureRun {
  public:
-  CaptureRun(const Plan& plan, const RunDevices& devices, SessionFolder& session, const RunOptions& options)
-      : plan_(plan), devices_(devices), session_(session), options_(options) {}
+  CaptureRun(const Plan& plan, const RunDevices& devices, Recorder& recorder, const RunOptions& options)
+      : plan_(plan), devices_(devices), recorder_(recorder), options_(options) {}
 
   void go() {
-    open_records();
-    keep_what_verifies();
+    require_known_steps();
+    recorder_.begin(plan_);
+    remember_order();
+    take_back();
     poll();
     bool ready = false;
     while (const PlanStep* step = first_open_step()) {
@@ -65,54 +67,40 @@ class CaptureRun {
   }
 
  private:
+  StopWish wish() const { return options_.stop_wish ? options_.stop_wish() : StopWish::none; }
+
   void poll() const {
-    if (options_.should_stop && options_.should_stop()) {
-      throw Interrupted{};
+    if (const StopWish now = wish(); now != StopWish::none) {
+      throw Stopped{now};
     }
   }
 
-  void open_records() {
-    const std::string hash = plan_hash(plan_);
-    const JournalRecord* start = first_record(session_, "start");
-    if (start == nullptr) {
-      session_.append("start", {{"plan_sha256", hash}, {"files", session_.hashes_of_fixed_files()}});
-      return;
-    }
-    if (start->data.value("plan_sha256", std::string()) != hash) {
-      throw std::runtime_error("the session '" + session_.path().string() +
-                               "' was started with another plan; resume it with its own, or start a new session");
-    }
-    session_.append("resume", {{"plan_sha256", hash}});
-  }
-
-  void keep_what_verifies() {
-    taken_ = taken_pictures(session_.records());
-    const auto taken = taken_;  // discarding changes taken_
-    for (const auto& [step, picture] : taken) {
-      if (taken_.contains(step) && !verifies(picture)) {
-        discard(picture.file, "the file is missing or differs from its journalled hash");
-      }
-    }
-    for (const std::string& name : session_.picture_names()) {
-      const std::string file = "raw/" + name;
-      const bool named =
-          std::any_of(taken_.begin(), taken_.end(), [&](const auto& entry) { return entry.second.file == file; });
-      if (!named) {
-        discard(file, "the journal does not name it");
+  void require_known_steps() const {
+    for (const std::string& step : options_.reshoot) {
+      if (find_step(plan_, step) == nullptr) {
+        throw std::runtime_error("'" + step +
+                                 "' was to be taken again and is no step of the plan; see its session.json");
       }
     }
   }
 
-  bool verifies(const PictureRecord& picture) const {
-    const std::filesystem::path file = session_.path() / picture.file;
-    return std::filesystem::is_regular_file(std::filesystem::symlink_status(file)) &&
-           sha256_of_file(file) == picture.sha256;
+  void remember_order() {
+    std::vector<std::pair<std::string, std::string>> pictures;  // when, which step
+    for (const auto& [step, picture] : recorder_.taken()) {
+      pictures.emplace_back(picture.utc, step);
+    }
+    std::ranges::sort(pictures);
+    for (const auto& [utc, step] : pictures) {
+      order_.push_back(step);
+    }
   }
 
-  void discard(const std::string& file, const std::string& reason) {
-    session_.append("discarded", {{"file", file}, {"reason", reason}});
-    session_.remove_picture(std::filesystem::path(file).filename().string());
-    forget_file(taken_, file);
+  void take_back() {
+    for (const std::string& step : options_.reshoot) {
+      if (recorder_.taken().contains(step)) {
+        recorder_.withdraw(step, "it was asked to be taken again");
+      }
+    }
   }
 
   // Searched anew after each step: a picture taken again may have made a dark stale that was passed before.
@@ -123,33 +111,23 @@ class CaptureRun {
   }
 
   bool is_done(const PlanStep& step) const {
-    const auto found = taken_.find(step.id);
-    if (found == taken_.end() || step.exposure_of.empty()) {
-      return found != taken_.end();
+    const auto found = recorder_.taken().find(step.id);
+    if (found == recorder_.taken().end() || step.exposure_of.empty()) {
+      return found != recorder_.taken().end();
     }
-    return taken_.contains(step.exposure_of) && same_settings(found->second.asked, repeated_settings(step));
+    return recorder_.taken().contains(step.exposure_of) &&
+           same_settings(found->second.asked, repeated_settings(step));
   }
 
   // Of a dark or of a bracket's exposure: its view's, so many stops longer.
   rig::ExposureSettings repeated_settings(const PlanStep& step) const {
-    rig::ExposureSettings settings = taken_.at(step.exposure_of).asked;
+    rig::ExposureSettings settings = recorder_.taken().at(step.exposure_of).asked;
     settings.exposure_s *= std::exp2(step.stops);
     return settings;
   }
 
   void prepare_devices() {
-    const rig::CameraIdentity camera = devices_.camera.identity();
-    const JournalRecord* before = first_record(session_, "camera");
-    if (before != nullptr && before->data.value("serial", std::string()) != camera.serial) {
-      throw std::runtime_error("the session was begun with the camera " +
-                               before->data.value("serial", std::string()) + " and " + camera.serial +
-                               " is connected; connect the first, or start a new session");
-    }
-    session_.append("camera", {{"make", camera.make},
-                               {"model", camera.model},
-                               {"serial", camera.serial},
-                               {"width_px", camera.width_px},
-                               {"height_px", camera.height_px}});
+    recorder_.camera(devices_.camera.identity());
     devices_.turntable.home();
   }
 
@@ -159,15 +137,12 @@ class CaptureRun {
       return false;
     }
     const rig::ExposureSettings wanted = repeated_settings(step);
-    for (const auto& [id, picture] : taken_) {
+    for (const auto& [id, picture] : recorder_.taken()) {
       if (id != step.id && picture.kind == StepKind::dark && picture.same_as.empty() &&
           same_settings(picture.asked, wanted)) {
+        const PictureRecord same = picture;
         remove_stale(step);
-        PictureRecord same = picture;
-        same.step = step.id;
-        same.same_as = id;
-        session_.append("picture", picture_to_json(same));
-        taken_.insert_or_assign(step.id, same);
+        recorder_.keep_same(same, step.id);
         return true;
       }
     }
@@ -177,23 +152,28 @@ class CaptureRun {
   void take(const PlanStep& step) {
     remove_stale(step);
     arrange(step);
-    PictureRecord picture = record_of(step);
-    picture.read_angle_rad = turn(step.platform_angle_rad);
-    picture.asked = set_camera(devices_.camera, exposure_for(step));
-    poll();
-    const rig::Picture delivered = devices_.camera.capture();
-    check(step, picture.asked, delivered);
-    if (options_.inspect) {
-      options_.inspect(step, delivered, picture.read_angle_rad);
+    for (int attempt = 1;; ++attempt) {
+      PictureRecord record = record_of(step);
+      record.read_angle_rad = turn(step.platform_angle_rad);
+      record.asked = set_camera(devices_.camera, exposure_for(step));
+      poll();
+      const rig::Picture delivered = devices_.camera.capture();
+      record.verdict = judge(step, record, delivered);
+      if (options_.judged) {
+        options_.judged(step, record.verdict);
+      }
+      if (record.verdict.grade() != Grade::bad) {
+        recorder_.keep(record, delivered);
+        order_.push_back(step.id);
+        return;
+      }
+      recorder_.refused(step, record.verdict, delivered);
+      withdraw_doubted(record.verdict);
+      if (!record.verdict.may_pass_again() || attempt >= options_.most_attempts) {
+        throw std::runtime_error(record.verdict.reason());
+      }
+      poll();
     }
-    const std::string name = step.id + "." + delivered.extension;
-    picture.file = "raw/" + name;
-    picture.bytes = delivered.bytes.size();
-    picture.read = delivered.settings;
-    picture.utc = delivered.utc;
-    picture.sha256 = session_.store_picture(name, delivered.bytes);
-    session_.append("picture", picture_to_json(picture));
-    taken_.insert_or_assign(step.id, picture);
   }
 
   static PictureRecord record_of(const PlanStep& step) {
@@ -209,10 +189,30 @@ class CaptureRun {
 
   // A dark or a bracket's exposure whose view was taken again at another exposure.
   void remove_stale(const PlanStep& step) {
-    const auto found = taken_.find(step.id);
-    if (found != taken_.end() && found->second.same_as.empty()) {
-      const std::string file = found->second.file;
-      discard(file, "its view was taken again with another exposure");
+    const auto found = recorder_.taken().find(step.id);
+    if (found != recorder_.taken().end() && found->second.same_as.empty()) {
+      recorder_.withdraw(step.id, "its view was taken again with another exposure");
+    }
+  }
+
+  // Views of this session since the last that showed the contrary: what was found now may have happened before them.
+  void withdraw_doubted(const Verdict& verdict) {
+    for (const Finding& finding : verdict.findings) {
+      if (finding.grade != Grade::bad || std::ranges::find(kLasting, finding.check) == kLasting.end()) {
+        continue;
+      }
+      for (auto step = order_.rbegin(); step != order_.rend(); ++step) {
+        const auto found = recorder_.taken().find(*step);
+        if (found == recorder_.taken().end() || found->second.kind == StepKind::dark) {
+          continue;
+        }
+        const Finding* before = found->second.verdict.find(finding.check);
+        if (before != nullptr && before->value && before->grade != Grade::bad) {
+          break;
+        }
+        recorder_.withdraw(
+            *step, "since the view before it nothing shows that this had not happened yet: " + finding.reason);
+      }
     }
   }
 
@@ -228,10 +228,7 @@ class CaptureRun {
       standing_.reset();
       devices_.person.arrange(wanted);
       standing_ = wanted;
-      session_.append("arranged", {{"step", step.id},
-                                   {"mounting", mounting_name(step.mounting)},
-                                   {"lamp", lamp_name(step.lamp)},
-                                   {"room_light", step.room_light}});
+      recorder_.arranged(step);
     }
     poll();
   }
@@ -258,19 +255,17 @@ class CaptureRun {
       }
       return settings;
     }
+    if (step.exposure_s) {
+      rig::ExposureSettings settings = options_.settings;
+      settings.exposure_s = *step.exposure_s;
+      return settings;
+    }
     if (!options_.choose_exposure) {
       return options_.settings;
     }
-    const Metering metering = meter_exposure(devices_.camera, step, metering_start(step), options_.choose_exposure,
+    const Metering metering = meter_exposure(devices_.camera, step, metering_start(step), watch_tests(),
                                              options_.most_test_pictures, [this] { poll(); });
-    session_.append("metering", {{"step", step.id},
-                                 {"exposure_s", metering.settings.exposure_s},
-                                 {"test_pictures", metering.test_pictures},
-                                 {"converged", metering.converged}});
-    if (!metering.converged) {
-      session_.append("warning",
-                      {{"step", step.id}, {"message", "the metering did not settle; look at the exposure"}});
-    }
+    recorder_.metered(step, metering);
     return metering.settings;
   }
 
@@ -278,31 +273,56 @@ class CaptureRun {
   rig::ExposureSettings metering_start(const PlanStep& step) const {
     rig::ExposureSettings first = options_.settings;
     for (const PlanStep& other : plan_.steps) {
-      const auto found = taken_.find(other.id);
-      if (found != taken_.end() && other.kind == step.kind && other.lamp == step.lamp) {
+      const auto found = recorder_.taken().find(other.id);
+      if (found != recorder_.taken().end() && other.kind == step.kind && other.lamp == step.lamp) {
         first.exposure_s = found->second.asked.exposure_s;
       }
     }
     return first;
   }
 
-  void check(const PlanStep& step, const rig::ExposureSettings& asked, const rig::Picture& delivered) const {
+  // What the camera delivered for a test counts too: a camera that answers one picture late is found out.
+  ChooseExposure watch_tests() {
+    return [this](const PlanStep& step, const rig::Picture& test) {
+      delivered_.insert(sha256_hex(test.bytes));
+      return options_.choose_exposure(step, test);
+    };
+  }
+
+  Verdict judge(const PlanStep& step, const PictureRecord& record, const rig::Picture& delivered) {
+    Verdict verdict;
     if (delivered.bytes.empty()) {
-      throw std::runtime_error("the camera delivered an empty picture for '" + step.id +
-                               "'; check its card and cable, then resume");
+      verdict.findings.push_back(
+          bad("file",
+              "the camera delivered an empty picture for '" + step.id + "'; check its card and cable, then resume",
+              true));
+      return verdict;
     }
-    if (!same_settings(asked, delivered.settings)) {
-      throw std::runtime_error("the picture '" + step.id + "' was to be taken with " + settings_text(asked) +
-                               " and says " + settings_text(delivered.settings) +
-                               "; set the camera's dial to M (manual), then resume");
+    if (!same_settings(record.asked, delivered.settings)) {
+      verdict.findings.push_back(bad("settings", "the picture '" + step.id + "' was to be taken with " +
+                                                     settings_text(record.asked) + " and says " +
+                                                     settings_text(delivered.settings) +
+                                                     "; set the camera's dial to M (manual), then resume"));
     }
     const std::string hash = sha256_hex(delivered.bytes);
-    const auto same =
-        std::find_if(taken_.begin(), taken_.end(), [&](const auto& entry) { return entry.second.sha256 == hash; });
-    if (same != taken_.end()) {
-      throw std::runtime_error("the camera delivered the picture of '" + same->first + "' again for '" + step.id +
-                               "'; switch it off and on, then resume");
+    const auto same = std::find_if(recorder_.taken().begin(), recorder_.taken().end(),
+                                   [&](const auto& entry) { return entry.second.sha256 == hash; });
+    if (same != recorder_.taken().end() || !delivered_.insert(hash).second) {
+      const std::string of = same != recorder_.taken().end() ? "picture of '" + same->first
+                                                             : "test or refused picture before '" + step.id;
+      verdict.findings.push_back(
+          bad("duplicate",
+              "the camera delivered the " + of + "' again for '" + step.id + "'; switch it off and on, then resume",
+              true));
     }
+    if (verdict.grade() != Grade::bad && options_.inspect) {
+      try {
+        verdict.add(options_.inspect(step, delivered, record.read_angle_rad));
+      } catch (const std::exception& error) {
+        verdict.findings.push_back(bad("file", error.what()));
+      }
+    }
+    return verdict;
   }
 
   void report(const std::string& step) const {
@@ -317,58 +337,60 @@ class CaptureRun {
     options_.progress({.done = plan_.steps.size() - left.steps.size(),
                        .total = plan_.steps.size(),
                        .step = step,
-                       .seconds_left = seconds_left});
+                       .seconds_left = seconds_left,
+                       .state = wish() == StopWish::pause ? RunState::pausing : RunState::running});
   }
 
   const Plan& plan_;
   const RunDevices& devices_;
-  SessionFolder& session_;
+  Recorder& recorder_;
   const RunOptions& options_;
-  std::map<std::string, PictureRecord> taken_;  // by step
-  std::optional<rig::Arrangement> standing_;    // unknown at the beginning: somebody may have been there
-  std::vector<double> durations_s_;             // of this run's steps
+  std::optional<rig::Arrangement> standing_;  // unknown at the beginning: somebody may have been there
+  std::vector<std::string> order_;            // steps in the order of their pictures
+  std::set<std::string> delivered_;           // hashes of all that the camera delivered in this run
+  std::vector<double> durations_s_;           // of this run's steps
 };
 
 // Stopping must not hide why: what fails here is left to the error that is under way.
-void stop_platform(rig::Turntable& turntable) noexcept {
+template <typename Work>
+void quietly(const Work& work) noexcept {
   try {
-    turntable.stop();
+    work();
   } catch (...) {
   }
-}
-
-void record_failure(SessionFolder& session, const std::string& message) noexcept {
-  try {
-    session.append("stop", {{"outcome", "failed"}, {"message", message}});
-  } catch (...) {
-  }
-}
-
-RunOutcome interrupt(const RunDevices& devices, SessionFolder& session) {
-  stop_platform(devices.turntable);
-  session.append("stop", {{"outcome", "interrupted"}});
-  return RunOutcome::interrupted;
 }
 
 }  // namespace
 
-RunOutcome run_plan(const Plan& plan, const RunDevices& devices, SessionFolder& session, const RunOptions& options) {
+RunState run_plan(const Plan& plan, const RunDevices& devices, SessionFolder& session, const RunOptions& options) {
   if (const std::optional<std::string> problem = check_plan(plan)) {
     throw std::runtime_error(*problem);
   }
+  Recorder recorder(session);
+  const auto leave = [&] { quietly([&] { devices.turntable.stop(); }); };
+  const auto stop = [&](StopWish wish) {
+    const RunState state = wish == StopWish::now ? RunState::aborted : RunState::paused;
+    quietly([&] { recorder.stop(state); });
+    leave();
+    return state;
+  };
   try {
-    CaptureRun(plan, devices, session, options).go();
-    session.append("stop", {{"outcome", "complete"}});
-    return RunOutcome::complete;
-  } catch (const Interrupted&) {
-    return interrupt(devices, session);
+    CaptureRun(plan, devices, recorder, options).go();
+    recorder.stop(RunState::complete);
+    return RunState::complete;
+  } catch (const Stopped& stopped) {
+    return stop(stopped.wish);
+  } catch (const RecordingFailed& error) {
+    quietly([&] { recorder.stop(RunState::failed, error.what()); });
+    leave();
+    throw;
   } catch (const std::exception& error) {
-    stop_platform(devices.turntable);
     // Ctrl-C stops the platform from another thread, and the move that it ended throws.
-    if (options.should_stop && options.should_stop()) {
-      return interrupt(devices, session);
+    if (const StopWish wish = options.stop_wish ? options.stop_wish() : StopWish::none; wish != StopWish::none) {
+      return stop(wish);
     }
-    record_failure(session, error.what());
+    quietly([&] { recorder.stop(RunState::suspended, error.what()); });
+    leave();
     throw;
   }
 }

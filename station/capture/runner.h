@@ -1,19 +1,13 @@
-// Executes a capture plan on a rig, one durable record after the other, so that it may end at any instant and go on.
-//
-// Journal events, in this order for a step (picture_record.h has the picture's data):
-//   start   {"plan_sha256", "files": {path: sha256}}; resume {"plan_sha256"} in later runs
-//   camera  {"make", "model", "serial", "width_px", "height_px"}
-//   arranged {"step", "mounting", "lamp", "room_light"}     the operator has made the arrangement
-//   metering {"step", "exposure_s", "test_pictures", "converged"}; warning {"step", "message"}
-//   picture  the file is on the disk under its final name
-//   discarded {"file", "reason"}                            before the file is removed
-//   stop    {"outcome": "complete" | "interrupted" | "failed", "message" (failed only)}
+// Executes a capture plan on a rig, one durable record after the other (recorder.h), so that it may end at any instant
+// and go on.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <functional>
+#include <numbers>
 #include <string>
+#include <vector>
 
 #include "rig/camera.h"
 #include "rig/clock.h"
@@ -21,7 +15,9 @@
 #include "rig/turntable.h"
 #include "station/capture/metering.h"
 #include "station/capture/plan.h"
+#include "station/capture/run_state.h"
 #include "station/capture/session_folder.h"
+#include "station/capture/verdict.h"
 
 namespace station {
 
@@ -32,34 +28,43 @@ struct RunDevices {
   rig::Clock& clock;
 };
 
+// pause: at the next safe point, the picture under way is finished first. now: whatever is under way is given up.
+enum class StopWish { none, pause, now };
+
 struct Progress {
   std::size_t done = 0, total = 0;  // steps
   std::string step;                 // under way now; empty at the end
   double seconds_left = 0;          // median of this run's steps, before the first one StepDurations
+  RunState state = RunState::running;
 };
 
 struct RunOptions {
   rig::ExposureSettings settings;  // ISO and f-number of every picture; the exposure time where metering begins
   ChooseExposure choose_exposure;  // empty: no metering, every picture at `settings`
   int most_test_pictures = 8;      // for one picture
-  // Looks at a picture before it is kept and throws std::runtime_error when it does not serve; may be empty.
-  std::function<void(const PlanStep&, const rig::Picture&, double platform_reading_rad)> inspect;
+  int most_attempts = 3;           // for one picture that may pass when it is taken again
+  // Looks at a picture before it is kept; may be empty. Throws std::runtime_error when it cannot be read at all.
+  std::function<Verdict(const PlanStep&, const rig::Picture&, double platform_reading_rad)> inspect;
   std::function<Eigen::Isometry3d(rig::Mounting)> nominal_holder_pose;  // platform_from_holder, required
   std::function<void(const Progress&)> progress;                        // may be empty
-  std::function<bool()> should_stop;                          // asked between and within steps; may be empty
+  std::function<void(const PlanStep&, const Verdict&)> judged;          // of each picture; may be empty
+  std::function<StopWish()> stop_wish;                        // asked between and within steps; may be empty
+  std::vector<std::string> reshoot;                           // steps to take again although they have a picture
   double angle_tolerance_rad = 0.5 * std::numbers::pi / 180;  // |asked - read| of the platform
   StepDurations durations;
 };
 
-enum class RunOutcome { complete, interrupted };
-
-// Takes every picture of the plan that the session does not have yet. A picture counts when the journal names it and
-// its file has the journalled hash; other files in raw/ are discarded and their steps taken again. When nothing is
-// missing no device is touched. Interrupted: the platform has been stopped and the stop record is on the disk.
-// Errors: those of devices, operator and disk are rethrown after the platform was stopped and the stop was journalled
-// (as far as the disk lets it); std::runtime_error for a plan or camera other than this session was started with, a
-// platform that reads another angle than asked, a picture that is empty, was taken with other settings, or was
-// delivered before.
-RunOutcome run_plan(const Plan& plan, const RunDevices& devices, SessionFolder& session, const RunOptions& options);
+// Takes every picture of the plan that the session does not have yet, or that is to be taken again, and returns complete,
+// paused or aborted. When nothing is missing no device is touched. The stop record is on the disk before the platform is
+// stopped and devices are left.
+//
+// A picture that does not serve goes to refused/; where the next one may, it is taken again. When what was found (the
+// platform slipped, camera or table were moved, the lamp changed, the focus is lost) may have happened earlier, the views
+// since the last one that showed the contrary are withdrawn and taken again by the next run.
+//
+// Errors: those of devices and operator, and of pictures that do not serve: the session is suspended and says so
+// (as far as the disk lets it); RecordingFailed of the disk: failed. std::runtime_error for a plan or camera other than
+// this session was started with, and for a step to be taken again that the plan does not have.
+RunState run_plan(const Plan& plan, const RunDevices& devices, SessionFolder& session, const RunOptions& options);
 
 }  // namespace station

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 
 #include "station/capture/file_name.h"
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 using nlohmann::json;
-constexpr std::array kSubfolders = {"raw", "calibration", "linear", "masks", "result"};
+constexpr std::array kSubfolders = {"raw", "calibration", "linear", "masks", "result", "refused"};
 constexpr const char* kSessionFile = "session.json";
 constexpr const char* kJournalFile = "journal.jsonl";
 
@@ -74,17 +75,9 @@ void require_room_for_a_session(const fs::path& folder) {
   }
 }
 
-void make_folders(const fs::path& folder) {
-  std::error_code code;
-  fs::create_directories(folder, code);
-  if (code) {
-    throw std::runtime_error(write_problem(folder, code));
-  }
-}
-
 void make_subfolders(const fs::path& folder) {
   for (const char* name : kSubfolders) {
-    make_folders(folder / name);
+    make_folder(folder / name);
   }
 }
 
@@ -99,7 +92,10 @@ void require_whole(const fs::path& folder) {
         "' is no session (it has no session.json); check the path, or start a new session there");
   }
   for (const char* name : kSubfolders) {
-    if (!is_true_folder(folder / name)) {
+    const bool holds_the_record = std::string_view(name) == "raw" || std::string_view(name) == "calibration";
+    const bool there = fs::exists(fs::symlink_status(folder / name));
+    // What can be made again may be missing: archives and copies leave empty folders out.
+    if ((there || holds_the_record) && !is_true_folder(folder / name)) {
       throw not_whole(folder, "has no folder " + std::string(name) + "/");
     }
   }
@@ -132,7 +128,7 @@ SessionFolder SessionFolder::create(const fs::path& asked, const json& session, 
   OpenFile lock;
   try {
     require_room_for_a_session(folder);
-    make_folders(folder);
+    make_folder(folder);
     lock = lock_folder(folder, file_system);
     require_room_for_a_session(folder);  // another process may have been quicker
     make_subfolders(folder);
@@ -149,6 +145,7 @@ SessionFolder SessionFolder::open(const fs::path& asked, rig::Clock& clock, File
   const fs::path folder = true_place(asked);
   require_whole(folder);
   OpenFile lock = lock_folder(folder, file_system);
+  make_subfolders(folder);
   return SessionFolder(folder, std::move(lock), clock, file_system);
 }
 
@@ -164,7 +161,7 @@ SessionFolder::SessionFolder(const fs::path& folder, OpenFile lock, rig::Clock& 
     throw not_whole(folder, "has pictures, but its journal is missing or empty");
   }
   json removed = json::array();
-  for (const fs::path& place : {path_, path_ / "raw", path_ / "calibration"}) {
+  for (const fs::path& place : {path_, path_ / "raw", path_ / "refused", path_ / "calibration"}) {
     for (const std::string& name : remove_left_overs(place)) {
       removed.push_back((place / name).lexically_relative(path_).string());
     }
@@ -184,14 +181,37 @@ std::string SessionFolder::store_picture(const std::string& name, std::span<cons
   return store_file(*file_system_, file, bytes);
 }
 
-void SessionFolder::remove_picture(const std::string& name) {
+// refused/<stem>-<number>.<extension>
+fs::path SessionFolder::free_place(const std::string& name) const {
+  const fs::path wanted = name;
+  for (int number = 1;; ++number) {
+    fs::path file =
+        path_ / "refused" / (wanted.stem().string() + "-" + std::to_string(number) + wanted.extension().string());
+    if (!fs::exists(fs::symlink_status(file))) {
+      return file;
+    }
+  }
+}
+
+void SessionFolder::set_aside(const std::string& name) {
   const fs::path file = path_ / "raw" / name;
+  if (!fs::exists(fs::symlink_status(file))) {
+    return;
+  }
   try {
-    fs::remove(file);
+    file_system_->rename(file, free_place(name));
+    file_system_->sync_folder(path_ / "refused");
     file_system_->sync_folder(path_ / "raw");
   } catch (const std::system_error& error) {
     throw std::runtime_error(write_problem(file, error.code()));
   }
+}
+
+SessionFolder::Stored SessionFolder::store_refused(const std::string& name, std::span<const std::byte> bytes) {
+  require_name(name);
+  const fs::path file = free_place(name);
+  std::string sha256 = store_file(*file_system_, file, bytes);
+  return {.file = file.lexically_relative(path_).string(), .sha256 = std::move(sha256)};
 }
 
 std::vector<std::string> SessionFolder::picture_names() const {

@@ -3,6 +3,7 @@
 //   session.json   written once, last of all when the folder is made: where it stands, the folder is whole
 //   journal.jsonl  station/capture/journal.h
 //   raw/ calibration/ linear/ masks/ result/
+//   refused/       pictures that did not serve or count no more; never deleted, never read again
 //   .lock          one process at a time
 //
 // Errors: std::runtime_error with one line: the file or folder, what was found, what to do.
@@ -45,17 +46,26 @@ class SessionFolder {
   const Plan& plan() const { return plan_; }
   const std::vector<JournalRecord>& records() const { return journal_.records(); }
 
+  // From any thread.
   void append(std::string_view event, const nlohmann::json& data) { journal_.append(event, data); }
+  // The last record of this process: whatever another thread appends after it is refused.
+  void append_last(std::string_view event, const nlohmann::json& data) { journal_.append_last(event, data); }
 
   // raw/<name>, whole and flushed when this returns its SHA-256. A picture is never overwritten.
   std::string store_picture(const std::string& name, std::span<const std::byte> bytes);
-  void remove_picture(const std::string& name);
+  // Moves raw/<name> to refused/, under a name that is free there; nothing when it is not there.
+  void set_aside(const std::string& name);
+  struct Stored {
+    std::string file, sha256;  // in the session folder
+  };
+  Stored store_refused(const std::string& name, std::span<const std::byte> bytes);
   std::vector<std::string> picture_names() const;  // all of raw/, sorted
 
   // SHA-256 of what stays as it was made: session.json and calibration/*, by path in the session folder.
   std::map<std::string, std::string> hashes_of_fixed_files() const;
 
  private:
+  std::filesystem::path free_place(const std::string& name) const;
   SessionFolder(const std::filesystem::path& folder, OpenFile lock, rig::Clock& clock, FileSystem& file_system);
 
   std::filesystem::path path_;

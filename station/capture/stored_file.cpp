@@ -94,6 +94,14 @@ void check_can_store(FileSystem& file_system, const fs::path& file) {
   }
 }
 
+void make_folder(const fs::path& folder) {
+  std::error_code code;
+  fs::create_directories(folder, code);
+  if (code) {
+    throw std::runtime_error(write_problem(folder, code));
+  }
+}
+
 bool is_left_over(const fs::path& file) {
   const std::string name = file.filename().string();
   return name.starts_with('.') && name.ends_with(kLeftOverEnding);

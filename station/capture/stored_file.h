@@ -22,6 +22,9 @@ std::string store_file(FileSystem& file_system, const std::filesystem::path& fil
 // Before long work: throws what store_file would if nothing can be written to `file`, and leaves nothing behind.
 void check_can_store(FileSystem& file_system, const std::filesystem::path& file);
 
+// Makes a folder that may be there already. Errors as above.
+void make_folder(const std::filesystem::path& folder);
+
 // Removes what a killed store_file left in `folder`; returns the names.
 std::vector<std::string> remove_left_overs(const std::filesystem::path& folder);
 

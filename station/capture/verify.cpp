@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "station/capture/folder_lock.h"
 #include "station/capture/manifest.h"
 #include "station/capture/picture_record.h"
 #include "station/capture/plan_file.h"
@@ -29,6 +30,7 @@ class Verification {
     guarded([&] { read_records(); });
     guarded([&] { check_fixed_files(); });
     guarded([&] { check_pictures(); });
+    guarded([&] { check_refused(); });
     guarded([&] { check_extra_files(); });
     guarded([&] { check_steps(); });
     check_end();
@@ -114,6 +116,14 @@ class Verification {
     report_.pictures = good_steps_.size();
   }
 
+  void check_refused() {
+    for (const JournalRecord& record : records_) {
+      if (record.event == "refused" && record.data.contains("file")) {
+        check_file(record.data.at("file").get<std::string>(), record.data.at("sha256").get<std::string>());
+      }
+    }
+  }
+
   void check_extra_files() {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "raw")) {
       const std::string name = "raw/" + entry.path().filename().string();
@@ -150,8 +160,9 @@ class Verification {
   }
 
   void check_end() {
+    report_.state = state_of(records_, folder_in_use(folder_));
     if (records_.empty() || !ends_complete()) {
-      problem("journal.jsonl does not end with a complete session; resume the session");
+      problem("the session is " + state_name(report_.state) + ", not complete; resume it");
     }
   }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "station/capture/run_state.h"
+
 namespace station {
 
 struct VerifyReport {
@@ -14,6 +16,7 @@ struct VerifyReport {
   std::size_t files = 0;              // that were hashed
   std::size_t pictures = 0;           // steps with a picture that verifies
   std::size_t views = 0, views_planned = 0;
+  RunState state = RunState::idle;
   bool complete = false;  // every step of the plan has its picture, and the last stop says so
 
   bool sound() const { return problems.empty(); }
@@ -21,7 +24,8 @@ struct VerifyReport {
 
 // Problems: a file that differs, is missing or stands in raw/ without being named; session.json or a calibration file
 // changed; a broken or torn journal; steps without a picture; a session that did not end. linear/, masks/ and result/
-// can be made again and are checked against their manifest.json where there is one.
+// can be made again and are checked against their manifest.json where there is one; refused/ by what the journal says of
+// pictures that did not serve.
 // Errors: std::runtime_error when `folder` is no session at all.
 VerifyReport verify_session(const std::filesystem::path& folder);
 

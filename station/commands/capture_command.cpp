@@ -1,8 +1,10 @@
+#include <iostream>
 #include <stdexcept>
 
 #include "station/capture_session.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/queue/spool_queue.h"
 
 namespace station {
 namespace {
@@ -10,18 +12,50 @@ namespace {
 struct Arguments {
   CaptureRequest request;
   bool resume = false;
+  std::vector<std::string> reshoot;
+  std::string queue;
   OutputOptions output;
 };
+
+// Enter takes the spool, s skips it, q ends the queue.
+bool ask_for_spool(const QueuedSpool& spool) {
+  std::cout << "Next: " << spool.session << (spool.sample.name.empty() ? "" : " (" + spool.sample.name + ")")
+            << (spool.sample.note.empty() ? "" : ", " + spool.sample.note)
+            << "\nPut it on the holder. Press Enter when it is done, or q and Enter to end: " << std::flush;
+  std::string answer;
+  return std::getline(std::cin, answer) && answer != "q" && answer != "Q";
+}
+
+void run_queue(const Arguments& arguments) {
+  QueueRequest request{.queue = arguments.queue, .capture = arguments.request, .next = {}};
+  if (!request.capture.unattended && read_rig(request.capture.rig).operator_driver == "console")
+    request.next = ask_for_spool;
+  std::string first_problem;
+  for (const QueueResult& result : capture_queue(request)) {
+    const char* outcome = result.outcome == QueueOutcome::captured  ? "captured"
+                          : result.outcome == QueueOutcome::resumed ? "captured to its end"
+                          : result.outcome == QueueOutcome::kept    ? "was complete already"
+                                                                    : "failed: ";
+    std::cout << result.spool.session << ": " << outcome << result.problem << "\n";
+    if (first_problem.empty() && !result.problem.empty())
+      first_problem = result.spool.session + ": " + result.problem;
+  }
+  if (!first_problem.empty()) throw std::runtime_error(first_problem + "; the same command goes on from here");
+}
 
 void run(Arguments& arguments) {
   CaptureRequest& request = arguments.request;
   request.progress_style = arguments.output.progress_style();
-  const RunOutcome outcome = arguments.resume
-                                 ? resume_session(request.out, request.unattended, request.progress_style)
-                                 : capture_session(request);
-  if (outcome == RunOutcome::interrupted)
-    throw std::runtime_error("capture was interrupted; go on with: threadstation capture --resume --out " +
-                             request.out.string());
+  if (!arguments.queue.empty()) return run_queue(arguments);
+  const RunState state = arguments.resume ? resume_session({.session = request.out,
+                                                            .unattended = request.unattended,
+                                                            .record = request.record,
+                                                            .reshoot = arguments.reshoot,
+                                                            .progress_style = request.progress_style})
+                                          : capture_session(request);
+  if (state != RunState::complete)
+    throw std::runtime_error("capture was " + state_name(state) +
+                             "; go on with: threadstation capture --resume --out " + request.out.string());
 }
 
 }  // namespace
@@ -33,17 +67,30 @@ void add_capture_command(CLI::App& app) {
   CLI::Option* rig = command->add_option("--rig", request.rig, "rig file");
   CLI::Option* calibration = command->add_option("--calibration", request.calibration, "folder made by calibrate");
   CLI::Option* spool = command->add_option("--spool", request.spool, "spool file");
+  CLI::Option* queue = command->add_option("--queue", arguments->queue,
+                                           "table of spools (CSV); --out then is the folder of their sessions");
   command->add_option("--out", request.out, "session folder")->required();
+  command->add_option("--plan", request.plan, "plan of one's own, from threadstation plan");
+  command->add_option("--operator", request.person, "who captures; written into the session");
   command->add_flag("--unattended", request.unattended, "ask nobody; refused when the rig needs a person");
+  command->add_flag("--record", request.record,
+                    "keep test pictures and all that the devices say, so that the session can be replayed");
   command->add_flag("--accept-calibration", request.accept_calibration,
                     "use a calibration although it did not pass all its gates");
-  CLI::Option* resume =
-      command->add_flag("--resume", arguments->resume, "go on with the session in --out; needs nothing else");
+  command->add_flag("--resume", arguments->resume, "go on with the session in --out; needs nothing else");
+  CLI::Option* reshoot = command->add_option("--reshoot", arguments->reshoot,
+                                             "views (1, 2, ...) or steps (by name) to take again; resumes");
   arguments->output.add_to(*command);
   command->callback([=] {
+    if (reshoot->count()) arguments->resume = true;
     if (arguments->resume && (rig->count() || calibration->count() || spool->count()))
       throw CLI::ValidationError("--resume", "takes rig, calibration and spool from the session; give only --out");
-    if (!resume->count() && !(rig->count() && calibration->count() && spool->count()))
+    if (queue->count() && (arguments->resume || spool->count()))
+      throw CLI::ValidationError("--queue",
+                                 "names the spools itself and resumes by itself; leave --spool, --resume and "
+                                 "--reshoot out");
+    if (queue->count() && rig->count() && calibration->count()) return run(*arguments);
+    if (!arguments->resume && !(rig->count() && calibration->count() && spool->count()))
       throw CLI::RequiredError("--rig, --calibration and --spool (or --resume)");
     run(*arguments);
   });

@@ -2,6 +2,7 @@
 
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/invert/fit_document.h"
 #include "station/invert/invert_session.h"
 
 namespace station {
@@ -9,7 +10,7 @@ namespace {
 
 struct Arguments {
   InvertRequest request;
-  std::string model = "thread", solver = "lm", out;
+  std::string solver = "lm", out;
   std::vector<std::string> held;
   OutputOptions output;
 };
@@ -20,9 +21,6 @@ void run(Arguments& arguments) {
   for (inversion::ParameterGroup group : inversion::kParameterGroups)
     for (const std::string& name : arguments.held)
       if (name == inversion::name_of(group)) request.fit.held.push_back(group);
-  request.fit.model = arguments.model == "fiber"  ? inversion::ModelKind::fiber
-                      : arguments.model == "yarn" ? inversion::ModelKind::yarn
-                                                  : inversion::ModelKind::thread;
   request.fit.solver = arguments.solver == "adam" ? inversion::Solver::adam : inversion::Solver::levenberg_marquardt;
   request.progress_style = arguments.output.progress_style();
   const InvertResult result = invert_session(request);
@@ -39,8 +37,8 @@ void add_invert_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("invert", "fit a thread to a session's developed views");
   command->add_option("session", arguments->request.session, "session folder")->required();
   command->add_option("--out", arguments->out, "write the model's file here as well");
-  command->add_option("--model", arguments->model, "scattering model: the thread's, or a baseline")
-      ->check(CLI::IsMember({"thread", "fiber", "yarn"}));
+  command->add_option("--model", arguments->request.fit.model, "scattering model: the thread's, or a baseline")
+      ->transform(CLI::CheckedTransformer(names_of_models()));
   command->add_option("--solver", arguments->solver, "lm: Levenberg-Marquardt on recorded paths; adam: the paper's")
       ->check(CLI::IsMember({"lm", "adam"}));
   std::vector<std::string> groups;
@@ -53,6 +51,7 @@ void add_invert_command(CLI::App& app) {
       ->check(CLI::Range(1, 100000));
   command->add_option("--adam-paths", arguments->request.fit.adam_paths, "light paths per block for each of them")
       ->check(CLI::Range(1, 100000));
+  command->add_flag("!--eq6", arguments->request.fit.robust, "all views and blocks count as in eq. 6, none less");
   command
       ->add_option("--prior", arguments->request.fit.prior_weight, "weight of the simulated threads' prior; 0: none")
       ->check(CLI::Range(0.0, 1000.0));

@@ -2,6 +2,7 @@
 
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/invert/fit_document.h"
 #include "station/validate/validate_fits.h"
 
 namespace station {
@@ -9,10 +10,12 @@ namespace {
 
 struct Arguments {
   ValidateRequest request;
+  std::string calibration;
   OutputOptions output;
 };
 
 void run(Arguments& arguments) {
+  if (!arguments.calibration.empty()) arguments.request.calibration = arguments.calibration;
   arguments.request.progress_style = arguments.output.progress_style();
   const std::vector<ValidatedSpool> spools = validate_fits(arguments.request);
   if (arguments.output.json)
@@ -30,7 +33,13 @@ void add_validate_command(CLI::App& app) {
   command->add_option("--rig", request.rig, "rig file with a simulation part: lens, lamps and sensor")->required();
   command->add_option("--spool", request.spools, "spool files with simulated fibers, one or more")->required();
   command->add_option("--out", request.out, "folder of photographs and results")->required();
-  command->add_option("--folds", request.folds, "how often two views are left out")->check(CLI::Range(1, 3));
+  command->add_option("--model", request.models, "models to fit: thread, fiber, yarn; all without this")
+      ->transform(CLI::CheckedTransformer(names_of_models()));
+  command->add_option("--folds", request.folds, "how often two views are left out; 0: no such fits")
+      ->check(CLI::Range(0, 3));
+  command->add_option("--calibration", arguments->calibration,
+                      "folder of a calibration of the rig: fit with its geometry and light as well");
+  command->add_flag("--solvers", request.solvers, "compare Levenberg-Marquardt and Adam on all views");
   command
       ->add_option("--spp", request.samples_per_pixel, "samples per pixel of each of the two photographs of a view")
       ->check(CLI::Range(1, 65536));

@@ -9,13 +9,10 @@ namespace {
 
 void print(const std::string& session, const VerifyReport& report, bool json) {
   if (json) {
-    std::cout << nlohmann::json{{"session", session},
-                                {"sound", report.sound()},
-                                {"complete", report.complete},
-                                {"files", report.files},
-                                {"pictures", report.pictures},
-                                {"views", report.views},
-                                {"views_planned", report.views_planned},
+    std::cout << nlohmann::json{{"session", session},          {"sound", report.sound()},
+                                {"complete", report.complete}, {"state", state_name(report.state)},
+                                {"files", report.files},       {"pictures", report.pictures},
+                                {"views", report.views},       {"views_planned", report.views_planned},
                                 {"problems", report.problems}}
                      .dump()
               << "\n";
@@ -23,6 +20,7 @@ void print(const std::string& session, const VerifyReport& report, bool json) {
   }
   for (const std::string& problem : report.problems) std::cout << problem << "\n";
   std::cout << report.files << " files hashed, " << report.views << " of " << report.views_planned << " views, "
+            << state_name(report.state) << ", "
             << (report.sound() ? "everything as recorded" : std::to_string(report.problems.size()) + " problem(s)")
             << "\n";
 }

@@ -3,12 +3,13 @@
 #include <iostream>
 
 #include "renderer/image_file.h"
-#include "renderer/weave/relaxation.h"
+#include "renderer/weave/woven_patch.h"
 #include "station/commands/commands.h"
 #include "station/documents/draft_drawing.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/patch_file.h"
 #include "station/documents/reader.h"
+#include "station/patch_view.h"
 
 namespace station {
 namespace {
@@ -25,26 +26,23 @@ std::string number(const char* format, double value) {
   return text;
 }
 
-// Overlap in percent of the thinnest yarn's radius; 0 where yarns are apart.
-double overlap_percent(const YarnPatch& patch) {
-  const auto thinner = [](const renderer::Yarn& a, const renderer::Yarn& b) { return a.radius_mm < b.radius_mm; };
-  const double radius_mm = std::min_element(patch.yarns.begin(), patch.yarns.end(), thinner)->radius_mm;
+// Overlap in percent of the thinner system's radius; 0 where yarns are apart.
+double overlap_percent(const YarnPatch& patch, const renderer::Draft& draft) {
+  const double radius_mm = std::min(draft.warp.diameter_mm, draft.weft.diameter_mm) / 2;
   return 100 * std::max(0.0, -patch.least_gap_mm) / radius_mm;
 }
 
-std::string described(const RelaxedPatch& relaxed) {
+std::string described(const RelaxedPatch& relaxed, const renderer::Draft& draft) {
   const YarnPatch& patch = relaxed.patch;
-  const auto ends =
-      std::count_if(patch.yarns.begin(), patch.yarns.end(), [](const renderer::Yarn& y) { return y.warp; });
-  const auto picks = static_cast<std::ptrdiff_t>(patch.yarns.size()) - ends;
-  std::string text = patch.name + ": " + std::to_string(ends) + " ends x " + std::to_string(picks) + " picks, " +
-                     number("%.3f", patch.period_x_mm) + " x " + number("%.3f mm\n", patch.period_y_mm);
+  std::string text = patch.name + ": " + std::to_string(ends_in_patch(draft)) + " ends x " +
+                     std::to_string(picks_in_patch(draft)) + " picks, " + number("%.3f", patch.period_x_mm) + " x " +
+                     number("%.3f mm\n", patch.period_y_mm);
   text +=
       "crimp " + number("warp %.2f %%, ", 100 * patch.crimp_warp) + number("weft %.2f %%\n", 100 * patch.crimp_weft);
   text += number("thickness %.3f mm\n", patch.thickness_mm) + number("cover %.1f %%\n", 100 * patch.cover);
   text += patch.areal_mass_g_m2 > 0 ? number("mass %.1f g/m2\n", patch.areal_mass_g_m2)
                                     : "mass unknown: the draft gives no tex\n";
-  text += number("overlap of yarns %.2f %% of the radius\n", overlap_percent(patch));
+  text += number("overlap of yarns %.2f %% of the radius\n", overlap_percent(patch, draft));
   if (patch.height_scale != 1) text += number("heights scaled by %g\n", patch.height_scale);
   if (relaxed.report.jammed)
     text += "note: yarns jam in this sett" +
@@ -61,18 +59,6 @@ json relaxation_json(const RelaxationReport& report) {
           {"energy_n_mm", report.energy_n_mm}};
 }
 
-// A patch that is not the cloth of its draft is not written.
-void check_relaxed(const RelaxedPatch& relaxed, const std::string& draft) {
-  if (!relaxed.report.as_drafted)
-    throw std::runtime_error(draft +
-                             ": yarns slipped past each other on the way to rest, so the cloth is not as drafted; "
-                             "open the sett, take thinner yarns or more tension");
-  if (!relaxed.report.converged)
-    throw std::runtime_error(draft + ": yarns did not come to rest (largest force " +
-                             number("%.1e", relaxed.report.gradient) +
-                             " of the pull on them); open the sett, take thinner yarns or more tension");
-}
-
 void write_drawing(const std::string& file, const renderer::Draft& draft) {
   const std::string kind = std::filesystem::path(file).extension().string();
   if (kind == ".svg")
@@ -87,7 +73,8 @@ void write_drawing(const std::string& file, const renderer::Draft& draft) {
 
 void add_weave_command(CLI::App& app) {
   struct Arguments {
-    std::string draft, out, drawing;
+    std::string draft, out, drawing, view;
+    renderer::WovenOptions woven;
     bool json = false;
   };
   auto arguments = std::make_shared<Arguments>();
@@ -95,15 +82,27 @@ void add_weave_command(CLI::App& app) {
   command->add_option("--draft", arguments->draft, "draft file (JSON or WIF)")->required();
   command->add_option("--out", arguments->out, "patch file to write")->required();
   command->add_option("--drawing", arguments->drawing, "the draft as weavers draw it, PNG or SVG");
+  command->add_option("--view", arguments->view, "the patch from above, in perspective and in section, PNG or EXR");
+  renderer::WovenOptions& woven = arguments->woven;
+  command->add_option("--transverse-modulus", woven.transverse_modulus_n_mm2,
+                      "N/mm^2: yarns flatten where they press each other; 0 = sections as drafted");
+  command->add_option("--plies", woven.plies.count, "plies of each yarn");
+  command->add_option("--ply-turns", woven.plies.turns_per_mm, "turns of the plies per mm");
+  command->add_option("--ply-radius", woven.plies.radius_mm, "mm; 0 = as thick as fit into the yarn");
+  command->add_option("--uneven-radius", woven.unevenness.radius, "deviation of yarns' radii, a share of the radius");
+  command->add_option("--uneven-pitch", woven.unevenness.pitch, "deviation of yarns' places, a share of their room");
+  command->add_option("--shades", woven.unevenness.shades,
+                      "threads that take turns at random for each of the draft's");
+  command->add_option("--seed", woven.unevenness.seed, "of the unevenness and the shades");
   command->add_flag("--json", arguments->json, "what was measured as JSON, for machines");
   command->callback([arguments] {
     const renderer::Draft draft = read_draft(arguments->draft);
     if (!arguments->drawing.empty()) write_drawing(arguments->drawing, draft);
-    const RelaxedPatch relaxed = renderer::relax(draft);
-    check_relaxed(relaxed, arguments->draft);
+    const RelaxedPatch relaxed = renderer::woven_patch(draft, arguments->woven);
     const YarnPatch& patch = relaxed.patch;
     const json document = to_json(patch);
     write_json_file(arguments->out, document);
+    if (!arguments->view.empty()) write_patch_view(arguments->view, patch);
     if (arguments->json)
       std::cout << json{{"patch", arguments->out},
                         {"name", patch.name},
@@ -112,7 +111,7 @@ void add_weave_command(CLI::App& app) {
                        .dump()
                 << "\n";
     else
-      std::cout << described(relaxed);
+      std::cout << described(relaxed, draft);
   });
 }
 

@@ -1,9 +1,14 @@
 #include "station/develop/develop_session.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <exception>
+#include <functional>
 #include <map>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <thread>
 
 #include "calibration/develop.h"
 #include "calibration/lamp_stability.h"
@@ -12,14 +17,19 @@
 #include "renderer/image_file.h"
 #include "station/bench_reading.h"
 #include "station/calibration_validity.h"
+#include "station/capture/folder_lock.h"
 #include "station/capture/manifest.h"
 #include "station/capture/picture_record.h"
 #include "station/capture/sha256.h"
+#include "station/capture/stored_file.h"
+#include "station/capture_checks.h"
 #include "station/develop/mounted_holder.h"
+#include "station/develop/noise_law.h"
 #include "station/develop/sheet_width.h"
 #include "station/documents/calibration_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
+#include "station/report/display.h"
 #include "station/report/html.h"
 #include "station/views.h"
 
@@ -28,6 +38,7 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr int kMaskSamples = 8;
+constexpr double kBytesPerPixel = 75;     // of a view while it is developed, measured at 24 MP
 constexpr double kMostDarkOffset = 1e-3;  // of the range; a bias drifts by a DN or two
 
 using Pictures = std::map<std::string, PictureRecord>;
@@ -72,14 +83,18 @@ DevelopedView place_view(const PlanStep& step, const PictureRecord& picture, con
 
 // The session's dark frame says how far the bias has drifted since the calibration; the maps say the rest, with the noise
 // of many frames. Without a calibrated sensor it is the dark level itself.
-calibration::DevelopOptions develop_options(const RigCalibration& calibration, const calibration::SensorPicture& dark,
+// Without a dark frame (pictures taken by hand) it is the file's black level.
+calibration::DevelopOptions develop_options(const RigCalibration& calibration,
+                                            const std::optional<calibration::SensorPicture>& taken_dark,
                                             const std::string& view) {
   calibration::DevelopOptions options{.vignetting = calibration.light.vignetting, .lens = calibration.lens.lens};
+  if (calibration.sensor) options.response = &calibration.sensor->response;
+  if (!taken_dark) return options;
+  const calibration::SensorPicture& dark = *taken_dark;
   if (!calibration.sensor) {
     options.dark_dn = calibration::master_dark({dark});
     return options;
   }
-  options.response = &calibration.sensor->response;
   options.dark_offset_dn = calibration::dark_offset_dn(dark, options.response->maps);
   const double range_dn = dark.white_level_dn - dark.black_level_dn;
   if (std::abs(options.dark_offset_dn) > kMostDarkOffset * range_dn)
@@ -103,26 +118,23 @@ std::vector<calibration::SensorPicture> read_bracket(const std::filesystem::path
   return bracket;
 }
 
-// `patches`: readings of the views before this one, in the order of their pictures; this one's is added.
-void read_lamp(const RigFile& rig, const inversion::WrappedSpool& spool, const calibration::Developed& picture,
-               double time_s, const Eigen::Vector2d& droop, const DevelopedView& developed,
-               std::vector<PatchView>& patches) {
-  if (!rig.reference_patch) return;
+PatchView read_lamp(const RigFile& rig, const inversion::WrappedSpool& spool, const calibration::Developed& picture,
+                    double time_s, const Eigen::Vector2d& droop, const DevelopedView& developed) {
   const inversion::View& view = developed.view;
-  patches.push_back({.behind = view.transmission,
-                     .time_s = time_s,
-                     .reading = read_patch(picture.radiance, picture.saturated, view.camera, *rig.reference_patch,
-                                           spool, developed.mounting, view.light, droop)});
+  PatchView patch{.behind = view.transmission, .time_s = time_s, .reading = std::nullopt};
+  if (rig.reference_patch)
+    patch.reading = read_patch(picture.radiance, picture.saturated, view.camera, *rig.reference_patch, spool,
+                               developed.mounting, view.light, droop);
+  return patch;
 }
 
-// Divides every view by the lamp's strength in it.
-void take_out_lamp_changes(const std::vector<PatchView>& patches, std::vector<DevelopedView>& views) {
+// The pictures stay as they are: read_view_pictures divides them.
+void note_lamp_changes(const std::vector<PatchView>& patches, std::vector<DevelopedView>& views) {
   const std::vector<double> strengths = lamp_strengths(patches);
   const calibration::Gate change = calibration::lamp_gates(strengths).back();
   if (!change.passed) throw std::runtime_error("the session's views do not belong together: " + change.reason);
   for (std::size_t i = 0; i < views.size(); ++i) {
     views[i].lamp_strength = strengths.at(i);
-    views[i].view.image /= strengths.at(i);
   }
 }
 
@@ -131,43 +143,116 @@ void write_view(const std::filesystem::path& session, const DevelopedView& devel
       session / developed.image_file, developed.view.image,
       {{"threadstation/content",
         "linear camera RGB, radiance unit (full scale per second); dark subtracted, "
-        "exposures merged and divided by their times and the lamp's strength, flat-fielded, distortion "
-        "removed"},
+        "exposures merged and divided by their times, flat-fielded, distortion removed; to be divided by "
+        "the view's lamp_strength in views.json"},
        {"threadstation/view", developed.view.id}});
   renderer::write_png(session / developed.mask_file, developed.view.mask);
 }
 
-// Everything but writing it and the lamp's strength, which all views say together.
-void develop_view(const std::filesystem::path& session, const SessionFile& asked, const Pictures& pictures,
-                  const calibration::SensorPicture& raw, const RigCalibration& calibration,
-                  std::vector<PatchView>& patches, DevelopedView& developed) {
-  inversion::View& view = developed.view;
+// How far the threads may be from where the calibration puts them, in pixels: two standard errors.
+int edge_px(const RigCalibration& calibration, const MountedHolder& mounted) {
+  double lens_px = 0;
+  if (const Eigen::MatrixXd& sigma = calibration.lens.projection_sigma_px; sigma.size() > 0)
+    lens_px = sigma(sigma.rows() / 2, sigma.cols() / 2);
+  constexpr double kMost_px = 50;  // a tape's error would leave no threads at all
+  return static_cast<int>(std::lround(std::min(kMost_px, 2 * std::hypot(lens_px, mounted.rms_px))));
+}
+
+cv::Mat1b eroded(const cv::Mat1b& mask, int edge) {
+  if (edge < 1) return mask;
+  cv::Mat1b smaller;
+  cv::erode(mask, smaller, cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * edge + 1, 2 * edge + 1}), {-1, -1}, 1,
+            cv::BORDER_CONSTANT, cv::Scalar(0));
+  return smaller;
+}
+
+// The mask's outline on the photograph, at most 1200 pixels wide.
+cv::Mat3b overlay(const inversion::View& view, const std::array<double, 9>& colour) {
+  constexpr int kMargin_px = 24, kWidest_px = 1200;
+  const cv::Rect box = threads_box(view.mask, kMargin_px);
+  cv::Mat3f part = view.image(box).clone();
+  cv::Mat1b mask = view.mask(box).clone();
+  if (box.width > kWidest_px) {
+    const cv::Size size(kWidest_px, std::max(1, box.height * kWidest_px / box.width));
+    cv::resize(part, part, size, 0, 0, cv::INTER_AREA);
+    cv::resize(mask, mask, size, 0, 0, cv::INTER_NEAREST);
+  }
+  cv::Mat3b picture = display(part, display_scale(part, mask), colour);
+  draw_outline(picture, mask);
+  return picture;
+}
+
+struct DevelopedPicture {
+  PatchView patch;
+  std::optional<double> sheet_width_mm;  // reflections only
+};
+
+// Everything of one view but the lamp's strength, which all views say together; its picture is on the disk afterwards and
+// no longer in memory.
+DevelopedPicture develop_view(const std::filesystem::path& session, const SessionFile& asked,
+                              const Pictures& pictures, const PlanStep& step, const RigCalibration& calibration,
+                              const MountedHolder& mounted, DevelopedView& developed) {
+  const PictureRecord& record = picture_of(pictures, step.id);
   const inversion::WrappedSpool& spool = asked.spool.wrapping;
-  const auto bracket = read_bracket(session, asked.plan, pictures, view.id, raw, calibration);
-  const calibration::SensorPicture dark = read_picture(session, picture_of(pictures, "dark-" + view.id));
-  const calibration::Developed picture = calibration::develop(bracket, develop_options(calibration, dark, view.id));
-  developed.exposure_s = bracket.front().exposure_s;
-  const double time_s = 86400 * days_between(asked.utc, picture_of(pictures, view.id).utc);
-  read_lamp(asked.rig, spool, picture, time_s, calibration.light.droop, developed, patches);
+  calibration::Developed picture;
+  {
+    const calibration::SensorPicture raw = read_picture(session, record);
+    const BenchReading bench = read_bench(calibration, asked.rig, tags_in(raw));
+    require_calibrated_bench(calibration, bench, record.read_angle_rad, "view " + step.id);
+    developed = place_view(step, record, bench, mounted, calibration, asked.rig.lamp_radius_mm);
+    developed.exposure_s = raw.exposure_s;
+    const auto bracket = read_bracket(session, asked.plan, pictures, step.id, raw, calibration);
+    std::optional<calibration::SensorPicture> dark;
+    for (const PlanStep& other : asked.plan.steps)
+      if (other.kind == StepKind::dark && other.exposure_of == step.id)
+        dark = read_picture(session, picture_of(pictures, other.id));
+    picture = calibration::develop(bracket, develop_options(calibration, dark, step.id));
+  }
+  DevelopedPicture result;
+  result.patch = read_lamp(asked.rig, spool, picture, 86400 * days_between(asked.utc, record.utc),
+                           calibration.light.droop, developed);
+  inversion::View& view = developed.view;
   view.image = picture.radiance;
-  view.mask = inversion::thread_mask(spool, view.camera, view.light, kMaskSamples);
+  view.mask =
+      eroded(inversion::thread_mask(spool, view.camera, view.light, kMaskSamples), edge_px(calibration, mounted));
   developed.masked_pixels = cv::countNonZero(view.mask);
   if (developed.masked_pixels == 0)
     throw std::runtime_error("view " + view.id +
                              ": no thread is where the calibration expects them; calibrate the rig again");
+  developed.noise = noise_law(picture.radiance, picture.variance, view.mask);
+  picture.variance.release();
   developed.saturated_fraction =
       static_cast<double>(cv::countNonZero(picture.saturated & view.mask)) / developed.masked_pixels;
+  if (!view.transmission) result.sheet_width_mm = sheet_width_mm(view.image, view.camera, spool);
+  write_view(session, developed);
+  renderer::write_png(session / "masks" / (view.id + "-overlay.png"),
+                      overlay(view, calibration.linear_srgb_from_camera));
+  view.image.release();
+  view.mask.release();
+  return result;
 }
 
-// Median over the reflections that show both edges.
-std::optional<double> measured_width_mm(const DevelopedViews& developed, const inversion::WrappedSpool& spool) {
-  std::vector<double> widths;
-  for (const DevelopedView& view : developed.views) {
-    if (view.view.transmission) continue;
-    if (const auto width = sheet_width_mm(view.view.image, view.view.camera, spool)) widths.push_back(*width);
-  }
-  if (widths.empty()) return std::nullopt;
-  return calibration::median(widths);
+// As many at once as there are processors and memory allows; the first error in the views' order is thrown.
+void for_each_view(std::size_t count, double bytes_per_view, const std::function<void(std::size_t)>& work) {
+  constexpr double kMost_bytes = 3.0 * (1 << 30);
+  const auto by_memory = static_cast<std::size_t>(std::max(1.0, kMost_bytes / bytes_per_view));
+  const std::size_t workers =
+      std::min({count, by_memory, static_cast<std::size_t>(std::max(1U, std::thread::hardware_concurrency()))});
+  std::atomic<std::size_t> next = 0;
+  std::vector<std::exception_ptr> errors(count);
+  std::vector<std::thread> threads;
+  for (std::size_t worker = 0; worker < workers; ++worker)
+    threads.emplace_back([&] {
+      for (std::size_t view = next++; view < count; view = next++) try {
+          work(view);
+        } catch (...) {
+          errors[view] = std::current_exception();
+          next = count;
+        }
+    });
+  for (std::thread& thread : threads) thread.join();
+  for (const std::exception_ptr& error : errors)
+    if (error) std::rethrow_exception(error);
 }
 
 void require_expected_width(double width_mm, const Spool& spool) {
@@ -184,6 +269,10 @@ void require_expected_width(double width_mm, const Spool& spool) {
 
 DevelopedViews develop_session(const std::filesystem::path& session, ProgressStyle progress_style) {
   const SessionFile asked = read_session_file(session);
+  FileSystem disk;
+  const OpenFile lock = lock_folder(session, disk);  // nobody captures into it meanwhile
+  make_folder(session / "linear");
+  make_folder(session / "masks");
   RigCalibration calibration = read_calibration(session / "calibration");
   if (calibration.sensor) load_sensor_maps(session / "calibration", *calibration.sensor);
   const Pictures pictures = taken_pictures(read_journal(session / "journal.jsonl").records);
@@ -195,32 +284,39 @@ DevelopedViews develop_session(const std::filesystem::path& session, ProgressSty
     posed[step.mounting].push_back({step.id, picture.read_angle_rad, tags_in(read_picture(session, picture))});
   }
   for (const auto& [mounting, seen] : posed) mounted[mounting] = measure_holder(seen, calibration, asked.rig);
+  if (posed.empty())
+    for (const rig::Mounting mounting : {rig::Mounting::horizontal, rig::Mounting::vertical})
+      mounted[mounting] = {.platform_from_holder = nominal_holder_pose(asked.rig, asked.spool.wrapping, mounting)};
 
+  std::vector<PlanStep> views;
+  for (const PlanStep& step : asked.plan.steps)
+    if (step.kind == StepKind::view) views.push_back(step);
   ProgressDisplay progress("develop", progress_style);
   DevelopedViews developed;
   developed.linear_srgb_from_camera = calibration.linear_srgb_from_camera;
+  developed.views.resize(views.size());
+  std::vector<DevelopedPicture> found(views.size());
+  std::atomic<int> done = 0;
+  const double pixels = static_cast<double>(calibration.lens.lens.width_px) * calibration.lens.lens.height_px;
+  for_each_view(views.size(), kBytesPerPixel * pixels, [&](std::size_t i) {
+    progress.show(done, static_cast<int>(views.size()), views[i].id);
+    found[i] = develop_view(session, asked, pictures, views[i], calibration, mounted.at(views[i].mounting),
+                            developed.views[i]);
+    ++done;
+  });
   std::vector<PatchView> patches;
-  const auto total = static_cast<int>(view_count(asked.plan));
-  for (const PlanStep& step : asked.plan.steps) {
-    if (step.kind != StepKind::view) continue;
-    progress.show(static_cast<int>(developed.views.size()), total, step.id);
-    const PictureRecord& record = picture_of(pictures, step.id);
-    const calibration::SensorPicture raw = read_picture(session, record);
-    const BenchReading bench = read_bench(calibration, asked.rig, tags_in(raw));
-    require_calibrated_bench(calibration, bench, record.read_angle_rad, "view " + step.id);
-    developed.views.push_back(
-        place_view(step, record, bench, mounted.at(step.mounting), calibration, asked.rig.lamp_radius_mm));
-    develop_view(session, asked, pictures, raw, calibration, patches, developed.views.back());
+  std::vector<double> widths_mm;
+  for (const DevelopedPicture& picture : found) {
+    patches.push_back(picture.patch);
+    if (picture.sheet_width_mm) widths_mm.push_back(*picture.sheet_width_mm);
   }
-  if (!patches.empty()) take_out_lamp_changes(patches, developed.views);
-  for (const DevelopedView& view : developed.views) write_view(session, view);
-  developed.sheet_width_mm = measured_width_mm(developed, asked.spool.wrapping);
+  if (asked.rig.reference_patch) note_lamp_changes(patches, developed.views);
+  if (!widths_mm.empty()) developed.sheet_width_mm = calibration::median(widths_mm);
   if (developed.sheet_width_mm) require_expected_width(*developed.sheet_width_mm, asked.spool);
   write_json_file(session / "linear" / "views.json", to_json(developed));
-  FileSystem disk;
   write_manifest(session / "linear", disk);
   write_manifest(session / "masks", disk);
-  progress.finish(std::to_string(total) + " views");
+  progress.finish(std::to_string(views.size()) + " views");
   return developed;
 }
 

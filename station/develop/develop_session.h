@@ -9,8 +9,10 @@
 
 namespace station {
 
-// Writes linear/<view>.exr, masks/<view>.png, linear/views.json and both folders' manifests; running it again gives the
+// Writes linear/<view>.exr, masks/<view>.png (the threads of a first rendering, its edge eroded by two standard errors of the
+// calibration), masks/<view>-overlay.png (its outline on the photograph), linear/views.json and both folders' manifests; running it again gives the
 // same files. The holder's pose at each mounting comes from its tags in that mounting's pose picture.
+// Views are developed at the same time, as many as processors and 3 GiB of memory allow; their pictures are not returned.
 // Errors: std::runtime_error when the session lacks a picture, or too few tags are seen.
 DevelopedViews develop_session(const std::filesystem::path& session, ProgressStyle progress_style);
 

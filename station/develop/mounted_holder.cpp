@@ -9,7 +9,15 @@
 namespace station {
 namespace {
 
-constexpr long kFewestTags = 2;
+void require_tags(const PosePicture& picture, const calibration::TagLayout& holder) {
+  const long count = tags_of_holder(picture, holder);
+  if (count < kFewestHolderTags)
+    throw std::runtime_error("step " + picture.step + ": " + std::to_string(count) +
+                             " of the holder's tags were found, " + std::to_string(kFewestHolderTags) +
+                             " are needed; uncover the tags and take the picture again");
+}
+
+}  // namespace
 
 long tags_of_holder(const PosePicture& picture, const calibration::TagLayout& holder) {
   const auto of_holder = [&](const calibration::TagDetection& seen) {
@@ -19,18 +27,8 @@ long tags_of_holder(const PosePicture& picture, const calibration::TagLayout& ho
   return std::count_if(picture.seen.begin(), picture.seen.end(), of_holder);
 }
 
-void require_tags(const PosePicture& picture, const calibration::TagLayout& holder) {
-  const long count = tags_of_holder(picture, holder);
-  if (count < kFewestTags)
-    throw std::runtime_error("step " + picture.step + ": " + std::to_string(count) +
-                             " of the holder's tags were found, " + std::to_string(kFewestTags) +
-                             " are needed; uncover the tags and take the picture again");
-}
-
-}  // namespace
-
 bool shows_holder(const PosePicture& picture, const calibration::TagLayout& holder) {
-  return tags_of_holder(picture, holder) >= kFewestTags;
+  return tags_of_holder(picture, holder) >= kFewestHolderTags;
 }
 
 MountedHolder measure_holder(const std::vector<PosePicture>& pictures, const RigCalibration& calibration,

@@ -22,6 +22,9 @@ struct MountedHolder {
   double rms_px = 0.0;
 };
 
+inline constexpr long kFewestHolderTags = 2;
+long tags_of_holder(const PosePicture& picture, const calibration::TagLayout& holder);
+
 // Whether enough of the holder's tags are in the picture for measure_holder.
 bool shows_holder(const PosePicture& picture, const calibration::TagLayout& holder);
 

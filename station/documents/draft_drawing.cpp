@@ -34,7 +34,7 @@ Drawing squares_of(const renderer::Draft& draft) {
     for (const int thread : system->threads) most = std::max(most, thread);
   const auto color = [&](const renderer::YarnSystem& system, int yarn, bool warp) {
     const int thread = system.threads[static_cast<std::size_t>(yarn) % system.threads.size()];
-    return kPalette[most == 0 ? (warp ? 0u : 1u) : static_cast<std::size_t>(thread) % kPalette.size()];
+    return thread_color(most == 0 ? (warp ? 0 : 1) : thread);
   };
   Drawing drawing{ends + kMargin, picks + kMargin, {}};
   const auto& rows = draft.warp_over;
@@ -53,6 +53,10 @@ Drawing squares_of(const renderer::Draft& draft) {
 }
 
 }  // namespace
+
+cv::Vec3b thread_color(int thread) {
+  return kPalette[static_cast<std::size_t>(thread) % kPalette.size()];
+}
 
 cv::Mat3b draw_draft(const renderer::Draft& draft, int square_px) {
   const Drawing drawing = squares_of(draft);

@@ -11,6 +11,7 @@ namespace station {
 
 // A colour per thread, told apart at a glance; threads beyond the palette take it from the start again. The first two
 // are the dark warp and light weft of textbooks, taken for both systems when a draft has one thread only.
+cv::Vec3b thread_color(int thread);
 cv::Mat3b draw_draft(const renderer::Draft& draft, int square_px = 16);
 std::string draw_draft_svg(const renderer::Draft& draft);
 

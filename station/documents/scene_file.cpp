@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "renderer/weave/woven_patch.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/patch_file.h"
 #include "station/documents/reader.h"
@@ -63,7 +64,7 @@ renderer::YarnPatch parse_weave(ObjectReader& cloth, const std::filesystem::path
   replace_threads(cloth, "warp_threads", draft.warp);
   replace_threads(cloth, "weft_threads", draft.weft);
   if (const auto problem = renderer::check_draft(draft)) cloth.refuse("draft", *problem);
-  return renderer::initial_patch(draft);
+  return renderer::woven_patch(draft).patch;
 }
 
 void check_threads(const ObjectReader& cloth, const renderer::YarnPatch& patch, std::size_t count) {

@@ -6,10 +6,14 @@
 namespace station {
 
 nlohmann::json make_session_document(const std::string& utc, const nlohmann::json& rig, const nlohmann::json& spool,
-                                     const Plan& plan) {
-  return {{"format", "threadstation/session"}, {"version", 1}, {"utc", utc},
-          {"software", software_version()},    {"rig", rig},   {"spool", spool},
-          {"plan", plan_to_json(plan)}};
+                                     const Plan& plan, const std::string& person,
+                                     const std::optional<Sample>& sample) {
+  nlohmann::json document = {{"format", "threadstation/session"}, {"version", 1}, {"utc", utc},
+                             {"software", software_version()},    {"rig", rig},   {"spool", spool},
+                             {"plan", plan_to_json(plan)}};
+  if (!person.empty()) document["operator"] = person;
+  if (sample) document["sample"] = to_json(*sample);
+  return document;
 }
 
 SessionFile read_session_file(const std::filesystem::path& session) {
@@ -22,6 +26,11 @@ SessionFile read_session_file(const std::filesystem::path& session) {
   SessionFile result;
   result.utc = reader.text("utc");
   result.software = reader.text("software");
+  if (reader.has("operator")) result.person = reader.text("operator");
+  if (reader.has("sample")) {
+    ObjectReader sample = reader.object("sample");
+    result.sample = read_sample(sample);
+  }
   result.rig = parse_rig(reader.raw("rig"), file.string() + " (rig)");
   result.spool = parse_spool(reader.raw("spool"), file.string() + " (spool)");
   result.plan = plan_from_json(reader.raw("plan"), file.string() + " (plan)");

@@ -13,6 +13,8 @@ using renderer::ThreadParameters;
 
 constexpr Range kR{-1e6, 1e6}, kTint{0, 1}, kPower{0, 10};
 constexpr double kRounding = 1e-9;
+constexpr const char* kFarSide = "far_side";
+constexpr const char* kEntryPoint = "entry_point";
 
 std::array<double, 3> roughness(ObjectReader& reader, const std::string& key) {
   const std::vector<double> lobes = reader.numbers(key, 3, kRoughness);
@@ -25,6 +27,12 @@ void parse_options(ObjectReader& reader, ThreadParameters& p) {
   if (reader.has("transmittance_powers")) {
     const std::vector<double> powers = reader.numbers("transmittance_powers", 2, kPower);
     p.transmittance_powers = {powers[0], powers[1]};
+  }
+  if (reader.has("exit")) {
+    const std::string exit = reader.text("exit");
+    if (exit != kFarSide && exit != kEntryPoint)
+      reader.refuse("exit", "is \"" + exit + "\"; light leaves a thread at \"far_side\" or \"entry_point\"");
+    p.exit = exit == kFarSide ? renderer::ThreadExit::far_side : renderer::ThreadExit::entry_point;
   }
 }
 
@@ -66,6 +74,7 @@ json parameters_json(const ThreadParameters& p) {
   if (p.lambda0_rgb != plain.lambda0_rgb) parameters["lambda0_rgb"] = to_json(p.lambda0_rgb);
   if (p.transmittance_powers != plain.transmittance_powers)
     parameters["transmittance_powers"] = p.transmittance_powers;
+  if (p.exit != plain.exit) parameters["exit"] = p.exit == renderer::ThreadExit::far_side ? kFarSide : kEntryPoint;
   return parameters;
 }
 

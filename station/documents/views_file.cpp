@@ -10,34 +10,39 @@ namespace {
 
 using nlohmann::json;
 constexpr double kRadPerDeg = M_PI / 180.0;
+constexpr Range kVariance{0, 1e12};
 
 json view_json(const DevelopedView& developed) {
   const inversion::View& view = developed.view;
   const renderer::Camera& camera = view.camera;
-  return {{"id", view.id},
-          {"light_side", view.transmission ? "back" : "front"},
-          {"mounting", developed.mounting == rig::Mounting::horizontal ? "horizontal" : "vertical"},
-          {"platform_angle_deg", developed.platform_angle_rad / kRadPerDeg},
-          {"angle_from", developed.angle_measured ? "tags" : "turntable"},
-          {"exposure_s", developed.exposure_s},
-          {"image_file", developed.image_file},
-          {"mask_file", developed.mask_file},
-          {"masked_pixels", developed.masked_pixels},
-          {"saturated_fraction", developed.saturated_fraction},
-          {"pose_rms_px", developed.pose_rms_px},
-          {"lamp_strength", developed.lamp_strength},
-          {"camera",
-           {{"width_px", camera.width},
-            {"height_px", camera.height},
-            {"focal_length_px", {camera.fx, camera.fy}},
-            {"principal_point_px", {camera.cx, camera.cy}},
-            {"holder_from_camera", to_json(camera.world_from_camera)}}},
-          {"light",
-           {{"position_mm", to_json(view.light.position)},
-            {"intensity_mm2", to_json(view.light.intensity)},
-            {"radius_mm", view.light.radius_mm},
-            {"beam_axis", to_json(view.light.beam_axis)},
-            {"beam_exponent", view.light.beam_exponent}}}};
+  json document{{"id", view.id},
+                {"light_side", view.transmission ? "back" : "front"},
+                {"mounting", developed.mounting == rig::Mounting::horizontal ? "horizontal" : "vertical"},
+                {"platform_angle_deg", developed.platform_angle_rad / kRadPerDeg},
+                {"angle_from", developed.angle_measured ? "tags" : "turntable"},
+                {"exposure_s", developed.exposure_s},
+                {"image_file", developed.image_file},
+                {"mask_file", developed.mask_file},
+                {"masked_pixels", developed.masked_pixels},
+                {"saturated_fraction", developed.saturated_fraction},
+                {"pose_rms_px", developed.pose_rms_px},
+                {"lamp_strength", developed.lamp_strength},
+                {"camera",
+                 {{"width_px", camera.width},
+                  {"height_px", camera.height},
+                  {"focal_length_px", {camera.fx, camera.fy}},
+                  {"principal_point_px", {camera.cx, camera.cy}},
+                  {"holder_from_camera", to_json(camera.world_from_camera)}}},
+                {"light",
+                 {{"position_mm", to_json(view.light.position)},
+                  {"intensity_mm2", to_json(view.light.intensity)},
+                  {"radius_mm", view.light.radius_mm},
+                  {"beam_axis", to_json(view.light.beam_axis)},
+                  {"beam_exponent", view.light.beam_exponent}}}};
+  if (developed.noise)
+    document["noise_variance"] = {{"floor", to_json(developed.noise->floor.matrix())},
+                                  {"per_radiance", to_json(developed.noise->slope.matrix())}};
+  return document;
 }
 
 DevelopedView parse_view(ObjectReader reader) {
@@ -57,6 +62,12 @@ DevelopedView parse_view(ObjectReader reader) {
   developed.saturated_fraction = reader.number("saturated_fraction", 0, 1);
   developed.pose_rms_px = reader.number("pose_rms_px", 0, 1e6);
   developed.lamp_strength = reader.number("lamp_strength", 1e-6, 1e6);
+  if (reader.has("noise_variance")) {
+    ObjectReader noise = reader.object("noise_variance");
+    developed.noise = NoiseLaw{.floor = noise.vector3("floor", kVariance).array(),
+                               .slope = noise.vector3("per_radiance", kVariance).array()};
+    noise.finish();
+  }
   ObjectReader camera = reader.object("camera");
   view.camera.width = camera.integer("width_px", 1, 100000);
   view.camera.height = camera.integer("height_px", 1, 100000);
@@ -109,6 +120,11 @@ void read_view_pictures(const std::filesystem::path& session, DevelopedViews& vi
     inversion::View& view = developed.view;
     view.image = renderer::read_exr(session / developed.image_file);
     view.mask = renderer::read_png_grey(session / developed.mask_file);
+    if (developed.noise) {
+      view.variance = variance_by(*developed.noise, view.image);
+      view.variance /= developed.lamp_strength * developed.lamp_strength;
+    }
+    view.image /= developed.lamp_strength;
     const cv::Size expected(view.camera.width, view.camera.height);
     if (view.image.size() != expected || view.mask.size() != expected)
       throw std::runtime_error("view " + view.id + ": picture or mask is not " + std::to_string(expected.width) +

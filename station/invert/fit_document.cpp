@@ -70,16 +70,16 @@ json rounds_json(const inversion::ViewFit& fit) {
 
 }  // namespace
 
+std::map<std::string, inversion::ModelKind> names_of_models() {
+  return {{"thread", inversion::ModelKind::thread},
+          {"fiber", inversion::ModelKind::fiber},
+          {"yarn", inversion::ModelKind::yarn}};
+}
+
 std::string name_of(inversion::ModelKind model) {
-  switch (model) {
-    case inversion::ModelKind::fiber:
-      return "fiber";
-    case inversion::ModelKind::yarn:
-      return "yarn";
-    case inversion::ModelKind::thread:
-      break;
-  }
-  return "thread";
+  for (const auto& [name, kind] : names_of_models())
+    if (kind == model) return name;
+  throw std::logic_error("a kind of model without a name");
 }
 
 std::string name_of(inversion::Solver solver) {
@@ -90,8 +90,10 @@ json fit_document(const inversion::ViewFit& fit, const inversion::FitOptions& op
                   const std::vector<FittedView>& fitted, int samples_per_pixel) {
   json views = json::array(), held = json::array();
   std::vector<inversion::ViewAgreement> all, reflection, transmission;
-  for (const FittedView& view : fitted) {
+  for (std::size_t i = 0; i < fitted.size(); ++i) {
+    const FittedView& view = fitted[i];
     views.push_back({{"id", view.id},
+                     {"weight", fit.view_weights[i]},
                      {"relative_rmse", view.agreement.relative_rmse()},
                      {"relative_bias", view.agreement.relative_bias},
                      {"mean_over_diffuser", view.agreement.mean_reference}});
@@ -104,6 +106,7 @@ json fit_document(const inversion::ViewFit& fit, const inversion::FitOptions& op
                 {"seed", options.seed},
                 {"prior_weight", options.model == inversion::ModelKind::thread ? options.prior_weight : 0.0},
                 {"held", held},
+                {"robust", options.robust},
                 {"block_px", fit.block_px},
                 {"blocks", fit.blocks},
                 {"start", fit.start},

@@ -2,6 +2,7 @@
 // thread's energies. Keys in fixtures/threads/README.md.
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -17,7 +18,8 @@ struct FittedView {
   inversion::ViewAgreement agreement;
 };
 
-std::string name_of(inversion::ModelKind model);  // as on the command line
+std::map<std::string, inversion::ModelKind> names_of_models();  // as on the command line
+std::string name_of(inversion::ModelKind model);
 std::string name_of(inversion::Solver solver);
 
 nlohmann::json fit_document(const inversion::ViewFit& fit, const inversion::FitOptions& options,

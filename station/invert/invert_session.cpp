@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "inversion/fit_doubts.h"
 #include "renderer/image_file.h"
 #include "station/capture/stored_file.h"
 #include "station/documents/fiber_file.h"
@@ -130,6 +131,10 @@ InvertResult invert_session(const InvertRequest& request) {
   }
   result.fit = fit_document(fit, request.fit, result.views, request.samples_per_pixel);
   result.relative_rmse = result.fit.at("relative_rmse");
+  std::vector<inversion::ViewAgreement> agreements;
+  for (const FittedView& view : result.views) agreements.push_back(view.agreement);
+  result.doubts = inversion::fit_doubts(views, fit, agreements);
+  result.fit["doubts"] = result.doubts;
   const json document = model_document(fit, asked, developed, result.fit, provenance_json(request.session, asked));
   write_json_file(result.file, document);
   if (request.fit.model != inversion::ModelKind::thread)
@@ -193,6 +198,7 @@ std::string describe(const InvertResult& result) {
     text += thread_text(*thread, result.fit);
   else
     text += baseline_text(result.fit);
+  for (const std::string& doubt : result.doubts) text += "doubt: " + doubt + "\n";
   return text + result.fit.at("model").get<std::string>() + "  " + result.file.string() + "\n";
 }
 

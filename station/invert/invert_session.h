@@ -25,8 +25,9 @@ struct InvertResult {
   renderer::ScatteringModel model;
   std::filesystem::path file;  // of the model: thread.json, fiber.json or yarn.json
   std::vector<FittedView> views{};
-  nlohmann::json fit{};      // fit_document.h
-  double relative_rmse = 0;  // overall (inversion/agreement.h)
+  nlohmann::json fit{};               // fit_document.h
+  double relative_rmse = 0;           // overall (inversion/agreement.h)
+  std::vector<std::string> doubts{};  // inversion/fit_doubts.h
 };
 
 // Writes result/thread.json, result/fitted/<view>.exr and result/residual/<view>.exr (fitted minus photographed; both

@@ -1,15 +1,19 @@
 #include "station/report/session_report.h"
 
 #include <cmath>
+#include <map>
 #include <sstream>
 
 #include "renderer/image_file.h"
 #include "station/capture/manifest.h"
+#include "station/capture/picture_record.h"
+#include "station/capture/stored_file.h"
 #include "station/documents/calibration_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
 #include "station/documents/views_file.h"
 #include "station/report/calibration_report.h"
+#include "station/report/capture_report.h"
 #include "station/report/contact_sheet.h"
 #include "station/report/display.h"
 #include "station/report/html.h"
@@ -21,15 +25,27 @@ namespace {
 constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr int kMargin_px = 24;
 
-std::string caption(const DevelopedView& developed) {
-  return escaped(developed.view.id) + "<br>" + number_text(developed.platform_angle_rad * kDegPerRad, 2) +
-         "&deg;, exposure " + number_text(developed.exposure_s, 4) + " s, " +
-         std::to_string(developed.masked_pixels) + " masked pixels, saturated " +
-         number_text(100 * developed.saturated_fraction, 2) + " %";
+using Pictures = std::map<std::string, PictureRecord>;
+
+// Good ones say nothing more.
+std::string verdict_text(const DevelopedView& developed, const Pictures& pictures) {
+  const auto picture = pictures.find(developed.view.id);
+  if (picture == pictures.end()) return "";
+  const Verdict& verdict = picture->second.verdict;
+  const std::string grade = grade_name(verdict.grade());
+  return " <span class=\"" + grade + "\">" + grade + "</span>" +
+         (verdict.reason().empty() ? "" : " " + escaped(verdict.reason()));
+}
+
+std::string caption(const DevelopedView& developed, const Pictures& pictures) {
+  return escaped(developed.view.id) + verdict_text(developed, pictures) + "<br>" +
+         number_text(developed.platform_angle_rad * kDegPerRad, 2) + "&deg;, exposure " +
+         number_text(developed.exposure_s, 4) + " s, " + std::to_string(developed.masked_pixels) +
+         " masked pixels, saturated " + number_text(100 * developed.saturated_fraction, 2) + " %";
 }
 
 // One tile: the developed picture and, under it, the same with the mask's outline.
-std::string tile(const DevelopedView& developed, const std::array<double, 9>& colour) {
+std::string tile(const DevelopedView& developed, const Pictures& pictures, const std::array<double, 9>& colour) {
   const double scale = display_scale(developed.view.image, developed.view.mask);
   const cv::Rect box = threads_box(developed.view.mask, kMargin_px);
   const cv::Mat3b picture = display(developed.view.image, scale, colour);
@@ -37,15 +53,16 @@ std::string tile(const DevelopedView& developed, const std::array<double, 9>& co
   draw_outline(outlined, developed.view.mask);
   return "<figure>" + embedded_image(picture(box).clone(), developed.view.id) +
          embedded_image(outlined(box).clone(), developed.view.id + " with its mask") + "<figcaption>" +
-         caption(developed) + "<br>shown at " + number_text(scale, 2) + " × its radiance</figcaption></figure>\n";
+         caption(developed, pictures) + "<br>shown at " + number_text(scale, 2) +
+         " × its radiance</figcaption></figure>\n";
 }
 
-std::string view_tiles(const DevelopedViews& developed, bool transmission) {
+std::string view_tiles(const DevelopedViews& developed, const Pictures& pictures, bool transmission) {
   std::string tiles;
   int count = 0;
   for (const DevelopedView& view : developed.views)
     if (view.view.transmission == transmission) {
-      tiles += tile(view, developed.linear_srgb_from_camera);
+      tiles += tile(view, pictures, developed.linear_srgb_from_camera);
       ++count;
     }
   if (count == 0) return {};
@@ -58,22 +75,25 @@ std::string view_tiles(const DevelopedViews& developed, bool transmission) {
 std::filesystem::path write_session_report(const std::filesystem::path& session) {
   const SessionFile asked = read_session_file(session);
   const RigCalibration calibration = read_calibration(session / "calibration");
-  DevelopedViews developed = read_views(session);
-  read_view_pictures(session, developed);
-  std::string body = fact_table({{"spool", asked.spool.name + " (" + asked.spool.material + ")"},
-                                 {"wrapping", std::to_string(asked.spool.wrapping.turns) + " turns of " +
-                                                  number_text(asked.spool.wrapping.thread_diameter_mm, 3) + " mm"},
-                                 {"rig", asked.rig.name},
-                                 {"captured", asked.utc},
-                                 {"software", asked.software}});
-  body += cloth_section(session, developed) + thread_section(session, developed);
-  body += view_tiles(developed, false) + view_tiles(developed, true);
+  std::string body = capture_facts(session, asked, calibration);
+  if (std::filesystem::exists(session / "linear" / "views.json")) {
+    make_folder(session / "result");
+    DevelopedViews developed = read_views(session);
+    read_view_pictures(session, developed);
+    body += cloth_section(session, developed) + thread_section(session, developed);
+    const Pictures pictures = taken_pictures(read_journal(session / "journal.jsonl").records);
+    body += view_tiles(developed, pictures, false) + view_tiles(developed, pictures, true);
+    renderer::write_png(session / "result" / "contact_sheet.png", contact_sheet(developed));
+    if (const cv::Mat3b overview = overview_picture(session, developed); !overview.empty())
+      renderer::write_png(session / "result" / "overview.png", overview);
+    FileSystem disk;
+    write_manifest(session / "result", disk);
+  } else {
+    body += "<p>The views have not been developed yet: threadstation develop makes their pictures and masks.</p>\n";
+  }
+  body += verdict_section(session, asked);
   body += "<h2>Calibration</h2>\n" + calibration_section(calibration);
-  renderer::write_png(session / "result" / "contact_sheet.png", contact_sheet(developed));
-  if (const cv::Mat3b overview = overview_picture(session, developed); !overview.empty())
-    renderer::write_png(session / "result" / "overview.png", overview);
-  FileSystem disk;
-  write_manifest(session / "result", disk);
+  body += checksum_section(session);
   const std::filesystem::path file = session / "report.html";
   write_text_file(file, html_page("Thread session: " + asked.spool.name, body));
   return file;

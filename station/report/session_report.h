@@ -1,4 +1,5 @@
-// report.html of a session: contact sheet of the developed views with their masks, exposures, calibration figures.
+// report.html of a session: who, what and when, contact sheet of the developed views with their masks, verdicts, exposure
+// and lamp through the session, calibration figures, checksums.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +7,7 @@
 namespace station {
 
 // Writes <session>/report.html, self-contained, and <session>/result/contact_sheet.png. Returns the report's path.
-// Errors: std::runtime_error when the session has not been developed yet, or a file of it is missing.
+// A session that has not been developed yet has no contact sheet. Errors: std::runtime_error when a file of it is missing.
 std::filesystem::path write_session_report(const std::filesystem::path& session);
 
 }  // namespace station

@@ -111,7 +111,11 @@ cv::Mat3b fitted_into(const cv::Mat3b& picture, cv::Size size) {
 std::string thread_section(const std::filesystem::path& session, const DevelopedViews& developed) {
   if (!std::filesystem::exists(thread_file_of(session))) return {};
   const ThreadFile thread = read_thread(thread_file_of(session));
-  std::string html = "<h2>Thread</h2>\n" + parameter_table(thread) + energy_plot(thread.parameters) +
+  std::string doubts;
+  if (const auto found = thread.fit.find("doubts"); found != thread.fit.end())
+    for (const nlohmann::json& doubt : *found)
+      doubts += "<p class=\"doubt\">Doubt: " + escaped(doubt.get<std::string>()) + "</p>\n";
+  std::string html = "<h2>Thread</h2>\n" + doubts + parameter_table(thread) + energy_plot(thread.parameters) +
                      "\n<h2>Photographs and their fitted twins</h2>\n<div class=\"sheet\">\n";
   for (const DevelopedView& view : developed.views)
     html += fitted_tile(session, view, thread, developed.linear_srgb_from_camera);

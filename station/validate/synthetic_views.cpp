@@ -24,23 +24,25 @@ inversion::NearLight near_light(const rig::TrueLamp& lamp, const Eigen::Isometry
           .beam_exponent = lamp.beam_exponent};
 }
 
-// Pinhole with the same field across, optical axis in the middle.
-renderer::Camera pooled_camera(const rig::TrueLens& lens, const Eigen::Isometry3d& holder_from_world, int width_px,
-                               int height_px) {
-  const double scale = static_cast<double>(width_px) / lens.width_px;
-  calibration::Lens pinhole = lens_of(lens);
-  pinhole.distortion = {};
-  renderer::Camera camera = camera_of(pinhole, holder_from_world * lens.world_from_camera, true);
+// Pinhole with the true lens's field across, the true optical axis in the middle.
+renderer::Camera pooled_camera(const rig::TrueLens& truth, calibration::Lens lens,
+                               const Eigen::Isometry3d& holder_from_camera, int width_px, int height_px) {
+  const double scale = static_cast<double>(width_px) / truth.width_px;
+  const calibration::Lens true_lens = lens_of(truth);
+  lens.distortion = {};
+  renderer::Camera camera = camera_of(lens, holder_from_camera, true);
+  const renderer::Camera true_camera = camera_of(true_lens, holder_from_camera, true);
   camera.width = width_px, camera.height = height_px;
   camera.fx *= scale, camera.fy *= scale;
-  camera.cx = (width_px - 1) / 2.0, camera.cy = (height_px - 1) / 2.0;
+  camera.cx = (width_px - 1) / 2.0 + scale * (camera.cx - true_camera.cx);
+  camera.cy = (height_px - 1) / 2.0 + scale * (camera.cy - true_camera.cy);
   return camera;
 }
 
 }  // namespace
 
 std::vector<inversion::View> synthetic_views(const RigFile& rig, const inversion::WrappedSpool& spool, int width_px,
-                                             int height_px) {
+                                             int height_px, const RigCalibration* calibrated) {
   if (!rig.simulation)
     throw std::runtime_error("rig \"" + rig.name + "\" has no \"simulation\" part; there are no views to make");
   const rig::BenchTruth& truth = rig.simulation->truth;
@@ -56,8 +58,15 @@ std::vector<inversion::View> synthetic_views(const RigFile& rig, const inversion
     inversion::View& view = views.emplace_back();
     view.id = step.id;
     view.transmission = is_transmission(step);
-    view.camera = pooled_camera(truth.lens, holder_from_world, width_px, height_px);
-    view.light = near_light(view.transmission ? truth.back : truth.front, holder_from_world);
+    if (calibrated) {
+      view.camera = pooled_camera(truth.lens, calibrated->lens.lens,
+                                  holder_from_world * calibrated->platform.world_from_camera, width_px, height_px);
+      view.light = lamp_in_holder(*calibrated, rig.lamp_radius_mm, view.transmission, holder_from_world);
+    } else {
+      view.camera = pooled_camera(truth.lens, lens_of(truth.lens), holder_from_world * truth.lens.world_from_camera,
+                                  width_px, height_px);
+      view.light = near_light(view.transmission ? truth.back : truth.front, holder_from_world);
+    }
     view.mask = inversion::thread_mask(spool, view.camera, view.light, kMaskSamples);
   }
   return views;

@@ -10,15 +10,17 @@
 #include "inversion/view.h"
 #include "renderer/scene.h"
 #include "rig/simulated_bench.h"
+#include "station/documents/calibration_file.h"
 #include "station/documents/rig_file.h"
 
 namespace station {
 
 // The rig's plan at width x height pixels, distortion removed: the whole width of the sensor is shown. Masks are made,
-// images are not.
+// images are not. With `calibrated` camera, axis and lamps are where a calibration of the rig takes them to be, on the
+// pixels of the true views: what its errors do to a fit is the difference.
 // Errors: std::runtime_error when the rig has no simulation.
 std::vector<inversion::View> synthetic_views(const RigFile& rig, const inversion::WrappedSpool& spool, int width_px,
-                                             int height_px);
+                                             int height_px, const RigCalibration* calibrated = nullptr);
 
 struct PhotographOptions {
   int samples_per_pixel = 256;

@@ -46,11 +46,10 @@ std::string made_from(const std::filesystem::path& rig, const std::filesystem::p
 }
 
 Photographed photograph_spool(const ValidateRequest& request, const RigFile& rig, const Spool& spool,
-                              const std::filesystem::path& spool_file, const std::filesystem::path& folder,
+                              const std::string& origin, const std::filesystem::path& folder,
                               const std::function<void(const std::string&, double)>& step) {
   Photographed made{.views = synthetic_views(rig, spool.wrapping, kWidth_px, kHeight_px), .pictures = {}};
   std::filesystem::create_directories(folder);
-  const std::string origin = made_from(request.rig, spool_file, request.samples_per_pixel, request.seed);
   const renderer::CurveSet fibers = spool_fibers(spool);
   for (std::size_t i = 0; i < made.views.size(); ++i) {
     View& view = made.views[i];
@@ -77,6 +76,21 @@ Photographed photograph_spool(const ValidateRequest& request, const RigFile& rig
     made.pictures.push_back(std::move(pictures));
   }
   return made;
+}
+
+struct Gathered {
+  std::vector<inversion::ViewAgreement> all, reflection, transmission, fitted;
+  double seconds = 0;
+  std::vector<ValidatedModel::OfView> views;
+
+  void add(const View& view, const inversion::ViewAgreement& agreement) {
+    all.push_back(agreement);
+    (view.transmission ? transmission : reflection).push_back(agreement);
+  }
+};
+
+double seconds_since(std::chrono::steady_clock::time_point started) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
 }
 
 std::vector<bool> left_out(const std::vector<View>& views, std::size_t fold) {
@@ -115,10 +129,55 @@ cv::Mat3b comparison_row(const View& view, const std::vector<cv::Mat3f>& renderi
   return row;
 }
 
-struct Gathered {
-  std::vector<inversion::ViewAgreement> all, reflection, transmission, fitted;
-  double seconds = 0;
+// The thread model by either solver on all views, with the defaults of each.
+std::vector<ComparedSolver> compare_solvers(const ValidateRequest& request, const Spool& spool,
+                                            const std::vector<View>& views,
+                                            const std::function<void(const std::string&, double)>& step) {
+  constexpr int kPaths = 4096, kRepetitions = 4;
+  std::vector<ComparedSolver> compared;
+  for (inversion::Solver solver : {inversion::Solver::levenberg_marquardt, inversion::Solver::adam}) {
+    inversion::FitOptions options{.solver = solver, .seed = request.seed};
+    options.progress = [&](const std::string& what, double share) {
+      step("solver " + name_of(solver) + ", " + what, 0.5 * (static_cast<double>(compared.size()) + share));
+      return !interrupted();
+    };
+    const auto started = std::chrono::steady_clock::now();
+    const inversion::ViewFit fit = inversion::fit_views(spool.wrapping, views, options);
+    compared.push_back({.solver = solver,
+                        .seconds = seconds_since(started),
+                        .loss = inversion::independent_loss(spool.wrapping, views, fit, kPaths, kRepetitions,
+                                                            request.seed + 77777)});
+  }
+  return compared;
+}
+
+// What is fitted: a model, on the true views or on what a calibration takes them to be.
+struct Variant {
+  inversion::ModelKind model;
+  bool calibrated = false;
+  std::vector<View> views;
 };
+
+std::vector<Variant> variants_of(const ValidateRequest& request, const RigFile& rig, const Spool& spool,
+                                 const Photographed& made) {
+  std::vector<Variant> variants;
+  for (inversion::ModelKind model : request.models) variants.push_back({.model = model, .views = made.views});
+  if (!request.calibration) return variants;
+  const RigCalibration calibration = read_calibration(*request.calibration);
+  Variant calibrated{.model = inversion::ModelKind::thread,
+                     .calibrated = true,
+                     .views = synthetic_views(rig, spool.wrapping, kWidth_px, kHeight_px, &calibration)};
+  for (std::size_t i = 0; i < made.views.size(); ++i) {
+    calibrated.views[i].image = made.views[i].image;
+    calibrated.views[i].mask &= made.views[i].mask;  // the photograph is drawn there only
+  }
+  variants.push_back(std::move(calibrated));
+  return variants;
+}
+
+std::string label_of(const ValidatedModel& of) {
+  return name_of(of.model) + (of.calibrated ? "*" : "");
+}
 
 ValidatedSpool validate_spool(const ValidateRequest& request, const RigFile& rig,
                               const std::filesystem::path& spool_file,
@@ -128,44 +187,57 @@ ValidatedSpool validate_spool(const ValidateRequest& request, const RigFile& rig
     throw std::runtime_error("spool \"" + spool.name +
                              "\" has no \"simulation\" part; there are no fibers to photograph");
   const std::filesystem::path folder = request.out / spool_file.stem();
-  constexpr double kPhotographShare = 0.4;
+  constexpr double kPhotographShare = 0.2;  // of each draw
+  const std::string origin = made_from(request.rig, spool_file, request.samples_per_pixel, request.seed);
   const Photographed made =
-      photograph_spool(request, rig, spool, spool_file, folder / "photographs",
+      photograph_spool(request, rig, spool, origin, folder / "photographs",
                        [&](const std::string& what, double share) { step(what, kPhotographShare * share); });
-  std::vector<Gathered> gathered(request.models.size());
-  const auto parts = static_cast<double>(request.models.size()) * request.folds;
+  SimulatedFibers placed_anew = *spool.simulation;
+  placed_anew.seed += 1000;
+  Spool drawn_anew = spool;
+  drawn_anew.simulation = placed_anew;
+  const Photographed other =
+      photograph_spool(request, rig, drawn_anew, origin + "/another draw", folder / "another_draw",
+                       [&](const std::string& what, double share) { step(what, kPhotographShare * (1 + share)); });
+  Gathered draws;
+  for (std::size_t i = 0; i < made.views.size(); ++i)
+    draws.add(made.views[i],
+              inversion::noiseless_agreement(made.views[i], made.pictures[i], other.pictures[i], kBlock_px));
+  const std::vector<Variant> variants = variants_of(request, rig, spool, made);
+  std::vector<Gathered> gathered(variants.size());
+  const auto parts = static_cast<double>(variants.size()) * request.folds;
   for (int fold = 0; fold < request.folds; ++fold) {
     const std::vector<bool> out = left_out(made.views, static_cast<std::size_t>(fold));
-    std::vector<View> kept;
-    for (std::size_t i = 0; i < out.size(); ++i)
-      if (!out[i]) kept.push_back(made.views[i]);
     std::vector<std::vector<cv::Mat3f>> shown(out.size());
-    for (std::size_t m = 0; m < request.models.size(); ++m) {
+    for (std::size_t m = 0; m < variants.size(); ++m) {
       Gathered& of = gathered[m];
-      inversion::FitOptions options{.model = request.models[m], .seed = request.seed};
+      std::vector<View> kept;
+      for (std::size_t i = 0; i < out.size(); ++i)
+        if (!out[i]) kept.push_back(variants[m].views[i]);
+      inversion::FitOptions options{.model = variants[m].model, .seed = request.seed};
       if (options.model == inversion::ModelKind::yarn) options.paths_per_block = {128, 512};
       const double done =
-          (static_cast<double>(fold) * static_cast<double>(request.models.size()) + static_cast<double>(m)) / parts;
+          (static_cast<double>(fold) * static_cast<double>(variants.size()) + static_cast<double>(m)) / parts;
       options.progress = [&](const std::string& what, double share) {
-        step(name_of(options.model) + ", " + what,
-             kPhotographShare + (1 - kPhotographShare) * (done + 0.8 * share / parts));
+        step(name_of(options.model) + (variants[m].calibrated ? " as calibrated, " : ", ") + what,
+             2 * kPhotographShare + (1 - 2 * kPhotographShare) * (done + 0.8 * share / parts));
         return !interrupted();
       };
       const auto started = std::chrono::steady_clock::now();
       const inversion::ViewFit fit = inversion::fit_views(spool.wrapping, kept, options);
-      of.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count() / request.folds;
+      of.seconds += seconds_since(started) / request.folds;
       for (std::size_t i = 0; i < out.size(); ++i) {
         if (!out[i] && fold > 0) continue;
-        const View& view = made.views[i];
+        const View& view = variants[m].views[i];
         const Pictures pictures = rendered(spool.wrapping, view, fit, request.fitted_samples,
                                            7000 + 100 * static_cast<std::uint64_t>(fold) + 2 * i);
         const auto agreement = inversion::noiseless_agreement(view, made.pictures[i], pictures, kBlock_px);
+        if (fold == 0) of.views.push_back({view.id, out[i], agreement.relative_rmse(), agreement.relative_bias});
         if (!out[i]) {
           of.fitted.push_back(agreement);
           continue;
         }
-        of.all.push_back(agreement);
-        (view.transmission ? of.transmission : of.reflection).push_back(agreement);
+        of.add(view, agreement);
         cv::Mat3f& mean = shown[i].emplace_back();
         cv::addWeighted(pictures[0], 0.5, pictures[1], 0.5, 0, mean);
       }
@@ -173,14 +245,24 @@ ValidatedSpool validate_spool(const ValidateRequest& request, const RigFile& rig
     for (std::size_t i = 0; i < out.size(); ++i)
       if (out[i]) renderer::write_png(folder / (made.views[i].id + ".png"), comparison_row(made.views[i], shown[i]));
   }
-  ValidatedSpool result{.name = spool.name, .fibers_per_thread = spool.simulation->fibers_per_thread, .models = {}};
-  for (std::size_t m = 0; m < request.models.size(); ++m)
-    result.models.push_back({.model = request.models[m],
+  ValidatedSpool result{.name = spool.name,
+                        .fibers_per_thread = spool.simulation->fibers_per_thread,
+                        .draw = inversion::overall_relative_rmse(draws.all) / std::sqrt(2.0),
+                        .draw_reflection = inversion::overall_relative_rmse(draws.reflection) / std::sqrt(2.0),
+                        .draw_transmission = inversion::overall_relative_rmse(draws.transmission) / std::sqrt(2.0),
+                        .models = {},
+                        .solvers = {}};
+  if (request.solvers) result.solvers = compare_solvers(request, spool, made.views, step);
+  if (request.folds == 0) return result;
+  for (std::size_t m = 0; m < variants.size(); ++m)
+    result.models.push_back({.model = variants[m].model,
+                             .calibrated = variants[m].calibrated,
                              .relative_rmse = inversion::overall_relative_rmse(gathered[m].all),
                              .reflection = inversion::overall_relative_rmse(gathered[m].reflection),
                              .transmission = inversion::overall_relative_rmse(gathered[m].transmission),
                              .fitted_views = inversion::overall_relative_rmse(gathered[m].fitted),
-                             .seconds = gathered[m].seconds});
+                             .seconds = gathered[m].seconds,
+                             .views = gathered[m].views});
   return result;
 }
 
@@ -208,15 +290,27 @@ std::string describe(const std::vector<ValidatedSpool>& spools) {
       "Relative RMSE over 8 x 8-block averages, %, without the noise of photograph and rendering\n"
       "spool                      fibers  model    left out  reflection  transmission  fitted views  seconds\n";
   std::map<std::string, std::vector<double>> by_model;
-  for (const ValidatedSpool& spool : spools)
+  for (const ValidatedSpool& spool : spools) {
+    char line[160];
+    std::snprintf(line, sizeof line, "%-25s  %6d  %-7s  %8.1f  %10.1f  %12.1f\n", spool.name.c_str(),
+                  spool.fibers_per_thread, "draw", 100 * spool.draw, 100 * spool.draw_reflection,
+                  100 * spool.draw_transmission);
+    text += line;
     for (const ValidatedModel& m : spool.models) {
-      char line[160];
       std::snprintf(line, sizeof line, "%-25s  %6d  %-7s  %8.1f  %10.1f  %12.1f  %12.1f  %7.1f\n", spool.name.c_str(),
-                    spool.fibers_per_thread, name_of(m.model).c_str(), 100 * m.relative_rmse, 100 * m.reflection,
+                    spool.fibers_per_thread, label_of(m).c_str(), 100 * m.relative_rmse, 100 * m.reflection,
                     100 * m.transmission, 100 * m.fitted_views, m.seconds);
       text += line;
-      by_model[name_of(m.model)].push_back(m.relative_rmse);
+      by_model[label_of(m)].push_back(m.relative_rmse);
     }
+    for (const ComparedSolver& of : spool.solvers) {
+      std::snprintf(line, sizeof line, "%-25s  %6d  solver %-4s  loss on other paths %.4g +- %.1g, %.1f s\n",
+                    spool.name.c_str(), spool.fibers_per_thread, name_of(of.solver).c_str(), of.loss.mean,
+                    of.loss.standard_error, of.seconds);
+      text += line;
+    }
+  }
+  if (by_model.contains("thread*")) text += "thread*: with the geometry and light of the calibration\n";
   for (const auto& [model, errors] : by_model) {
     double sum = 0, worst = 0;
     for (double e : errors) sum += e, worst = std::max(worst, e);
@@ -230,13 +324,28 @@ nlohmann::json to_json(const std::vector<ValidatedSpool>& spools) {
   nlohmann::json document = nlohmann::json::array();
   for (const ValidatedSpool& spool : spools) {
     nlohmann::json models = nlohmann::json::object();
-    for (const ValidatedModel& m : spool.models)
-      models[name_of(m.model)] = {{"relative_rmse", m.relative_rmse},
-                                  {"reflection", m.reflection},
-                                  {"transmission", m.transmission},
-                                  {"fitted_views", m.fitted_views},
-                                  {"seconds", m.seconds}};
-    document.push_back({{"spool", spool.name}, {"fibers_per_thread", spool.fibers_per_thread}, {"models", models}});
+    for (const ValidatedModel& m : spool.models) {
+      nlohmann::json views = nlohmann::json::array();
+      for (const ValidatedModel::OfView& view : m.views)
+        views.push_back({{"id", view.id},
+                         {"left_out", view.left_out},
+                         {"relative_rmse", view.relative_rmse},
+                         {"relative_bias", view.relative_bias}});
+      models[m.calibrated ? "thread_calibrated" : name_of(m.model)] = {
+          {"relative_rmse", m.relative_rmse}, {"reflection", m.reflection}, {"transmission", m.transmission},
+          {"fitted_views", m.fitted_views},   {"seconds", m.seconds},       {"views", views}};
+    }
+    nlohmann::json solvers = nlohmann::json::object();
+    for (const ComparedSolver& of : spool.solvers)
+      solvers[name_of(of.solver)] = {
+          {"seconds", of.seconds}, {"loss", of.loss.mean}, {"loss_standard_error", of.loss.standard_error}};
+    document.push_back({{"spool", spool.name},
+                        {"fibers_per_thread", spool.fibers_per_thread},
+                        {"draw", spool.draw},
+                        {"draw_reflection", spool.draw_reflection},
+                        {"draw_transmission", spool.draw_transmission},
+                        {"models", models},
+                        {"solvers", solvers}});
   }
   return {{"spools", document}};
 }

@@ -4,12 +4,15 @@
 //   spool          | the bench's fibers of a spool file, 17 ideal views at 256 x 192 pixels (synthetic_views.h)
 //   photograph     | two of each view with paths of their own, with a 14-bit sensor's noise; fits see their mean
 //   left out       | two views a fold, one reflection and one transmission; three folds
+//   another draw   | a second spool of the same thread, its fibers placed anew: what no fit of the thread can know
+//   solvers        | optional: Levenberg-Marquardt and Adam on all views, by eq. 6's loss on other paths, and by time
 //   agreement      | relative RMSE over 8 x 8-block averages without the noise of either side (inversion/agreement.h)
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +26,10 @@ struct ValidateRequest {
   std::vector<std::filesystem::path> spools;
   std::vector<inversion::ModelKind> models{inversion::ModelKind::thread, inversion::ModelKind::fiber,
                                            inversion::ModelKind::yarn};
-  int folds = 3;               // 1 ... 3
+  int folds = 3;         // 0 ... 3
+  bool solvers = false;  // compare them on each spool
+  // Folder or file: the thread model is fitted besides with camera, axis and lamps as this calibration of the rig has them.
+  std::optional<std::filesystem::path> calibration;
   int samples_per_pixel = 96;  // of each photograph
   int fitted_samples = 48;     // of each rendering
   std::uint64_t seed = 1;
@@ -32,16 +38,33 @@ struct ValidateRequest {
 
 struct ValidatedModel {
   inversion::ModelKind model;
+  bool calibrated = false;  // with a calibration's geometry and light, not the true ones
   // Over the left-out views; of all, reflections, transmissions.
   double relative_rmse = 0, reflection = 0, transmission = 0;
   double fitted_views = 0;  // over the views that were fitted, first fold
   double seconds = 0;       // of one fit
+  struct OfView {
+    std::string id;
+    bool left_out;
+    double relative_rmse, relative_bias;
+  };
+  std::vector<OfView> views;  // first fold
+};
+
+struct ComparedSolver {
+  inversion::Solver solver;
+  double seconds = 0;
+  inversion::IndependentLoss loss;
 };
 
 struct ValidatedSpool {
   std::string name;
   int fibers_per_thread = 0;
+  // How far one draw of the fibers is from the mean of all: relative RMSE between two, over the root of 2. Of all views,
+  // reflections, transmissions.
+  double draw = 0, draw_reflection = 0, draw_transmission = 0;
   std::vector<ValidatedModel> models;
+  std::vector<ComparedSolver> solvers;  // empty when not asked for
 };
 
 // Photographs are kept in OUT/<spool>/photographs and used again when nothing that they depend on has changed; pictures of

@@ -1,9 +1,15 @@
-// Recorded path vertices shaded per second and core: what a fit spends its time on.
+// Recorded path vertices shaded per second and core: what a fit spends its time on. Whole fits against the pictures' size, the
+// light paths and the number of unknowns, with the memory that they need at most, and Levenberg-Marquardt against Adam.
 #include <benchmark/benchmark.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <map>
 
 #include "../inversion/synthetic_spool.h"
 #include "inversion/block_estimate.h"
 #include "inversion/blocks.h"
+#include "inversion/fit_views.h"
 
 namespace inversion {
 namespace {
@@ -34,6 +40,66 @@ BENCHMARK_CAPTURE(shade, reflection_values, false, false);
 BENCHMARK_CAPTURE(shade, reflection_slopes, false, true);
 BENCHMARK_CAPTURE(shade, transmission_values, true, false);
 BENCHMARK_CAPTURE(shade, transmission_slopes, true, true);
+
+// Of the whole program so far: give --benchmark_filter for one fit's.
+double peak_mebibytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+const std::vector<View>& six_views(int width_px) {
+  static std::map<int, std::vector<View>> made;
+  const auto found = made.find(width_px);
+  if (found != made.end()) return found->second;
+  return made[width_px] = photographs(WrappedSpool{}, known_thread(), width_px, 16);
+}
+
+FitOptions with_paths(ModelKind model, int paths) {
+  FitOptions options{.model = model, .other_starts = {}, .paths_per_block = {paths / 4, paths}};
+  options.without_bias = false;
+  return options;
+}
+
+// range: pixels across, paths of the last round, model (0: thread, 16 unknowns; 1: fiber, 5).
+void fit(benchmark::State& state) {
+  const std::vector<View>& views = six_views(static_cast<int>(state.range(0)));
+  const FitOptions options =
+      with_paths(state.range(2) == 0 ? ModelKind::thread : ModelKind::fiber, static_cast<int>(state.range(1)));
+  for (auto _ : state) {
+    const ViewFit found = fit_views({}, views, options);
+    state.counters["blocks"] = static_cast<double>(found.blocks);
+    state.counters["unknowns"] = static_cast<double>(found.unknowns.size());
+    state.counters["loss"] = found.loss();
+  }
+  state.counters["peak_MiB"] = peak_mebibytes();
+}
+BENCHMARK(fit)
+    ->ArgNames({"width_px", "paths", "model"})
+    ->ArgsProduct({{72, 144, 288}, {1024}, {0}})
+    ->ArgsProduct({{144}, {256, 4096}, {0}})
+    ->Args({144, 1024, 1})
+    ->Unit(benchmark::kSecond)
+    ->Iterations(1)
+    ->UseRealTime();
+
+// Both with their defaults, by the loss on paths that neither has seen.
+void levenberg_marquardt_against_adam(benchmark::State& state) {
+  const std::vector<View>& views = six_views(144);
+  const auto timed = [&](Solver solver, const char* name) {
+    const auto started = std::chrono::steady_clock::now();
+    const ViewFit found = fit_views({}, views, {.solver = solver});
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    state.counters[std::string(name) + "_s"] = seconds;
+    state.counters[std::string(name) + "_loss"] = independent_loss({}, views, found, 4096, 4, 901).mean;
+    return seconds;
+  };
+  for (auto _ : state) {
+    const double fast = timed(Solver::levenberg_marquardt, "lm");
+    state.counters["adam_over_lm"] = timed(Solver::adam, "adam") / fast;
+  }
+}
+BENCHMARK(levenberg_marquardt_against_adam)->Unit(benchmark::kSecond)->Iterations(1)->UseRealTime();
 
 }  // namespace
 }  // namespace inversion

@@ -67,10 +67,19 @@ std::vector<Standpoint> six_standpoints() {
           {"through-0", 0, 0, 170, 10},     {"through-40", 40, 0, 200, 25}};
 }
 
-View photographed(View view, const WrappedSpool& spool, const renderer::ThreadParameters& thread,
+View photographed(View view, const WrappedSpool& spool, const renderer::ScatteringModel& thread,
                   int samples_per_pixel, std::uint64_t seed) {
   view.image = fitted_view(spool, view, thread, samples_per_pixel, seed);
   return view;
+}
+
+std::vector<View> photographs(const WrappedSpool& spool, const renderer::ScatteringModel& thread, int width_px,
+                              int samples_per_pixel) {
+  std::vector<View> views;
+  for (const Standpoint& at : six_standpoints())
+    views.push_back(
+        photographed(unlit_view(spool, at, width_px), spool, thread, samples_per_pixel, 11 + views.size()));
+  return views;
 }
 
 }  // namespace inversion

@@ -35,7 +35,11 @@ View unlit_view(const WrappedSpool& spool, const Standpoint& standpoint, int wid
 std::vector<Standpoint> six_standpoints();
 
 // The thread photographed without noise but that of the path tracer.
-View photographed(View view, const WrappedSpool& spool, const renderer::ThreadParameters& thread,
+View photographed(View view, const WrappedSpool& spool, const renderer::ScatteringModel& thread,
                   int samples_per_pixel, std::uint64_t seed);
+
+// All six standpoints, photographed with noise of their own each.
+std::vector<View> photographs(const WrappedSpool& spool, const renderer::ScatteringModel& thread, int width_px,
+                              int samples_per_pixel);
 
 }  // namespace inversion

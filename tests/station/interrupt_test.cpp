@@ -52,3 +52,18 @@ TEST(StopOnInterrupt, AStopThatFailsDoesNotEndTheProgram) {
   asked.get_future().wait();
   station::watch_interrupts();
 }
+
+TEST(StopOnInterrupt, TheSecondSignalCallsTheOtherStopWhileTheFirstIsDone) {
+  station::watch_interrupts(2);
+  std::promise<void> paused, stopped;
+  {
+    const station::StopOnInterrupt watch([&] { paused.set_value(); }, [&] { stopped.set_value(); });
+    std::raise(SIGINT);
+    paused.get_future().wait();
+    EXPECT_EQ(station::interrupts(), 1);
+    std::raise(SIGINT);
+    stopped.get_future().wait();
+    EXPECT_EQ(station::interrupts(), 2);
+  }
+  station::watch_interrupts();
+}

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "renderer/ray_scene.h"
+#include "renderer/weave/woven_patch.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/patch_file.h"
 #include "station/documents/reader.h"
@@ -57,8 +58,16 @@ TEST(SceneFile, OptionsOfAThreadAreReadAndWrittenOnlyWhereTheyDiffer) {
   EXPECT_EQ(parse_thread(to_json(metal), "again").parameters.lambda0_rgb, metal.parameters.lambda0_rgb);
   EXPECT_EQ(parse_thread(to_json(metal), "again").parameters.transmittance_powers,
             metal.parameters.transmittance_powers);
+  ThreadFile entry = metal;
+  entry.parameters.exit = renderer::ThreadExit::entry_point;
+  EXPECT_EQ(to_json(entry).at("parameters").at("exit"), "entry_point");
+  EXPECT_EQ(parse_thread(to_json(entry), "again").parameters.exit, renderer::ThreadExit::entry_point);
+  json elsewhere = to_json(entry);
+  elsewhere["parameters"]["exit"] = "middle";
+  EXPECT_NE(refusal([&] { parse_thread(elsewhere, "t"); }).find("\"far_side\" or \"entry_point\""),
+            std::string::npos);
   const json silk = to_json(read_thread(kThreads / "silk_gold.json")).at("parameters");
-  EXPECT_FALSE(silk.contains("lambda0_rgb") || silk.contains("transmittance_powers"));
+  EXPECT_FALSE(silk.contains("lambda0_rgb") || silk.contains("transmittance_powers") || silk.contains("exit"));
 
   json document = to_json(metal);
   document["parameters"]["lambda0_rgb"] = {1.2, 1, 1};
@@ -94,6 +103,18 @@ TEST(SceneFile, BruteForceTurnsClothIntoCurvesOfItsThreads) {
   const renderer::Scene scene = to_scene(parse_scene(document, "scene", kScenes));
   EXPECT_TRUE(scene.cloths.empty());
   EXPECT_EQ(scene.curves.size(), 2u);
+}
+
+TEST(SceneFile, ADraftIsWovenToTheClothOfTheWeaveCommand) {
+  const SceneFile scene = parse_scene(plain_scene(), "scene", kScenes);
+  const renderer::Draft draft = read_draft(fs::path(FIXTURES_DIR) / "drafts" / "plain.json");
+  const renderer::YarnPatch woven = renderer::woven_patch(draft).patch, drawn = renderer::initial_patch(draft);
+  const renderer::YarnPatch& patch = scene.cloths[0].patch;
+  ASSERT_EQ(patch.yarns.size(), woven.yarns.size());
+  for (std::size_t i = 0; i < patch.yarns.size(); ++i) {
+    EXPECT_EQ(patch.yarns[i].control_points, woven.yarns[i].control_points);
+    EXPECT_NE(patch.yarns[i].control_points, drawn.yarns[i].control_points);
+  }
 }
 
 TEST(SceneFile, APatchServesAsWellAsItsDraft) {

@@ -29,8 +29,7 @@ struct ShakenCell {
                   .flatness = flatness,
                   .bending_n_mm2 = 0.05,
                   .tension_n = axial_n > 0 ? 0 : 0.07,
-                  .axial_n = axial_n,
-                  .spread_n = 0.3};
+                  .axial_n = axial_n};
       m.length_mm = spline_length(center_line(patch, yarn));
       m.rest_length_mm = 0.97 * m.length_mm;
       model.points += m.count;
@@ -85,8 +84,11 @@ TEST(WeaveEnergyTest, TheGradientIsThatOfFiniteDifferences) {
 TEST(WeaveEnergyTest, TheSecondDerivativesAreThoseOfFiniteDifferencesOfTheGradient) {
   for (const ShakenCell& cell : shaken_cells()) {
     WeaveDerivatives here = cell.at(cell.points, Curvature::exact);
-    const Eigen::SparseMatrix<double> lower = here.hessian();
-    const Eigen::SparseMatrix<double> full = lower.selfadjointView<Eigen::Lower>();
+    const Eigen::Index count = 3 * cell.model.points;
+    const BorderedMatrix matrix = here.hessian(Eigen::VectorXi::LinSpaced(count, 0, static_cast<int>(count) - 1));
+    const Eigen::MatrixXd bordered = Eigen::MatrixXd(matrix.lower).selfadjointView<Eigen::Lower>();
+    const Eigen::MatrixXd borders = bordered.bottomLeftCorner(matrix.borders, count),
+                          full = bordered.topLeftCorner(count, count) + borders.transpose() * borders;
     std::mt19937 random(8);
     std::normal_distribution<double> normal;
     double worst = 0;

@@ -130,7 +130,7 @@ rig::Picture FakeCamera::capture() {
   if (++captures == fail_at_capture) {
     throw std::runtime_error("the camera was asked for a picture and did not answer; switch it off and on");
   }
-  if (stale && !last_.bytes.empty()) {
+  if (((late_at > 0 && captures >= late_at) || stale) && !last_.bytes.empty()) {
     return last_;
   }
   const double level = std::min(1.0, radiance() * now.exposure_s);
@@ -189,7 +189,7 @@ SessionFolder FakeStation::open(const fs::path& folder) {
   return SessionFolder::open(folder, clock, disk);
 }
 
-RunOutcome FakeStation::run(const fs::path& folder, const Plan& plan) {
+RunState FakeStation::run(const fs::path& folder, const Plan& plan) {
   SessionFolder session = is_session(folder) ? open(folder) : create(folder, plan);
   return run_plan(plan, devices(), session, options);
 }

@@ -66,6 +66,7 @@ class FakeCamera final : public rig::Camera {
   int fail_at_capture = 0;     // 1: the first
   bool stuck_shutter = false;  // reads back what it had
   bool stale = false;          // delivers its last picture again
+  int late_at = 0;             // from this capture on delivers the one before
   bool empty = false;
   bool lies = false;  // the picture was taken with another exposure than was read back
 
@@ -85,10 +86,14 @@ class FakeTurntable final : public rig::Turntable {
  public:
   bool homed = false, slips = false;
   int stops = 0, moves = 0;
+  std::function<void()> on_stop;
 
   void home() override { homed = true, angle_rad_ = 0; }
   void move_to(double angle_rad) override;
-  void stop() override { ++stops; }
+  void stop() override {
+    ++stops;
+    if (on_stop) on_stop();
+  }
   double angle_rad() override { return angle_rad_; }
   rig::TurntableState state() override { return rig::TurntableState::idle; }
 
@@ -112,7 +117,7 @@ struct FakeStation {
   SessionFolder create(const std::filesystem::path& folder, const Plan& plan);
   SessionFolder open(const std::filesystem::path& folder);
   // Starts a session, or resumes the one that is there.
-  RunOutcome run(const std::filesystem::path& folder, const Plan& plan);
+  RunState run(const std::filesystem::path& folder, const Plan& plan);
 
   FakeCamera camera;
   FakeTurntable turntable;

@@ -146,5 +146,26 @@ TEST(Plan, TakesLongerWithMoreSteps) {
   EXPECT_GT(estimated_duration_s(small_plan()), 0);
 }
 
+TEST(Plan, TheDocumentedPlanIsReadAndWrittenAlike) {
+  const std::string file = std::string(FIXTURES_DIR) + "/plans/seventeen_views.json";
+  const nlohmann::json document = nlohmann::json::parse(text_of(file));
+  const Plan plan = plan_from_json(document, file);
+  EXPECT_EQ(view_count(plan), 17U);
+  EXPECT_EQ(plan_to_json(plan), document);
+}
+
+TEST(Plan, AViewMayHaveAnExposureOfItsOwnAndAPlanMayHaveNoPoseAtAll) {
+  Plan plan = make_capture_plan({});
+  std::erase_if(plan.steps, [](const PlanStep& step) { return step.kind == StepKind::pose; });
+  plan.steps.front().exposure_s = 0.25;
+  EXPECT_EQ(check_plan(plan), std::nullopt) << "pictures taken by hand";
+  EXPECT_EQ(plan_from_json(plan_to_json(plan), "plan"), plan);
+  plan.steps.front().exposure_s = -1;
+  EXPECT_THAT(check_plan(plan).value_or(""), HasSubstr("exposure_s"));
+  plan.steps.front().exposure_s.reset();
+  plan.steps.back().exposure_s = 1;
+  EXPECT_THAT(check_plan(plan).value_or(""), HasSubstr("exposure_s")) << "a dark has its view's";
+}
+
 }  // namespace
 }  // namespace station

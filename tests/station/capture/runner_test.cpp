@@ -14,6 +14,14 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
+Verdict bad_verdict(const std::string& check, const std::string& reason, bool may_pass_again = false) {
+  return {.findings = {{.check = check,
+                        .grade = Grade::bad,
+                        .value = std::nullopt,
+                        .reason = reason,
+                        .may_pass_again = may_pass_again}}};
+}
+
 class RunnerTest : public testing::Test {
  protected:
   std::string last_outcome() const {
@@ -24,7 +32,7 @@ class RunnerTest : public testing::Test {
   // Runs on fresh devices, as after a new start of the program.
   void expect_resume_completes(const Plan& plan) const {
     FakeStation fresh;
-    EXPECT_EQ(fresh.run(path, plan), RunOutcome::complete);
+    EXPECT_EQ(fresh.run(path, plan), RunState::complete);
     const VerifyReport report = verify_session(path);
     EXPECT_THAT(report.problems, testing::IsEmpty());
     EXPECT_TRUE(report.complete);
@@ -37,7 +45,7 @@ class RunnerTest : public testing::Test {
 
 TEST_F(RunnerTest, TakesThe17ViewsAndEveryOtherStepOfThePlan) {
   const Plan plan = make_capture_plan({});
-  EXPECT_EQ(fake.run(path, plan), RunOutcome::complete);
+  EXPECT_EQ(fake.run(path, plan), RunState::complete);
   const auto pictures = pictures_of(path);
   ASSERT_EQ(pictures.size(), plan.steps.size());
   for (const PlanStep& step : plan.steps) {
@@ -100,7 +108,7 @@ TEST_F(RunnerTest, ReportsProgressUpToTheEnd) {
   EXPECT_EQ(reports.back().seconds_left, 0);
 }
 
-TEST_F(RunnerTest, InterruptedAtAnyMomentStopsThePlatformFirstAndResumes) {
+TEST_F(RunnerTest, PausedAtAnyMomentItStopsThePlatformAndResumes) {
   const Plan plan = small_plan();
   bool interrupted = true;
   for (int at = 1; interrupted; ++at) {
@@ -108,15 +116,15 @@ TEST_F(RunnerTest, InterruptedAtAnyMomentStopsThePlatformFirstAndResumes) {
     const fs::path session = folder.session(at);
     FakeStation run;
     int asked = 0;
-    run.options.should_stop = [&] { return ++asked == at; };
-    interrupted = run.run(session, plan) == RunOutcome::interrupted;
+    run.options.stop_wish = [&] { return ++asked == at ? StopWish::pause : StopWish::none; };
+    interrupted = run.run(session, plan) == RunState::paused;
     const JournalRecord last = records_of(session).back();
     ASSERT_EQ(last.event, "stop");
-    EXPECT_EQ(last.data.at("outcome"), interrupted ? "interrupted" : "complete");
+    EXPECT_EQ(last.data.at("outcome"), interrupted ? "paused" : "complete");
     EXPECT_EQ(run.turntable.stops, interrupted ? 1 : 0);
     const auto before = pictures_of(session);
     FakeStation fresh;
-    EXPECT_EQ(fresh.run(session, plan), RunOutcome::complete);
+    EXPECT_EQ(fresh.run(session, plan), RunState::complete);
     EXPECT_EQ(count_events(session, "picture"), plan.steps.size()) << "nothing was taken twice";
     for (const auto& [step, picture] : before) {
       EXPECT_EQ(pictures_of(session).at(step).sha256, picture.sha256);
@@ -131,9 +139,9 @@ TEST_F(RunnerTest, AMoveThatCtrlCEndedIsAnInterruptionAndNoFailure) {
     stop_asked = true;
     throw std::runtime_error("the platform was stopped on its way");
   };
-  fake.options.should_stop = [&] { return stop_asked; };
-  EXPECT_EQ(fake.run(path, small_plan()), RunOutcome::interrupted);
-  EXPECT_EQ(last_outcome(), "interrupted");
+  fake.options.stop_wish = [&] { return stop_asked ? StopWish::pause : StopWish::none; };
+  EXPECT_EQ(fake.run(path, small_plan()), RunState::paused);
+  EXPECT_EQ(last_outcome(), "paused");
 }
 
 TEST_F(RunnerTest, AFailedDeviceStopsThePlatformIsJournalledAndTheSessionResumes) {
@@ -149,7 +157,7 @@ TEST_F(RunnerTest, AFailedDeviceStopsThePlatformIsJournalledAndTheSessionResumes
     }
     EXPECT_THAT(message, HasSubstr("did not answer"));
     EXPECT_EQ(run.turntable.stops, 1);
-    EXPECT_EQ(last_outcome(), "failed");
+    EXPECT_EQ(last_outcome(), "suspended");
     EXPECT_EQ(records_of(path).back().data.at("message"), message);
     expect_resume_completes(plan);
   }
@@ -185,8 +193,8 @@ TEST_F(RunnerTest, APictureTakenWithOtherSettingsIsRefused) {
 }
 
 TEST_F(RunnerTest, ResumesOnlyWithItsOwnPlanAndCamera) {
-  fake.options.should_stop = [&] { return fake.camera.captures > 3; };
-  ASSERT_EQ(fake.run(path, small_plan()), RunOutcome::interrupted);
+  fake.options.stop_wish = [&] { return fake.camera.captures > 3 ? StopWish::pause : StopWish::none; };
+  ASSERT_EQ(fake.run(path, small_plan()), RunState::paused);
   Plan other = small_plan();
   other.steps[1].platform_angle_rad += 0.1;
   FakeStation fresh;
@@ -199,7 +207,7 @@ TEST_F(RunnerTest, ResumesOnlyWithItsOwnPlanAndCamera) {
 TEST_F(RunnerTest, ACompleteSessionTouchesNoDeviceWhenResumed) {
   fake.run(path, small_plan());
   FakeStation fresh;
-  EXPECT_EQ(fresh.run(path, small_plan()), RunOutcome::complete);
+  EXPECT_EQ(fresh.run(path, small_plan()), RunState::complete);
   EXPECT_EQ(fresh.camera.captures, 0);
   EXPECT_FALSE(fresh.turntable.homed);
   EXPECT_TRUE(fresh.person.asked.empty());
@@ -226,8 +234,8 @@ TEST_F(RunnerTest, WhatWasDiscardedCountsAsNotTakenUntilItIsTakenAgain) {
   fake.run(path, small_plan());
   fs::remove(path / "raw/transmission-1.arw");
   FakeStation stopped;
-  stopped.options.should_stop = [] { return true; };
-  EXPECT_EQ(stopped.run(path, small_plan()), RunOutcome::interrupted);
+  stopped.options.stop_wish = [] { return StopWish::pause; };
+  EXPECT_EQ(stopped.run(path, small_plan()), RunState::paused);
   EXPECT_FALSE(pictures_of(path).contains("transmission-1"));
   expect_resume_completes(small_plan());
   EXPECT_EQ(count_events(path, "discarded"), 1U);
@@ -239,7 +247,7 @@ TEST_F(RunnerTest, ABracketsExposureIsItsViewsTimeSoManyStopsLongerAndIsTakenAga
   fs::remove(path / "raw/reflection-horizontal-1.arw");
   FakeStation dimmer;
   dimmer.camera.radiance = [] { return 0.05; };
-  EXPECT_EQ(dimmer.run(path, plan), RunOutcome::complete);
+  EXPECT_EQ(dimmer.run(path, plan), RunState::complete);
   const auto pictures = pictures_of(path);
   for (const PlanStep& step : plan.steps) {
     if (step.kind == StepKind::exposure) {
@@ -255,12 +263,10 @@ TEST_F(RunnerTest, ABracketsExposureIsItsViewsTimeSoManyStopsLongerAndIsTakenAga
 
 TEST_F(RunnerTest, APictureThatDoesNotServeIsNotKeptAndTakenAgainByResume) {
   fake.options.inspect = [](const PlanStep& step, const rig::Picture&, double) {
-    if (step.id == "transmission-1") {
-      throw std::runtime_error("the lamp is off");
-    }
+    return step.id == "transmission-1" ? bad_verdict("lamp", "the lamp is off") : Verdict{};
   };
   EXPECT_THROW(fake.run(path, small_plan()), std::runtime_error);
-  EXPECT_EQ(last_outcome(), "failed");
+  EXPECT_EQ(last_outcome(), "suspended");
   EXPECT_FALSE(fs::exists(path / "raw/transmission-1.arw"));
   EXPECT_FALSE(pictures_of(path).contains("transmission-1"));
   expect_resume_completes(small_plan());
@@ -271,7 +277,7 @@ TEST_F(RunnerTest, AViewTakenAgainAtAnotherExposureGetsItsOwnDark) {
   fs::remove(path / "raw/reflection-horizontal-1.arw");
   FakeStation dimmer;
   dimmer.camera.radiance = [] { return 0.1; };
-  EXPECT_EQ(dimmer.run(path, small_plan()), RunOutcome::complete);
+  EXPECT_EQ(dimmer.run(path, small_plan()), RunState::complete);
   const auto pictures = pictures_of(path);
   for (const auto& [step, picture] : pictures) {
     if (picture.kind == StepKind::dark) {
@@ -280,6 +286,126 @@ TEST_F(RunnerTest, AViewTakenAgainAtAnotherExposureGetsItsOwnDark) {
     }
   }
   EXPECT_TRUE(verify_session(path).sound());
+}
+
+// Row 47 of the station's faults; at the first and the last poll as well.
+TEST_F(RunnerTest, ARunThatIsPausedOrAbortedIsNeverComplete) {
+  for (const StopWish wish : {StopWish::pause, StopWish::now}) {
+    RunState state = RunState::running;
+    int at = 0;
+    while (state != RunState::complete) {
+      const fs::path session = folder.session(++at + (wish == StopWish::now ? 1000 : 0));
+      FakeStation run;
+      int asked = 0;
+      run.options.stop_wish = [&] { return ++asked >= at ? wish : StopWish::none; };
+      state = run.run(session, small_plan());
+      if (state != RunState::complete) {
+        EXPECT_EQ(state, wish == StopWish::pause ? RunState::paused : RunState::aborted);
+        EXPECT_EQ(state_of(records_of(session), false), state);
+        EXPECT_FALSE(verify_session(session).complete);
+      }
+    }
+    EXPECT_GT(at, 20) << "polls of a session";
+  }
+}
+
+// Row 48.
+TEST_F(RunnerTest, TheStopIsOnTheDiskBeforeThePlatformIsStoppedAndDevicesAreLeft) {
+  fake.options.stop_wish = [&] { return fake.camera.captures > 3 ? StopWish::now : StopWish::none; };
+  std::string seen;
+  fake.turntable.on_stop = [&] { seen = last_outcome(); };
+  EXPECT_EQ(fake.run(path, small_plan()), RunState::aborted);
+  EXPECT_EQ(seen, "aborted");
+}
+
+TEST_F(RunnerTest, AfterTheLastRecordOfAStopAtOnceNothingIsAppended) {
+  SessionFolder session = fake.create(path, small_plan());
+  session.append("start", {{"files", nlohmann::json::object()}});
+  session.append_last("stop", {{"outcome", "aborted"}});
+  EXPECT_THAT(message_of([&] { session.append("picture", {}); }), HasSubstr("stop at once"));
+  EXPECT_EQ(records_of(path).size(), 2U);
+}
+
+// Row 18: the camera answers one picture late, with the test picture that came before.
+TEST_F(RunnerTest, ALatePictureOfTheCameraIsRefusedKeptAsideAndTakenAgain) {
+  int judged = 0;
+  fake.options.judged = [&](const PlanStep&, const Verdict& verdict) {
+    ++judged;
+    if (verdict.grade() == Grade::bad) {
+      EXPECT_THAT(verdict.reason(), HasSubstr("test or refused picture"));
+      fake.camera.late_at = 0;
+    }
+  };
+  fake.camera.late_at = 3;  // after two tests for the first step
+  EXPECT_EQ(fake.run(path, small_plan()), RunState::complete);
+  EXPECT_EQ(count_events(path, "refused"), 1U);
+  EXPECT_EQ(std::distance(fs::directory_iterator(path / "refused"), fs::directory_iterator()), 1);
+  EXPECT_TRUE(verify_session(path).sound());
+}
+
+TEST_F(RunnerTest, APictureThatMayPassIsTakenAgainThreeTimesAndThenAPersonIsAsked) {
+  fake.options.inspect = [](const PlanStep& step, const rig::Picture&, double) {
+    return step.id == "transmission-1" ? bad_verdict("motion", "it moved", true) : Verdict{};
+  };
+  EXPECT_THAT(message_of([&] { fake.run(path, small_plan()); }), HasSubstr("it moved"));
+  EXPECT_EQ(count_events(path, "refused"), 3U);
+  EXPECT_EQ(last_outcome(), "suspended");
+  expect_resume_completes(small_plan());
+}
+
+TEST_F(RunnerTest, OneViewIsTakenAgainOnRequestAndTheOthersStay) {
+  fake.run(path, small_plan());
+  const auto before = pictures_of(path);
+  FakeStation again;
+  again.options.reshoot = {"reflection-horizontal-2"};
+  EXPECT_EQ(again.run(path, small_plan()), RunState::complete);
+  const auto after = pictures_of(path);
+  for (const auto& [step, picture] : before) {
+    EXPECT_EQ(after.at(step).sha256 == picture.sha256, step != "reflection-horizontal-2") << step;
+  }
+  EXPECT_TRUE(fs::exists(path / "refused/reflection-horizontal-2-1.arw")) << "the first one is kept aside";
+  EXPECT_TRUE(verify_session(path).sound());
+  FakeStation wrong;
+  wrong.options.reshoot = {"reflection-99"};
+  EXPECT_THAT(message_of([&] { wrong.run(path, small_plan()); }), HasSubstr("no step of the plan"));
+}
+
+// The platform is found to have slipped: what was taken since a picture showed where it stood is doubted.
+TEST_F(RunnerTest, ViewsStayApprovedOnlyIfTheFaultCouldNotHaveTouchedThem) {
+  const auto inspect = [](bool slipped) {
+    return [slipped](const PlanStep& step, const rig::Picture&, double) {
+      if (step.id == "transmission-1" && slipped) {
+        return bad_verdict("angle", "the platform slipped");
+      }
+      Verdict verdict;
+      if (step.id == "reflection-horizontal-1") {
+        verdict.findings.push_back({.check = "angle", .grade = Grade::good, .value = 0.1, .reason = {}});
+      }
+      return verdict;
+    };
+  };
+  fake.options.inspect = inspect(true);
+  EXPECT_THAT(message_of([&] { fake.run(path, small_plan()); }), HasSubstr("slipped"));
+  const auto left = pictures_of(path);
+  EXPECT_TRUE(left.contains("pose-horizontal-1"));
+  EXPECT_TRUE(left.contains("reflection-horizontal-1")) << "its own tags said where it stood";
+  EXPECT_FALSE(left.contains("reflection-horizontal-2")) << "nothing says that it had not slipped yet";
+  FakeStation fresh;
+  fresh.options.inspect = inspect(false);
+  EXPECT_EQ(fresh.run(path, small_plan()), RunState::complete);
+}
+
+TEST_F(RunnerTest, TheStateOfASessionIsToldByItsJournal) {
+  EXPECT_EQ(state_of({}, false), RunState::idle);
+  fake.options.stop_wish = [&] { return fake.camera.captures > 3 ? StopWish::pause : StopWish::none; };
+  fake.run(path, small_plan());
+  auto records = records_of(path);
+  EXPECT_EQ(state_of(records, false), RunState::paused);
+  records.pop_back();
+  EXPECT_EQ(state_of(records, true), RunState::running);
+  EXPECT_EQ(state_of(records, false), RunState::interrupted) << "no stop, and nobody holds it";
+  expect_resume_completes(small_plan());
+  EXPECT_EQ(state_of(records_of(path), false), RunState::complete);
 }
 
 }  // namespace

@@ -87,12 +87,12 @@ TEST_F(VerifyTest, AnInterruptedSessionNamesWhatIsLeftToDo) {
   const fs::path second = folder / "second";
   FakeStation other;
   other.options.choose_exposure = nullptr;
-  other.options.should_stop = [&] { return other.camera.captures == 5; };
-  ASSERT_EQ(other.run(second, small_plan()), RunOutcome::interrupted);
+  other.options.stop_wish = [&] { return other.camera.captures == 5 ? StopWish::pause : StopWish::none; };
+  ASSERT_EQ(other.run(second, small_plan()), RunState::paused);
   const VerifyReport report = verify_session(second);
   EXPECT_THAT(report.problems, ElementsAre("step dark-reflection-horizontal-2 has no picture; resume the session",
                                            "step dark-transmission-1 has no picture; resume the session",
-                                           "journal.jsonl does not end with a complete session; resume the session"));
+                                           "the session is paused, not complete; resume it"));
   EXPECT_EQ(report.views, 3U);
   EXPECT_FALSE(report.complete);
 }

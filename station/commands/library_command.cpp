@@ -1,0 +1,98 @@
+#include <cstdio>
+#include <iostream>
+
+#include "rig/clock.h"
+#include "station/commands/commands.h"
+#include "station/library/library.h"
+
+namespace station {
+namespace {
+
+struct Arguments {
+  std::string library = "library", words, what, out;
+  int number = 0;
+  bool json = false;
+};
+
+nlohmann::json to_json(const LibraryThread& thread) {
+  nlohmann::json document = {{"number", thread.number},           {"sample", to_json(thread.sample)},
+                             {"thread", thread.thread_name},      {"added_utc", thread.added_utc},
+                             {"sha256", thread.sha256},           {"session", thread.session},
+                             {"session_utc", thread.session_utc}, {"diameter_mm", thread.diameter_mm}};
+  if (thread.relative_rmse) document["relative_rmse"] = *thread.relative_rmse;
+  return document;
+}
+
+void print_line(const LibraryThread& thread) {
+  std::printf("%4d  %-24s %-12s %-10s %-12s %s", thread.number, thread.thread_name.c_str(),
+              thread.sample.barcode.c_str(), thread.sample.lot.c_str(), thread.sample.material.c_str(),
+              thread.sample.colour.c_str());
+  if (thread.relative_rmse) std::printf("  %.1f %%", 100 * *thread.relative_rmse);
+  std::printf("\n");
+}
+
+void print_all(const LibraryThread& thread) {
+  std::printf(
+      "number      %d\nthread      %s\nbarcode     %s\nspool       %s\nlot         %s\nmaterial    %s\n"
+      "colour      %s\nnote        %s\ndiameter    %.4g mm\nsession     %s\ncaptured    %s\nadded       %s\n"
+      "sha256      %s\n",
+      thread.number, thread.thread_name.c_str(), thread.sample.barcode.c_str(), thread.sample.name.c_str(),
+      thread.sample.lot.c_str(), thread.sample.material.c_str(), thread.sample.colour.c_str(),
+      thread.sample.note.c_str(), thread.diameter_mm, thread.session.c_str(), thread.session_utc.c_str(),
+      thread.added_utc.c_str(), thread.sha256.c_str());
+  if (thread.relative_rmse) std::printf("agreement   %.1f %% relative RMSE\n", 100 * *thread.relative_rmse);
+}
+
+void list(const Arguments& arguments) {
+  const auto threads = Library(arguments.library, false).list(arguments.words);
+  if (arguments.json) {
+    nlohmann::json all = nlohmann::json::array();
+    for (const LibraryThread& thread : threads) all.push_back(to_json(thread));
+    std::cout << all.dump() << "\n";
+    return;
+  }
+  for (const LibraryThread& thread : threads) print_line(thread);
+  std::printf("%zu thread(s)\n", threads.size());
+}
+
+}  // namespace
+
+void add_library_command(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("library", "the lab's collection of digitized threads");
+  command->require_subcommand(1);
+  const auto add = [&](const char* name, const char* description) {
+    CLI::App* sub = command->add_subcommand(name, description);
+    sub->add_option("--library", arguments->library, "the library's folder")->capture_default_str();
+    return sub;
+  };
+  CLI::App* listed = add("list", "one line for each thread");
+  listed->add_option("words", arguments->words, "only threads with this text in name, barcode, lot, material, ...");
+  listed->add_flag("--json", arguments->json, "as JSON, for machines");
+  listed->callback([arguments] { list(*arguments); });
+  CLI::App* shown = add("show", "all that is known of one thread");
+  shown->add_option("number", arguments->number, "of the thread in the list")->required();
+  shown->add_flag("--json", arguments->json, "as JSON, for machines");
+  shown->callback([arguments] {
+    const LibraryThread thread = Library(arguments->library, false).show(arguments->number);
+    if (arguments->json)
+      std::cout << to_json(thread).dump() << "\n";
+    else
+      print_all(thread);
+  });
+  CLI::App* added = add("add", "take in a session's thread, or a thread file");
+  added->add_option("what", arguments->what, "session folder or thread file")->required();
+  added->callback([arguments] {
+    rig::SystemClock clock;
+    print_line(Library(arguments->library, true).add(arguments->what, clock.utc()));
+  });
+  CLI::App* exported = add("export", "one thread with its sample and hashes, in a folder of its own");
+  exported->add_option("number", arguments->number, "of the thread in the list")->required();
+  exported->add_option("--out", arguments->out, "new folder")->required();
+  exported->callback([arguments] {
+    Library(arguments->library, false).export_thread(arguments->number, arguments->out);
+    std::cout << "exported: " << arguments->out << "\n";
+  });
+}
+
+}  // namespace station

@@ -1,0 +1,42 @@
+// A photograph against a rendering of the same view: colour difference, the highlight's profile, and a picture of both.
+#pragma once
+
+#include <array>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+namespace station {
+
+// Of a row-averaged brightness across the picture: where a cylinder's highlight is and how wide.
+struct HighlightProfile {
+  std::vector<double> brightness;  // of each column, relative to the photograph's brightest; 0 outside of the mask
+  double peak_px = 0;              // column of its maximum, smoothed over 2 % of the width
+  double width_px = 0;             // columns above half of that maximum
+};
+
+struct Comparison {
+  double scale = 1;  // the rendering was multiplied by it: least squares over the mask's pixels
+  double mean_delta_e = 0, median_delta_e = 0, delta_e_95 = 0;  // CIEDE2000 of block averages
+  double relative_rmse = 0;                                     // of the same averages, all channels
+  HighlightProfile photograph, rendering;
+  double profile_correlation = 0;
+  int blocks = 0;
+};
+
+struct CompareOptions {
+  bool fit_scale = true;  // false: both are in the same unit
+  int block_px = 8;       // threads are not where their rendering has them; averages are compared
+  std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};
+};
+
+// Linear pictures of one size; `mask`: 255 where they are compared, empty: everywhere. White is the photograph's 99th
+// percentile inside the mask. Errors: std::runtime_error for other sizes, an empty mask, or pictures without light.
+Comparison compare_pictures(const cv::Mat3f& photograph, const cv::Mat3f& rendering, const cv::Mat1b& mask,
+                            const CompareOptions& options);
+
+// Photograph, rendering (scaled) and where they differ (black: nothing, white: a CIEDE2000 of 20), beside each other.
+cv::Mat3b comparison_picture(const cv::Mat3f& photograph, const cv::Mat3f& rendering, const cv::Mat1b& mask,
+                             const CompareOptions& options);
+
+}  // namespace station

@@ -1,0 +1,23 @@
+// The noise of a developed view as a law: variance of a pixel = floor + slope x radiance, each channel by itself. Two numbers
+// say what the whole plane of variances does: photons bring the slope, reading the floor, and exposures merged and a flat
+// field lie between within a few percent.
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <optional>
+
+namespace station {
+
+struct NoiseLaw {
+  Eigen::Array3d floor = Eigen::Array3d::Zero();  // radiance unit squared
+  Eigen::Array3d slope = Eigen::Array3d::Zero();  // radiance unit
+};
+
+// Least squares over the masked pixels; nothing when `variance` is empty or no pixel is masked.
+std::optional<NoiseLaw> noise_law(const cv::Mat3f& radiance, const cv::Mat3f& variance, const cv::Mat1b& mask);
+
+// Variance of each pixel by the law; radiance below 0 has the floor's.
+cv::Mat3f variance_by(const NoiseLaw& law, const cv::Mat3f& radiance);
+
+}  // namespace station

@@ -1,0 +1,20 @@
+// What a lab knows of a spool beside its geometry; texts as people wrote them, any of them may be empty.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "station/documents/reader.h"
+
+namespace station {
+
+struct Sample {
+  std::string barcode, name, lot, material, colour, note;
+
+  bool operator==(const Sample&) const = default;
+};
+
+nlohmann::json to_json(const Sample& sample);
+Sample read_sample(ObjectReader& reader);  // finishes it
+
+}  // namespace station

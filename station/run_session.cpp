@@ -1,0 +1,63 @@
+#include "station/run_session.h"
+
+#include <memory>
+#include <stdexcept>
+
+#include "station/capture_checks.h"
+#include "station/replay/device_log.h"
+
+namespace station {
+
+std::vector<std::string> steps_to_reshoot(const Plan& plan, const std::vector<std::string>& asked) {
+  std::vector<std::string> steps;
+  for (const std::string& name : asked) {
+    std::string id = name;
+    if (!name.empty() && name.find_first_not_of("0123456789") == std::string::npos) {
+      const PlanStep* view = name.size() < 4 ? find_view(plan, std::stoul(name)) : nullptr;
+      if (view == nullptr)
+        throw std::runtime_error("view " + name + " was to be taken again; the plan has views 1 to " +
+                                 std::to_string(view_count(plan)));
+      id = view->id;
+    }
+    steps.push_back(id);
+    for (const PlanStep& step : plan.steps)
+      if (step.kind == StepKind::exposure && step.exposure_of == id) steps.push_back(step.id);
+  }
+  return steps;
+}
+
+RunState run_session(SessionFolder& session, const RunDevices& devices, const SessionFile& asked,
+                     const RigCalibration& calibration, const SessionRun& run) {
+  CaptureChecks checks(session, asked, calibration, run.in_order);
+  RunOptions options;
+  options.settings = run.settings;
+  options.most_attempts = run.most_attempts;
+  options.choose_exposure = [&](const PlanStep& step, const rig::Picture& test) {
+    return checks.choose_exposure(step, test);
+  };
+  options.inspect = [&](const PlanStep& step, const rig::Picture& picture, double reading_rad) {
+    return checks.judge(step, picture, reading_rad);
+  };
+  options.nominal_holder_pose = [&](rig::Mounting mounting) {
+    return nominal_holder_pose(asked.rig, asked.spool.wrapping, mounting);
+  };
+  options.progress = run.progress;
+  options.judged = run.judged;
+  options.reshoot = steps_to_reshoot(asked.plan, run.reshoot);
+  options.stop_wish = run.stop_wish;
+  if (!run.record) return run_plan(asked.plan, devices, session, options);
+
+  FileSystem disk;
+  DeviceLog log(session.path(), run.reshoot, disk);
+  const RecordedDevices recorded = record_devices(
+      devices, run.stop_wish ? run.stop_wish : [] { return StopWish::none; }, log);
+  options.stop_wish = recorded.wish;
+  options.choose_exposure = [&](const PlanStep& step, const rig::Picture& test) {
+    log.keep_test(test);
+    return checks.choose_exposure(step, test);
+  };
+  return run_plan(asked.plan, {*recorded.camera, *recorded.turntable, *recorded.person, devices.clock}, session,
+                  options);
+}
+
+}  // namespace station

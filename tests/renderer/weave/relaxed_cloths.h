@@ -1,0 +1,22 @@
+// Cloths that the tests of the relaxation have in common.
+#pragma once
+
+#include <vector>
+
+#include "renderer/weave/relaxation.h"
+
+namespace renderer {
+
+// Plain cloth of yarns of 0.5 mm: D, the sum of both diameters, is 1 mm, so pitches are p / D.
+Draft plain_cloth(double warp_pitch_mm, double weft_pitch_mm, double tension_n);
+
+// A twill and a satin whose systems differ.
+std::vector<Draft> uneven_drafts();
+
+// The ready weaves at the setts of fixtures/drafts, `yarns` or a little more each way.
+std::vector<Draft> ready_weaves(std::size_t yarns);
+
+// Comes to rest at a gradient below 1e-6 of the pull on the yarns, as drafted.
+void expect_at_rest(const RelaxedPatch& relaxed);
+
+}  // namespace renderer
