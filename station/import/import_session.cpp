@@ -125,6 +125,9 @@ class HandCamera final : public rig::Camera {
     return pictures_.settings = wanted;
   }
   rig::Picture capture() override { return pictures_.take(); }
+  std::vector<std::byte> preview() override {
+    throw std::runtime_error("pictures taken by hand have no live view; look through the rig's own camera");
+  }
 
  private:
   HandTakenPictures& pictures_;

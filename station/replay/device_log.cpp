@@ -73,6 +73,7 @@ class RecordedCamera final : public rig::Camera {
                       {"utc", picture.utc}};
         });
   }
+  std::vector<std::byte> preview() override { return camera_.preview(); }  // leaves nothing in a session
 
  private:
   rig::Camera& camera_;

@@ -95,6 +95,9 @@ class ScriptedCamera final : public rig::Camera {
         script_->answer({{"call", "configure"}, {"asked", rig::settings_to_json(wanted)}}));
   }
   rig::Picture capture() override { return picture_of(script_->answer({{"call", "capture"}}), script_->pictures()); }
+  std::vector<std::byte> preview() override {
+    throw std::runtime_error("recorded devices have no live view; look through the rig's own camera");
+  }
 
  private:
   std::shared_ptr<Script> script_;
@@ -185,6 +188,9 @@ class FreeCamera final : public rig::Camera {
     const json& answer = found->second.at(given % found->second.size());
     ++given;
     return picture_of(answer, memory_->files);
+  }
+  std::vector<std::byte> preview() override {
+    throw std::runtime_error("recorded devices have no live view; look through the rig's own camera");
   }
 
  private:

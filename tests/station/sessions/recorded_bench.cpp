@@ -17,6 +17,7 @@ class Camera final : public rig::Camera {
     return bench_.camera->configure(wanted);
   }
   rig::Picture capture() override { return bench_.on_capture(*bench_.camera); }
+  std::vector<std::byte> preview() override { return bench_.camera->preview(); }
 
  private:
   RecordedBench& bench_;
