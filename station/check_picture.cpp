@@ -14,7 +14,7 @@ namespace station {
 namespace {
 
 constexpr int kMostTestPictures = 8;
-constexpr double kWidestEdge_px = 4;
+constexpr double kWidestEdge_px = 3;  // out of focus by one pixel (standard deviation) is 3.2
 constexpr int kFewestRingTags = 2, kFewestTableTags = 1;
 constexpr double kAcross = 0.1;  // of a tag's edge, to either side: a border is one cell of eight wide
 
