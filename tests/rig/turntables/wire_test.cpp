@@ -126,6 +126,7 @@ TEST_P(Wire, SilenceInTheMiddleOfAMoveIsATimeoutAndNoPulledPlug) {
   table->home();
   EXPECT_THAT(refusal([&] { table->move_to(300 * kDegree); }), HasSubstr("did not answer"));
   EXPECT_EQ(table->state(), rig::TurntableState::unknown_position);
+  server.reset();  // before the rig that it serves
 }
 
 TEST_P(Wire, AStopFromAnotherThreadReachesTheMotorWhileTheMoverSleeps) {
