@@ -38,7 +38,7 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr int kMaskSamples = 8;
-constexpr double kBytesPerPixel = 75;     // of a view while it is developed, measured at 24 MP
+constexpr double kBytesPerPixel = 75;     // of a view while it is developed: its planes counted, not measured
 constexpr double kMostDarkOffset = 1e-3;  // of the range; a bias drifts by a DN or two
 
 using Pictures = std::map<std::string, PictureRecord>;
