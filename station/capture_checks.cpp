@@ -29,14 +29,14 @@ namespace {
 constexpr double kMostSaturated = 0.05, kSomeSaturated = 0.005, kUnderExposed = 0.02;
 constexpr double kMostDarkOffset = 1e-3;  // of the range
 constexpr double kMostBlur_px = 3, kMuchBlur_px = 2;
-constexpr double kLeastSharpness = 0.4, kLittleSharpness = 0.6;  // of the median of the views before
+constexpr double kLeastSharpness = 0.2, kLittleSharpness = 0.6;  // of the median of the views before
 constexpr std::size_t kFewestCompared = 3;
 constexpr double kMostMotion_px = 0.2;
 constexpr double kLampOff = 0.5;  // of its strength
 constexpr double kMostTilt_rad = 30 * M_PI / 180;
 // Light on the holder's tags, of what the lamp in front gives a white surface there: paper 0.1 to 0.9 under it, nothing
 // but what the bench throws back under the one behind.
-constexpr double kLitFromTheFront = 0.04;
+constexpr double kLitFromTheFront = 0.01;
 constexpr int kTagPercentile = 80;  // their paper, not their ink
 
 std::string percent(double part) {
