@@ -30,6 +30,10 @@ Values values_at(const ThreadUnknowns& unknowns, double cosine) {
 }  // namespace
 
 std::vector<EnergyBand> energy_bands(const ViewFit& fit) {
+  return energy_bands(fit, fit.certainty.covariance);
+}
+
+std::vector<EnergyBand> energy_bands(const ViewFit& fit, const Eigen::MatrixXd& covariance) {
   constexpr double kStep = 1e-5;
   const ThreadUnknowns at = fit.unknowns;
   std::vector<EnergyBand> bands;
@@ -42,8 +46,7 @@ std::vector<EnergyBand> energy_bands(const ViewFit& fit) {
       beside[k] += kStep;
       slopes.col(k) = (values_at(beside, cosine) - values) / kStep;
     }
-    const Values sigma =
-        (slopes * fit.certainty.covariance * slopes.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
+    const Values sigma = (slopes * covariance * slopes.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
     bands.push_back({.cosine = cosine,
                      .lambda = {values[0], values[1], values[2]},
                      .sigma = {sigma[0], sigma[1], sigma[2]},

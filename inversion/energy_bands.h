@@ -18,5 +18,7 @@ struct EnergyBand {
 
 // At c = 0.1, 0.2 ... 1, from the total covariance, linearised.
 std::vector<EnergyBand> energy_bands(const ViewFit& fit);
+// From another covariance of the fit's unknowns.
+std::vector<EnergyBand> energy_bands(const ViewFit& fit, const Eigen::MatrixXd& covariance);
 
 }  // namespace inversion

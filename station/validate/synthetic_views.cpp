@@ -85,14 +85,14 @@ cv::Mat3f photograph(const inversion::View& view, const inversion::WrappedSpool&
                                      .progress = options.progress});
 }
 
-cv::Mat3f with_sensor_noise(const cv::Mat3f& radiance, const cv::Mat1b& mask, const rig::TrueSensor& sensor,
-                            double target_level, std::uint64_t seed) {
+SensedPicture with_sensor_noise(const cv::Mat3f& radiance, const cv::Mat1b& mask, const rig::TrueSensor& sensor,
+                                double target_level, std::uint64_t seed) {
   std::vector<float> levels;
   for (int row = 0; row < mask.rows; ++row)
     for (int column = 0; column < mask.cols; ++column)
       if (mask(row, column))
         levels.push_back(*std::max_element(radiance(row, column).val, radiance(row, column).val + 3));
-  if (levels.empty()) return radiance;
+  if (levels.empty()) return {.radiance = radiance, .noise = {}};
   const auto brightest = levels.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(levels.size() - 1));
   std::nth_element(levels.begin(), brightest, levels.end());
   const double exposure_s = *brightest > 0 ? target_level / *brightest : 1.0;
@@ -108,7 +108,11 @@ cv::Mat3f with_sensor_noise(const cv::Mat3f& radiance, const cv::Mat1b& mask, co
         const double dn = std::round((electrons + spread * noise.normals().first) * dn_per_electron);
         seen(row, column)[c] = static_cast<float>(std::min(dn, range_dn) / (range_dn * exposure_s));
       }
-  return seen;
+  const double electrons_per_radiance = exposure_s * sensor.full_well_e, quantum_e = 1 / dn_per_electron;
+  const double floor_e2 = sensor.read_noise_e * sensor.read_noise_e + quantum_e * quantum_e / 12;
+  return {.radiance = seen,
+          .noise = {.floor = Eigen::Array3d::Constant(floor_e2 / (electrons_per_radiance * electrons_per_radiance)),
+                    .slope = Eigen::Array3d::Constant(1 / electrons_per_radiance)}};
 }
 
 }  // namespace station

@@ -15,6 +15,9 @@
 
 namespace station {
 
+inline constexpr int kPooledWidth_px = 256, kPooledHeight_px = 192;
+inline constexpr double kPhotographLevel = 0.5;  // of full scale, of one in a thousand pixels
+
 // The rig's plan at width x height pixels, distortion removed: the whole width of the sensor is shown. Masks are made,
 // images are not. With `calibrated` camera, axis and lamps are where a calibration of the rig takes them to be, on the
 // pixels of the true views: what its errors do to a fit is the difference.
@@ -32,9 +35,14 @@ struct PhotographOptions {
 cv::Mat3f photograph(const inversion::View& view, const inversion::WrappedSpool& spool,
                      const renderer::CurveSet& curves, const PhotographOptions& options);
 
-// The same as a 14-bit sensor gives it: exposed so that one in a thousand masked pixels reaches `target_level` of full scale,
-// with the noise of counted electrons and of reading, quantised.
-cv::Mat3f with_sensor_noise(const cv::Mat3f& radiance, const cv::Mat1b& mask, const rig::TrueSensor& sensor,
-                            double target_level, std::uint64_t seed);
+struct SensedPicture {
+  cv::Mat3f radiance;
+  inversion::NoiseLaw noise;
+};
+
+// A picture as a 14-bit sensor gives it: exposed so that one in a thousand masked pixels reaches `target_level` of full
+// scale, with the noise of counted electrons and of reading, quantised.
+SensedPicture with_sensor_noise(const cv::Mat3f& radiance, const cv::Mat1b& mask, const rig::TrueSensor& sensor,
+                                double target_level, std::uint64_t seed);
 
 }  // namespace station

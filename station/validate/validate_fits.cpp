@@ -22,8 +22,7 @@ namespace {
 using inversion::View;
 using Pictures = std::array<cv::Mat3f, 2>;  // with noise of their own
 
-constexpr int kWidth_px = 256, kHeight_px = 192, kBlock_px = 8;
-constexpr double kTargetLevel = 0.5;
+constexpr int kBlock_px = 8;
 constexpr const char* kStopped =
     "the validation was interrupted; the same command goes on with the photographs it has";
 // Left out, among the reflections and among the transmissions: middle and oblique, both mountings.
@@ -48,7 +47,7 @@ std::string made_from(const std::filesystem::path& rig, const std::filesystem::p
 Photographed photograph_spool(const ValidateRequest& request, const RigFile& rig, const Spool& spool,
                               const std::string& origin, const std::filesystem::path& folder,
                               const std::function<void(const std::string&, double)>& step) {
-  Photographed made{.views = synthetic_views(rig, spool.wrapping, kWidth_px, kHeight_px), .pictures = {}};
+  Photographed made{.views = synthetic_views(rig, spool.wrapping, kPooledWidth_px, kPooledHeight_px), .pictures = {}};
   std::filesystem::create_directories(folder);
   const renderer::CurveSet fibers = spool_fibers(spool);
   for (std::size_t i = 0; i < made.views.size(); ++i) {
@@ -70,7 +69,8 @@ Photographed photograph_spool(const ValidateRequest& request, const RigFile& rig
                                }});
         renderer::write_exr(file, radiance, {{"threadstation/made_from", origin}});
       }
-      pictures[half] = with_sensor_noise(radiance, view.mask, rig.simulation->truth.sensor, kTargetLevel, seed);
+      pictures[half] =
+          with_sensor_noise(radiance, view.mask, rig.simulation->truth.sensor, kPhotographLevel, seed).radiance;
     }
     view.image = 0.5 * (pictures[0] + pictures[1]);
     made.pictures.push_back(std::move(pictures));
@@ -166,7 +166,7 @@ std::vector<Variant> variants_of(const ValidateRequest& request, const RigFile& 
   const RigCalibration calibration = read_calibration(*request.calibration);
   Variant calibrated{.model = inversion::ModelKind::thread,
                      .calibrated = true,
-                     .views = synthetic_views(rig, spool.wrapping, kWidth_px, kHeight_px, &calibration)};
+                     .views = synthetic_views(rig, spool.wrapping, kPooledWidth_px, kPooledHeight_px, &calibration)};
   for (std::size_t i = 0; i < made.views.size(); ++i) {
     calibrated.views[i].image = made.views[i].image;
     calibrated.views[i].mask &= made.views[i].mask;  // the photograph is drawn there only
