@@ -89,6 +89,7 @@ ViewFit fit_views(const WrappedSpool& spool, const std::vector<View>& views, con
 // fits are compared by. Recorded `repetitions` >= 2 times.
 struct IndependentLoss {
   double mean = 0, standard_error = 0;
+  double without_noise = 0;  // by products of residuals of different repetitions: the misfit alone; may be below zero
 };
 IndependentLoss independent_loss(const WrappedSpool& spool, const std::vector<View>& views, const ViewFit& fit,
                                  int paths_per_block, int repetitions, std::uint64_t seed);

@@ -154,9 +154,11 @@ std::string describe(const RecoveredThread& recovered) {
   std::snprintf(line, sizeof line, "%s, 17 views, fitted from cold in %.1f s; then %d draws of the noise\n",
                 recovered.thread.c_str(), recovered.seconds, recovered.draws);
   std::string text = line;
-  std::snprintf(line, sizeof line, "loss on other paths: truth %.4g +- %.1g, fit %.4g +- %.1g\n",
+  std::snprintf(line, sizeof line,
+                "loss on other paths: truth %.4g +- %.1g, fit %.4g +- %.1g; without their noise %.3g, %.3g\n",
                 recovered.loss_of_truth.mean, recovered.loss_of_truth.standard_error, recovered.loss_of_fit.mean,
-                recovered.loss_of_fit.standard_error);
+                recovered.loss_of_fit.standard_error, recovered.loss_of_truth.without_noise,
+                recovered.loss_of_fit.without_noise);
   text += line;
   text +=
       "quantity           truth   fitted     +-   error, %  in +-     mean   spread  predicted  predicted/spread\n";
