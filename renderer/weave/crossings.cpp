@@ -40,7 +40,12 @@ Crossing crossing_of(const YarnPatch& patch, std::size_t warp, std::size_t weft)
     t += move[1];
     if (move.cwiseAbs().maxCoeff() < 1e-12) break;
   }
-  return {.warp = warp, .weft = weft, .warp_z_mm = spline_value(a, s).z(), .weft_z_mm = spline_value(b, t).z()};
+  return {.warp = warp,
+          .weft = weft,
+          .warp_z_mm = spline_value(a, s).z(),
+          .weft_z_mm = spline_value(b, t).z(),
+          .warp_t = s,
+          .weft_t = t};
 }
 
 }  // namespace

@@ -113,9 +113,10 @@ TEST(RelaxationTest, CrimpIsInterchangedAsTheStiffnessesAndPitchesOfTheBeamsSay)
 }
 
 TEST(RelaxationTest, ClothThatIsTighterThanPeircesJamIsReportedAsJammed) {
-  for (const double pitch : {0.80, 0.84, 0.86, 0.88, 0.90, 0.95}) {  // square cloth jams at sqrt(3) / 2
+  for (const double pitch :
+       {0.80, 0.84, 0.86, 0.865, 0.867, 0.87, 0.88, 0.90, 0.95}) {  // square cloth jams at sqrt(3) / 2
     const RelaxedPatch cloth = relax(plain_cloth(pitch, pitch, 0.5));
-    std::printf("p/D %.2f: overlap %.2f %% of the radius, gap at the crowns %.2f %%%s\n", pitch,
+    std::printf("p/D %.3f: overlap %.2f %% of the radius, gap at the crowns %.2f %%%s\n", pitch,
                 100 * cloth.report.overlap, 100 * cloth.report.crown_gap, cloth.report.jammed ? ", jammed" : "");
     EXPECT_EQ(cloth.report.jammed, pitch < 0.866) << pitch;
     EXPECT_TRUE(cloth.report.as_drafted);
@@ -229,13 +230,13 @@ TEST(RelaxationTest, ACellOfFreePeriodsTakesTheSizeThatItsYarnsFill) {
   const RelaxedPatch cloth = relax(draft);
   expect_at_rest(cloth);
   const double length = (1 + peirce_crimp(1.25, 1)) * 2.5;
-  std::printf("periods %.5f %.5f mm from 2.5 mm, crimp %.4f, cell force %.1e %.1e N\n", cloth.patch.period_x_mm,
-              cloth.patch.period_y_mm, cloth.patch.crimp_warp, cloth.report.cell_force_n.x(),
-              cloth.report.cell_force_n.y());
+  std::printf("periods %.5f %.5f mm from 2.5 mm, crimp %.4f, cell force %.1e %.1e N, overlap %.2f %%\n",
+              cloth.patch.period_x_mm, cloth.patch.period_y_mm, cloth.patch.crimp_warp, cloth.report.cell_force_n.x(),
+              cloth.report.cell_force_n.y(), 100 * cloth.report.overlap);
   EXPECT_NEAR(cloth.patch.period_x_mm / cloth.patch.period_y_mm, 1, 1e-3);
   EXPECT_LT(cloth.patch.period_x_mm, 2.5);
   EXPECT_LT(cloth.patch.period_x_mm * (1 + cloth.patch.crimp_weft), length);  // 2 % shorter, but for the stretch
-  EXPECT_LE(cloth.report.overlap, 2 * kMostOverlap);
+  EXPECT_LE(cloth.report.overlap, kMostOverlap);
 }
 
 TEST(RelaxationTest, EveryReadyWeaveComesToRestAsDraftedWithLittleOverlap) {
