@@ -211,7 +211,7 @@ double least_crown_gap(const YarnPatch& patch) {
     const Yarn &warp = patch.yarns[crossing.warp], &weft = patch.yarns[crossing.weft];
     const double contact =
         half_height(warp) * thickness(warp, crossing.warp_t) + half_height(weft) * thickness(weft, crossing.weft_t);
-    least = std::min(least, std::abs(crossing.warp_z_mm - crossing.weft_z_mm) / contact - 1);
+    least = std::min(least, crossing.distance_mm / contact - 1);
   }
   return least;
 }
