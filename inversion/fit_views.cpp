@@ -2,14 +2,13 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <stdexcept>
 
 #include "inversion/adam.h"
 #include "inversion/bias_free.h"
+#include "inversion/loss_terms.h"
 #include "inversion/view_objective.h"
-#include "renderer/scattering/thread_prior.h"
 
 namespace inversion {
 namespace {
@@ -22,55 +21,6 @@ constexpr double kSettledWeight = 0.1;
 // With fewer the product of two halves' errors is larger than what it is to find.
 constexpr int kFewestPathsWithoutBias = 512;
 constexpr const char* kStopped = "the fit was stopped on request; start it again for a thread";
-
-class DataTerm : public ceres::CostFunction {
- public:
-  DataTerm(const ViewObjective& objective, int unknowns) : objective_(objective), unknowns_(unknowns) {
-    set_num_residuals(objective.residual_count());
-    mutable_parameter_block_sizes()->push_back(unknowns);
-  }
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    objective_.residuals(Eigen::Map<const VectorXd>(parameters[0], unknowns_), residuals,
-                         jacobians ? jacobians[0] : nullptr);
-    return true;
-  }
-
- private:
-  const ViewObjective& objective_;
-  int unknowns_;
-};
-
-// The simulated threads' mean and covariance as terms of the loss: ||scale (u - mean)||^2 / 2.
-class PriorTerm : public ceres::CostFunction {
- public:
-  // weight: of the prior's chi square in the loss.
-  explicit PriorTerm(double weight) {
-    const renderer::ThreadPrior& prior = renderer::simulated_thread_prior();
-    jacobian_.setZero();
-    const renderer::PriorMatrix root = prior.covariance.llt().matrixL();
-    jacobian_.rightCols<renderer::kPriorUnknownCount>() =
-        std::sqrt(weight) * root.triangularView<Eigen::Lower>().solve(renderer::PriorMatrix::Identity());
-    mean_.setZero();
-    mean_.tail<renderer::kPriorUnknownCount>() = prior.mean;
-    set_num_residuals(renderer::kPriorUnknownCount);
-    mutable_parameter_block_sizes()->push_back(renderer::kThreadParameterCount);
-  }
-  using Rows = Eigen::Matrix<double, renderer::kPriorUnknownCount, renderer::kThreadParameterCount, Eigen::RowMajor>;
-  const Rows& jacobian() const { return jacobian_; }
-  double loss(const VectorXd& u) const { return 0.5 * (jacobian_ * (u - mean_)).squaredNorm(); }
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    Eigen::Map<Eigen::Matrix<double, renderer::kPriorUnknownCount, 1>> values(residuals);
-    values = jacobian_ * (Eigen::Map<const ThreadUnknowns>(parameters[0]) - mean_);
-    if (jacobians && jacobians[0]) std::copy_n(jacobian_.data(), jacobian_.size(), jacobians[0]);
-    return true;
-  }
-
- private:
-  Rows jacobian_;
-  ThreadUnknowns mean_;
-};
-// The prior's unknowns are a thread's last ones, in its order.
-static_assert(kBeta + 3 == kL0 && kBeta + renderer::kPriorUnknownCount == renderer::kThreadParameterCount);
 
 struct FollowLoss : ceres::IterationCallback {
   std::function<bool(int)> go_on;
@@ -218,48 +168,6 @@ Attempt search_by_rounds(ViewObjective& objective, const Search& search, const s
   return best;
 }
 
-// Penalties and prior.
-class OtherTerms {
- public:
-  OtherTerms(const Search& search, double prior_scale, Eigen::Index unknowns) : at_(unknowns) {
-    problem_.AddParameterBlock(at_.data(), static_cast<int>(unknowns));
-    search.family->add_penalties(problem_, at_.data());
-    if (prior_scale > 0) problem_.AddResidualBlock(new PriorTerm(prior_scale), nullptr, at_.data());
-  }
-  // As they are at the unknowns, with the Gauss-Newton approximation of the Hessian.
-  BiasFreeTerms at(const VectorXd& unknowns) {
-    at_ = unknowns;
-    BiasFreeTerms terms;
-    terms.gradient = VectorXd::Zero(unknowns.size());
-    terms.hessian = Eigen::MatrixXd::Zero(unknowns.size(), unknowns.size());
-    if (problem_.NumResiduals() == 0) return terms;
-    std::vector<double> gradient;
-    problem_.Evaluate({}, &terms.loss, nullptr, &gradient, nullptr);
-    terms.gradient = Eigen::Map<const VectorXd>(gradient.data(), unknowns.size());
-    const Eigen::MatrixXd rows = jacobian(unknowns);
-    terms.hessian = rows.transpose() * rows;
-    return terms;
-  }
-
-  // Terms x unknowns; no rows where there are no terms.
-  Eigen::MatrixXd jacobian(const VectorXd& unknowns) {
-    if (problem_.NumResiduals() == 0) return Eigen::MatrixXd(0, unknowns.size());
-    at_ = unknowns;
-    ceres::CRSMatrix sparse;
-    problem_.Evaluate({}, nullptr, nullptr, nullptr, &sparse);
-    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(sparse.num_rows, at_.size());
-    for (int row = 0; row < sparse.num_rows; ++row)
-      for (auto i = static_cast<std::size_t>(sparse.rows[static_cast<std::size_t>(row)]);
-           i < static_cast<std::size_t>(sparse.rows[static_cast<std::size_t>(row) + 1]); ++i)
-        dense(row, sparse.cols[i]) = sparse.values[i];
-    return dense;
-  }
-
- private:
-  VectorXd at_;
-  ceres::Problem problem_;
-};
-
 BiasFreeTerms data_terms(const ViewObjective& objective, const VectorXd& unknowns) {
   const ViewObjective::Halves both = objective.halves(unknowns);
   const auto& [a, b] = both.residuals;
@@ -274,7 +182,7 @@ BiasFreeTerms data_terms(const ViewObjective& objective, const VectorXd& unknown
 void remove_bias(ViewObjective& objective, const Search& search, Attempt& attempt) {
   const FitOptions& options = *search.options;
   const int paths = options.paths_per_block.back();
-  OtherTerms others(search, prior_scale(objective, search, attempt.rounds), attempt.unknowns.size());
+  OtherTerms others(*search.family, prior_scale(objective, search, attempt.rounds));
   const auto loss = [&](int step, const VectorXd& unknowns) {
     const std::string name = "without bias, step " + std::to_string(step + 1);
     const auto number = options.paths_per_block.size() + static_cast<std::size_t>(step);
@@ -349,7 +257,7 @@ Certainty certainty_at(const ViewObjective& objective, const Search& search, dou
   fit.views = objective.residual_views();
   fit.fixed = fixed_unknowns(search, unknowns);
   fit.scales = VectorXd::Ones(unknowns.size());
-  fit.penalty_jacobian = OtherTerms(search, 0, unknowns.size()).jacobian(unknowns);
+  fit.penalty_jacobian = OtherTerms(*search.family, 0).jacobian(unknowns);
   if (prior_scale > 0) fit.prior_jacobian = PriorTerm(prior_scale).jacobian();
   return certainty_of(fit);
 }

@@ -3,8 +3,10 @@
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 
+#include "inversion/noise_law.h"
 #include "inversion/wrapped_spool.h"
 #include "renderer/camera.h"
 #include "renderer/scene.h"
@@ -26,9 +28,9 @@ struct View {
   renderer::Camera camera;  // undistorted; world = holder frame
   NearLight light;
   bool transmission = false;
-  cv::Mat3f image;       // linear camera RGB, radiance unit; may be empty
-  cv::Mat3f variance{};  // of the image's noise, pixel by pixel, radiance unit squared; may be empty: not known
-  cv::Mat1b mask;        // 255 where threads are; same size
+  cv::Mat3f image;                  // linear camera RGB, radiance unit; may be empty
+  std::optional<NoiseLaw> noise{};  // of the image; nothing: not known
+  cv::Mat1b mask;                   // 255 where threads are; same size
 };
 
 renderer::SphereLight sphere_light(const NearLight& light);

@@ -22,10 +22,10 @@ void check(const View& view) {
     throw std::runtime_error(name + ": the lamp has no intensity; calibrate the light again");
 }
 
-// Mean over the block of independent variances, over the number of pixels.
+// Of the block's mean: its pixels' noise is independent.
 Eigen::Array3d mean_variance(const Block& block, const View& view) {
-  if (view.variance.empty()) return Eigen::Array3d::Zero();
-  return block_mean(block, view.variance) / static_cast<double>(block.pixels.size());
+  if (!view.noise) return Eigen::Array3d::Zero();
+  return variance_by(*view.noise, block_mean(block, view.image)) / static_cast<double>(block.pixels.size());
 }
 
 }  // namespace

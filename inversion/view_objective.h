@@ -36,7 +36,7 @@ class ViewObjective {
   };
   Halves halves(const Eigen::VectorXd& unknowns) const;
 
-  // Variance of each residual: the photographs' noise (View::variance) and that of the light paths.
+  // Variance of each residual: the photographs' noise (View::noise) and that of the light paths.
   Eigen::VectorXd residual_variances(const Eigen::VectorXd& unknowns) const;
   // Weighs every block anew by how far off it is at the unknowns (robust_weights.h), for all calls from now on. The weight of
   // each view.

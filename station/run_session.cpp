@@ -3,7 +3,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "station/capture_checks.h"
+#include "station/checks/capture_checks.h"
 #include "station/replay/device_log.h"
 
 namespace station {

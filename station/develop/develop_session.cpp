@@ -22,9 +22,8 @@
 #include "station/capture/picture_record.h"
 #include "station/capture/sha256.h"
 #include "station/capture/stored_file.h"
-#include "station/capture_checks.h"
+#include "station/checks/capture_checks.h"
 #include "station/develop/mounted_holder.h"
-#include "station/develop/noise_law.h"
 #include "station/develop/sheet_width.h"
 #include "station/documents/calibration_file.h"
 #include "station/documents/reader.h"
@@ -219,7 +218,7 @@ DevelopedPicture develop_view(const std::filesystem::path& session, const Sessio
   if (developed.masked_pixels == 0)
     throw std::runtime_error("view " + view.id +
                              ": no thread is where the calibration expects them; calibrate the rig again");
-  developed.noise = noise_law(picture.radiance, picture.variance, view.mask);
+  developed.noise = inversion::noise_law(picture.radiance, picture.variance, view.mask);
   picture.variance.release();
   developed.saturated_fraction =
       static_cast<double>(cv::countNonZero(picture.saturated & view.mask)) / developed.masked_pixels;

@@ -64,8 +64,8 @@ DevelopedView parse_view(ObjectReader reader) {
   developed.lamp_strength = reader.number("lamp_strength", 1e-6, 1e6);
   if (reader.has("noise_variance")) {
     ObjectReader noise = reader.object("noise_variance");
-    developed.noise = NoiseLaw{.floor = noise.vector3("floor", kVariance).array(),
-                               .slope = noise.vector3("per_radiance", kVariance).array()};
+    developed.noise = inversion::NoiseLaw{.floor = noise.vector3("floor", kVariance).array(),
+                                          .slope = noise.vector3("per_radiance", kVariance).array()};
     noise.finish();
   }
   ObjectReader camera = reader.object("camera");
@@ -120,10 +120,7 @@ void read_view_pictures(const std::filesystem::path& session, DevelopedViews& vi
     inversion::View& view = developed.view;
     view.image = renderer::read_exr(session / developed.image_file);
     view.mask = renderer::read_png_grey(session / developed.mask_file);
-    if (developed.noise) {
-      view.variance = variance_by(*developed.noise, view.image);
-      view.variance /= developed.lamp_strength * developed.lamp_strength;
-    }
+    if (developed.noise) view.noise = divided(*developed.noise, developed.lamp_strength);
     view.image /= developed.lamp_strength;
     const cv::Size expected(view.camera.width, view.camera.height);
     if (view.image.size() != expected || view.mask.size() != expected)

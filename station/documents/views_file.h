@@ -10,7 +10,6 @@
 
 #include "inversion/view.h"
 #include "rig/operator.h"
-#include "station/develop/noise_law.h"
 
 namespace station {
 
@@ -25,7 +24,8 @@ struct DevelopedView {
   double saturated_fraction = 0.0;  // of the masked pixels
   double pose_rms_px = 0.0;         // of the holder's tags at this mounting
   double lamp_strength = 1.0;       // relative to the first view, by the reference patch
-  std::optional<NoiseLaw> noise{};  // of the picture as it is on the disk; none without a sensor's calibration
+  std::optional<inversion::NoiseLaw>
+      noise{};  // of the picture as it is on the disk; none without a sensor's calibration
 };
 
 struct DevelopedViews {
@@ -36,7 +36,7 @@ struct DevelopedViews {
 
 nlohmann::json to_json(const DevelopedViews& views);
 DevelopedViews read_views(const std::filesystem::path& session);
-// Divided by their lamp strengths, with the variance of their noise.
+// Divided by their lamp strengths, with the law of their noise.
 void read_view_pictures(const std::filesystem::path& session, DevelopedViews& views);
 
 }  // namespace station

@@ -80,6 +80,10 @@ std::string number_text(double value, int decimals) {
   return text;
 }
 
+std::string percent_text(double part) {
+  return number_text(100 * part, 1) + " %";
+}
+
 std::string numbers_text(std::initializer_list<double> values, int decimals) {
   std::string text;
   for (double value : values) text += (text.empty() ? "" : ", ") + number_text(value, decimals);

@@ -17,6 +17,7 @@ std::string fact_table(const std::vector<std::pair<std::string, std::string>>& f
 // The whole page with the house style.
 std::string html_page(const std::string& title, const std::string& body);
 std::string number_text(double value, int decimals);
+std::string percent_text(double part);  // "12.3 %"
 // "0.1, 0.2, 0.3"
 std::string numbers_text(std::initializer_list<double> values, int decimals);
 

@@ -7,7 +7,7 @@
 #include "renderer/path_tracer.h"
 #include "rig/noise.h"
 #include "station/capture/plan.h"
-#include "station/capture_checks.h"
+#include "station/checks/capture_checks.h"
 #include "station/views.h"
 
 namespace station {

@@ -19,9 +19,8 @@ TEST(FitCertaintyTest, PredictedDeviationsOfAbsorptionMatchTheSpreadOverFiftyDra
     exact.push_back(
         photographed(unlit_view(spool, at, kWidth_px), spool, known_thread(), kSamples, 31 + exact.size()));
   // Noise as a sensor's: a variance that grows with the light, 3 % of a pixel at the views' mean.
-  const auto variance_of = [](const View& view) {
-    const cv::Scalar mean = cv::mean(view.image, view.mask);
-    return cv::Mat3f(view.image * (0.001 * mean[1]));
+  const auto noise_of = [](const View& view) {
+    return NoiseLaw{.slope = Eigen::Array3d::Constant(0.001 * cv::mean(view.image, view.mask)[1])};
   };
   std::mt19937 random(kSeed);
   std::normal_distribution<float> normal;
@@ -30,11 +29,12 @@ TEST(FitCertaintyTest, PredictedDeviationsOfAbsorptionMatchTheSpreadOverFiftyDra
   for (int draw = 0; draw < kDraws; ++draw) {
     std::vector<View> noisy = exact;
     for (View& view : noisy) {
-      view.variance = variance_of(view);
+      view.noise = noise_of(view);
       view.image = view.image.clone();
-      for (int i = 0; i < view.image.rows * view.image.cols; ++i)
-        for (int c = 0; c < 3; ++c)
-          view.image(i)[c] += std::sqrt(std::max(0.F, view.variance(i)[c])) * normal(random);
+      for (cv::Vec3f& pixel : view.image) {
+        const Eigen::Array3d deviation = variance_by(*view.noise, {pixel[0], pixel[1], pixel[2]}).sqrt();
+        for (int c = 0; c < 3; ++c) pixel[c] += static_cast<float>(deviation[c]) * normal(random);
+      }
     }
     // Other paths for every draw: their noise counts too.
     FitOptions options{

@@ -24,9 +24,9 @@ struct DoubtedFit {
   std::vector<std::string> doubts;
 };
 
-DoubtedFit fit_and_doubt(const std::vector<View>& views) {
+DoubtedFit fit_and_doubt(const std::vector<View>& views, const FitOptions& options = kQuick) {
   const WrappedSpool spool;
-  DoubtedFit result{.fit = fit_views(spool, views, kQuick), .agreements = {}, .doubts = {}};
+  DoubtedFit result{.fit = fit_views(spool, views, options), .agreements = {}, .doubts = {}};
   std::vector<ViewAgreement>& agreements = result.agreements;
   for (const View& view : views)
     agreements.push_back(
@@ -126,13 +126,15 @@ TEST(FitFaultsTest, OneBadViewIsNamedAndHardlyMovesTheThread) {
         Standpoint{"upright-25", 0, 25, -10, 35, true}, Standpoint{"upright--30", 0, -30, 15, 10, true},
         Standpoint{"through--20", -20, 0, 175, 20}})
     views.push_back(photographed(unlit_view({}, at, kWidth_px), {}, known_thread(), kSamples, 41 + views.size()));
-  const ViewFit good = fit_views({}, views, kQuick);
+  const FitOptions whole;  // a bad view stands out as the others are explained
+  const ViewFit good = fit_views({}, views, whole);
   views[1].image *= 1.7;  // the lamp was knocked
-  const DoubtedFit found = fit_and_doubt(views);
+  const DoubtedFit found = fit_and_doubt(views, whole);
   EXPECT_THAT(found.doubts, Contains(testing::AllOf(HasSubstr(views[1].id), HasSubstr("disagrees"))));
-  EXPECT_LT(found.fit.view_weights[1], 0.5);
+  std::printf("weight of the bad view %.3f\n", found.fit.view_weights[1]);
+  EXPECT_LT(found.fit.view_weights[1], 0.2);
   EXPECT_EQ(found.fit.view_weights[0], 1);
-  FitOptions all_alike = kQuick;
+  FitOptions all_alike = whole;
   all_alike.robust = false;
   const ViewFit plain = fit_views({}, views, all_alike);
   for (double c : {0.7, 0.85, 1.0})

@@ -80,7 +80,7 @@ TEST_P(ViewObjectiveTest, ResidualVariancesAreTheSpreadOfResidualsOverSeeds) {
 TEST_P(ViewObjectiveTest, APhotographsVarianceAddsToItsResiduals) {
   const auto family = GetParam().family();
   std::vector<View> noisy = views();
-  for (View& view : noisy) view.variance = cv::Mat3f(view.image.size(), cv::Vec3f(4, 4, 4));
+  for (View& view : noisy) view.noise = NoiseLaw{.floor = Eigen::Array3d::Constant(4)};
   ViewObjective plain(kSpool, views(), *family), with(kSpool, noisy, *family);
   const VectorXd at = family->starts().front();
   for (ViewObjective* objective : {&plain, &with}) objective->trace(at, 16, 3, [](int, int) {});

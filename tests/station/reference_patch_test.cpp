@@ -7,7 +7,7 @@
 
 #include "calibration/spectralon.h"
 #include "station/bench/bench_picture.h"
-#include "station/capture_checks.h"
+#include "station/checks/capture_checks.h"
 #include "station/documents/rig_file.h"
 #include "station/documents/spool.h"
 #include "station/views.h"

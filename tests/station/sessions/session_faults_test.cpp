@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "station/bench/bench_picture.h"
-#include "station/capture_checks.h"
+#include "station/checks/capture_checks.h"
 #include "tests/station/sessions/recorded_bench.h"
 
 namespace station {

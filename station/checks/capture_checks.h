@@ -22,14 +22,11 @@ namespace station {
 //   orientation  degrees of the holder from its nominal pose; 30 (pose pictures)
 //   tags         how many were seen; of the holder's in a pose picture: 2, doubtful below
 //   focus        pose pictures: px that printed edges are soft, doubtful above 2, bad above 3; views: detail of the threads
-//                (picture_measures.h), doubtful below 60 %, bad below 20 % of the median of three or more views before it
+//                (picture_measures.h), doubtful below 60 %, bad below 40 % of the median of three or more views before it
 //                under the same lamp and mounting
 //   saturation   % of the window; doubtful above 0.5, bad above 5
 //   exposure     % of the range that the brightest threads reach; 2
-//   lamp         % of the calibrated lamp at the reference patch: below 50 it is off or covered, 10 from the calibration other
-//                light shines or it has changed, 2 from this run's last view under the same lamp and mounting it jumped (after
-//                a resume the first view is accepted: the person has seen to it)
-//   lamp_side    % of the light of the lamp in front that the holder's tags show; 1: the lamp is on the other side
+//   lamp, lamp_side   lamp_checks.h
 //   dark         % of the range above the calibration's dark level; 0.1
 // What cannot be looked at (no tags in the picture, no patch on the rig, a mounting whose pose picture shows fewer than two
 // tags) has no finding.

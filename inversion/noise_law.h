@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
-namespace station {
+namespace inversion {
 
 struct NoiseLaw {
   Eigen::Array3d floor = Eigen::Array3d::Zero();  // radiance unit squared
@@ -17,7 +17,11 @@ struct NoiseLaw {
 // Least squares over the masked pixels; nothing when `variance` is empty or no pixel is masked.
 std::optional<NoiseLaw> noise_law(const cv::Mat3f& radiance, const cv::Mat3f& variance, const cv::Mat1b& mask);
 
-// Variance of each pixel by the law; radiance below 0 has the floor's.
-cv::Mat3f variance_by(const NoiseLaw& law, const cv::Mat3f& radiance);
+// Variance by the law of a pixel with that radiance; below 0 it has the floor's. What a law says of the mean of many pixels it
+// says of the mean of their variances.
+Eigen::Array3d variance_by(const NoiseLaw& law, const Eigen::Array3d& radiance);
 
-}  // namespace station
+// The law of the picture divided by `divisor`.
+NoiseLaw divided(const NoiseLaw& law, double divisor);
+
+}  // namespace inversion

@@ -1,8 +1,8 @@
-#include "station/develop/noise_law.h"
+#include "inversion/noise_law.h"
 
 #include <gtest/gtest.h>
 
-namespace station {
+namespace inversion {
 namespace {
 
 // Radiance rising along a row, each channel with a law of its own; the last column is outside the mask and far off.
@@ -29,10 +29,15 @@ TEST(NoiseLawTest, ALawIsFoundAgainAndOnlyTheMaskCounts) {
   EXPECT_TRUE(law->slope.isApprox(Eigen::Array3d(2, 0, 4), 1e-5)) << law->slope;
 }
 
-TEST(NoiseLawTest, APictureGetsItsVarianceAndDarknessTheFloor) {
+TEST(NoiseLawTest, LightHasItsVarianceAndDarknessTheFloor) {
   const NoiseLaw law{.floor = {1, 2, 3}, .slope = {10, 20, 30}};
-  const cv::Mat3f picture(1, 1, cv::Vec3f(0.5F, -0.5F, 0));
-  EXPECT_EQ(variance_by(law, picture)(0, 0), cv::Vec3f(6, 2, 3));
+  EXPECT_TRUE(variance_by(law, {0.5, -0.5, 0}).isApprox(Eigen::Array3d(6, 2, 3)));
+}
+
+TEST(NoiseLawTest, ADividedPictureHasTheVarianceDividedTwice) {
+  const NoiseLaw law{.floor = {1, 2, 3}, .slope = {10, 20, 30}};
+  const Eigen::Array3d radiance(0.5, 2, 7);
+  EXPECT_TRUE(variance_by(divided(law, 4), radiance / 4).isApprox(variance_by(law, radiance) / 16));
 }
 
 TEST(NoiseLawTest, WithoutVariancesOrThreadsThereIsNone) {
@@ -50,4 +55,4 @@ TEST(NoiseLawTest, AnEvenPictureHasAFloorOnly) {
 }
 
 }  // namespace
-}  // namespace station
+}  // namespace inversion

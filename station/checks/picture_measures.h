@@ -9,8 +9,8 @@
 
 namespace station {
 
-// Detail of one to three pixels in `region` (255 inside), relative to its mean light. Means nothing by itself; views of
-// the same threads under the same lamp compare.
+// Detail of one to three pixels in `region` (255 inside), relative to its light; medians, so that hot pixels and sparkles
+// have no say. Means nothing by itself; views of the same threads under the same lamp compare.
 double sharpness(const cv::Mat1f& linear_grey, const cv::Mat1b& region);
 
 // Standard deviation (px) of the blur of the tags' black edges, median over the edges: lens, focus, motion and

@@ -1,4 +1,4 @@
-#include "station/capture_checks.h"
+#include "station/checks/capture_checks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "calibration/develop.h"
-#include "calibration/lamp_stability.h"
 #include "calibration/median.h"
 #include "calibration/sensor_maps.h"
 #include "station/bench_reading.h"
@@ -16,10 +15,10 @@
 #include "station/capture/metering.h"
 #include "station/capture/picture_record.h"
 #include "station/capture/plan_file.h"
+#include "station/checks/lamp_checks.h"
+#include "station/checks/picture_measures.h"
 #include "station/develop/mounted_holder.h"
 #include "station/exposure.h"
-#include "station/picture_measures.h"
-#include "station/reference_patch.h"
 #include "station/report/html.h"
 #include "station/views.h"
 
@@ -29,19 +28,10 @@ namespace {
 constexpr double kMostSaturated = 0.05, kSomeSaturated = 0.005, kUnderExposed = 0.02;
 constexpr double kMostDarkOffset = 1e-3;  // of the range
 constexpr double kMostBlur_px = 3, kMuchBlur_px = 2;
-constexpr double kLeastSharpness = 0.2, kLittleSharpness = 0.6;  // of the median of the views before
+constexpr double kLeastSharpness = 0.4, kLittleSharpness = 0.6;  // of the median of the views before
 constexpr std::size_t kFewestCompared = 3;
 constexpr double kMostMotion_px = 0.2;
-constexpr double kLampOff = 0.5;  // of its strength
 constexpr double kMostTilt_rad = 30 * M_PI / 180;
-// Light on the holder's tags, of what the lamp in front gives a white surface there: paper 0.1 to 0.9 under it, nothing
-// but what the bench throws back under the one behind.
-constexpr double kLitFromTheFront = 0.01;
-constexpr int kTagPercentile = 80;  // their paper, not their ink
-
-std::string percent(double part) {
-  return number_text(100 * part, 1) + " %";
-}
 
 // Only times whose true length is known, a stop apart; beyond them the wanted one.
 double nearest_measured_s(const calibration::SensorResponse& response, double wanted_s) {
@@ -52,12 +42,6 @@ double nearest_measured_s(const calibration::SensorResponse& response, double wa
   }
   return nearest_s;
 }
-
-struct LastView {
-  rig::Lamp lamp;
-  rig::Mounting mounting;
-  double strength;
-};
 
 // One picture as all checks see it.
 struct Seen {
@@ -74,7 +58,7 @@ struct Seen {
 class CaptureChecks::Work {
  public:
   Work(const SessionFolder& session, const SessionFile& asked, const RigCalibration& calibration, bool in_order)
-      : session_(session), asked_(asked), calibration_(calibration), in_order_(in_order) {
+      : session_(session), asked_(asked), calibration_(calibration), in_order_(in_order), lamp_(asked, calibration_) {
     if (calibration_.sensor) load_sensor_maps(session.path() / "calibration", *calibration_.sensor);
     for (const auto& [id, record] : taken_pictures(session.records()))
       if (record.kind == StepKind::view) remember_sharpness(record.lamp, record.mounting, record.verdict);
@@ -243,13 +227,13 @@ class CaptureChecks::Work {
           saturated > kMostSaturated
               ? name + " is over-exposed at " + number_text(seen.raw.exposure_s, 5) +
                     " s: more than 5 % of the threads' window is saturated; move the lamp away, then resume"
-              : name + " has " + percent(saturated) + " of the threads' window saturated; look at its bracket");
+              : name + " has " + percent_text(saturated) + " of the threads' window saturated; look at its bracket");
     check_focus(seen, region);
     // A soft picture of the small patch says nothing of the lamp.
     if (verdict_.findings.back().grade != Grade::bad) check_lamp(seen, developed_of(seen.raw));
     const double level = bright_level(seen.raw, region, ExposureAim{}.percentile);
     found("exposure", level < kUnderExposed ? Grade::bad : Grade::good, 100 * level,
-          name + " is dark: the brightest threads reach " + percent(level) + " of the range at " +
+          name + " is dark: the brightest threads reach " + percent_text(level) + " of the range at " +
               number_text(seen.raw.exposure_s, 3) +
               " s; see that the lamp is on and shines on the threads, then resume");
     found("tags", Grade::good, static_cast<double>(seen.tags.size()));
@@ -265,7 +249,7 @@ class CaptureChecks::Work {
       grade = ratio < kLeastSharpness ? Grade::bad : ratio < kLittleSharpness ? Grade::doubtful : Grade::good;
     }
     found("focus", grade, here,
-          "'" + seen.step.id + "' shows " + percent(ratio) +
+          "'" + seen.step.id + "' shows " + percent_text(ratio) +
               " of the detail of the views before it; see that nothing touched the lens or stands before it, then "
               "resume");
     if (grade != Grade::bad) before.push_back(here);
@@ -292,94 +276,8 @@ class CaptureChecks::Work {
         (Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()) * *mounted).inverse();
     const renderer::Camera camera =
         camera_of(calibration_.lens.lens, holder_from_world * calibration_.platform.world_from_camera, false);
-    const std::optional<Finding> side = lamp_side(seen, developed, camera, holder_from_world);
-    const std::optional<double> strength = lamp_strength(seen, developed, camera, holder_from_world);
-    // The calibrated lamp is the one on the right side; a lamp that is off is on no side.
-    const bool wrong_side = side && side->grade == Grade::bad && (!strength || *strength >= kLampOff);
-    if (strength && !wrong_side) {
-      const std::string problem = lamp_problem(seen.step, *strength);
-      found("lamp", problem.empty() ? Grade::good : Grade::bad, 100 * *strength, problem);
-      if (problem.empty()) last_ = LastView{seen.step.lamp, seen.step.mounting, *strength};
-    }
-    if (side) verdict_.findings.push_back(*side);
-  }
-
-  // Measured / expected at the reference patch; nothing where it cannot be read.
-  std::optional<double> lamp_strength(const Seen& seen, const calibration::Developed& developed,
-                                      const renderer::Camera& camera,
-                                      const Eigen::Isometry3d& holder_from_world) const {
-    if (!asked_.rig.reference_patch) return std::nullopt;
-    const auto reading = read_patch(
-        developed.radiance, developed.saturated, camera, *asked_.rig.reference_patch, asked_.spool.wrapping,
-        seen.step.mounting,
-        lamp_in_holder(calibration_, asked_.rig.lamp_radius_mm, seen.step.lamp == rig::Lamp::back, holder_from_world),
-        calibration_.light.droop);
-    return reading ? std::optional(reading->strength) : std::nullopt;
-  }
-
-  std::string lamp_problem(const PlanStep& step, double strength) const {
-    const calibration::LampGates limits;
-    const std::string found_there =
-        "'" + step.id + "': the reference patch shows " + percent(strength) + " of the calibrated lamp";
-    if (strength < kLampOff) return found_there + "; switch the lamp on and see that nothing covers it, then resume";
-    if (strength > 1 + limits.largest_change)
-      return found_there + "; switch the room light off and see that only the lamp shines, then resume";
-    if (strength < 1 - limits.largest_change) return found_there + "; cool or replace the lamp and calibrate again";
-    const bool comparable = last_ && last_->lamp == step.lamp && last_->mounting == step.mounting;
-    if (comparable && std::abs(strength / last_->strength - 1) > limits.largest_jump)
-      return found_there + ", " + percent(last_->strength) + " in the view before; let the lamp settle, then resume";
-    return {};
-  }
-
-  // The holder's tags are on its front: bright under the lamp in front, dark under the one behind.
-  std::optional<Finding> lamp_side(const Seen& seen, const calibration::Developed& developed,
-                                   const renderer::Camera& camera, const Eigen::Isometry3d& holder_from_world) const {
-    const inversion::NearLight front =
-        lamp_in_holder(calibration_, asked_.rig.lamp_radius_mm, false, holder_from_world);
-    std::vector<double> parts;
-    for (const calibration::Tag& tag : asked_.rig.holder_tags.tags) {
-      const Eigen::Vector3d centre = tag.object_from_tag.translation();
-      const Eigen::Vector3d to_lamp = front.position - centre,
-                            to_eye = camera.world_from_camera.translation() - centre;
-      const Eigen::Vector3d normal = tag.object_from_tag.linear().col(2);
-      const double cosine = normal.dot(to_lamp.normalized());
-      if (cosine < 0.2 || normal.dot(to_eye) <= 0) continue;
-      std::vector<cv::Point> outline;
-      for (const Eigen::Vector3d& corner : calibration::corners_in_object(tag)) {
-        const Eigen::Vector2d pixel = renderer::project(camera, corner);
-        outline.emplace_back(cvRound(pixel.x()), cvRound(pixel.y()));
-      }
-      const double white = front.intensity.mean() * cosine / to_lamp.squaredNorm() / M_PI;
-      if (const auto light = tag_light(developed.radiance, outline)) parts.push_back(*light / white);
-    }
-    if (parts.empty()) return std::nullopt;
-    const double part = calibration::median(parts);
-    const bool from_front = part > kLitFromTheFront, wanted = seen.step.lamp == rig::Lamp::front;
-    Finding side{.check = "lamp_side", .grade = Grade::good, .value = 100 * part, .reason = {}};
-    if (from_front != wanted) {
-      side.grade = Grade::bad;
-      side.reason = "'" + seen.step.id + "' was to be lit from " + (wanted ? "the front" : "behind") +
-                    " and the holder's front is " + (from_front ? "lit" : "dark") + "; put the lamp " +
-                    (wanted ? "in front of" : "behind") + " the platform, then resume";
-    }
-    return side;
-  }
-
-  static std::optional<double> tag_light(const cv::Mat3f& radiance, const std::vector<cv::Point>& outline) {
-    cv::Mat1b inside(radiance.size(), static_cast<unsigned char>(0));
-    cv::fillConvexPoly(inside, outline, cv::Scalar(255));
-    const cv::Rect box = cv::boundingRect(outline) & cv::Rect({0, 0}, radiance.size());
-    std::vector<double> values;
-    for (int row = box.y; row < box.y + box.height; ++row)
-      for (int column = box.x; column < box.x + box.width; ++column)
-        if (inside(row, column) != 0) {
-          const cv::Vec3f& pixel = radiance(row, column);
-          values.push_back((pixel[0] + pixel[1] + pixel[2]) / 3.0);
-        }
-    if (values.size() < 16) return std::nullopt;
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * kTagPercentile / 100);
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
+    for (const Finding& finding : lamp_.judge(seen.step, developed, camera, holder_from_world))
+      verdict_.findings.push_back(finding);
   }
 
   // From this run's pose pictures; a session that goes on has those of an earlier run.
@@ -408,7 +306,7 @@ class CaptureChecks::Work {
   std::map<rig::Mounting, std::vector<PosePicture>> posed_;            // this run's
   std::map<rig::Mounting, std::optional<Eigen::Isometry3d>> mounted_;  // platform_from_holder
   std::map<std::pair<rig::Lamp, rig::Mounting>, std::vector<double>> sharpness_;
-  std::optional<LastView> last_;  // of this run
+  LampChecks lamp_;
 };
 
 CaptureChecks::CaptureChecks(const SessionFolder& session, const SessionFile& asked,

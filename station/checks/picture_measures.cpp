@@ -1,4 +1,4 @@
-#include "station/picture_measures.h"
+#include "station/checks/picture_measures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,15 +44,16 @@ double sharpness(const cv::Mat1f& linear_grey, const cv::Mat1b& region) {
   cv::Mat1f fine, coarse;
   cv::GaussianBlur(part, fine, {0, 0}, 0.8);
   cv::GaussianBlur(part, coarse, {0, 0}, 1.6);
-  double light = 0, energy = 0;
-  int count = 0;
+  std::vector<double> details, lights;
   for (int row = 0; row < part.rows; ++row)
     for (int column = 0; column < part.cols; ++column) {
       if (region(box.y + row, box.x + column) == 0) continue;
-      const double detail = fine(row, column) - coarse(row, column);
-      light += coarse(row, column), energy += detail * detail, ++count;
+      details.push_back(std::abs(fine(row, column) - coarse(row, column)));
+      lights.push_back(coarse(row, column));
     }
-  return light > 0 ? std::sqrt(energy * count) / light : 0;
+  if (lights.empty()) return 0;
+  const double light = calibration::median(lights);
+  return light > 0 ? calibration::median(details) / light : 0;
 }
 
 std::optional<double> edge_blur_px(const cv::Mat1f& linear_grey, const calibration::TagObservation& tags) {

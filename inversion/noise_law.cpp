@@ -1,8 +1,8 @@
-#include "station/develop/noise_law.h"
+#include "inversion/noise_law.h"
 
 #include <algorithm>
 
-namespace station {
+namespace inversion {
 
 std::optional<NoiseLaw> noise_law(const cv::Mat3f& radiance, const cv::Mat3f& variance, const cv::Mat1b& mask) {
   if (variance.empty()) return std::nullopt;
@@ -29,14 +29,12 @@ std::optional<NoiseLaw> noise_law(const cv::Mat3f& radiance, const cv::Mat3f& va
   return law;
 }
 
-cv::Mat3f variance_by(const NoiseLaw& law, const cv::Mat3f& radiance) {
-  cv::Mat3f variance(radiance.size());
-  for (int row = 0; row < radiance.rows; ++row)
-    for (int column = 0; column < radiance.cols; ++column)
-      for (int c = 0; c < 3; ++c)
-        variance(row, column)[c] =
-            static_cast<float>(law.floor[c] + law.slope[c] * std::max(0.0F, radiance(row, column)[c]));
-  return variance;
+Eigen::Array3d variance_by(const NoiseLaw& law, const Eigen::Array3d& radiance) {
+  return law.floor + law.slope * radiance.max(0.0);
 }
 
-}  // namespace station
+NoiseLaw divided(const NoiseLaw& law, double divisor) {
+  return {.floor = law.floor / (divisor * divisor), .slope = law.slope / divisor};
+}
+
+}  // namespace inversion

@@ -1,0 +1,138 @@
+#include "station/checks/lamp_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "calibration/lamp_stability.h"
+#include "calibration/median.h"
+#include "station/reference_patch.h"
+#include "station/report/html.h"
+#include "station/views.h"
+
+namespace station {
+namespace {
+
+constexpr double kLampOff = 0.5;  // of its strength
+// Light on the holder's tags, of what the lamp in front gives a white surface there: paper 0.1 to 0.9 under it, nothing
+// but what the bench throws back under the one behind.
+constexpr double kLitFromTheFront = 0.04;
+constexpr int kTagPercentile = 80;  // their paper, not their ink
+constexpr std::size_t kFewestPixels = 16;
+
+struct TagLight {
+  double radiance = 0;
+  bool saturated = false;  // the light is at least that
+};
+
+std::optional<TagLight> tag_light(const calibration::Developed& developed, const std::vector<cv::Point>& outline) {
+  const cv::Mat3f& radiance = developed.radiance;
+  cv::Mat1b inside(radiance.size(), static_cast<unsigned char>(0));
+  cv::fillConvexPoly(inside, outline, cv::Scalar(255));
+  const cv::Rect box = cv::boundingRect(outline) & cv::Rect({0, 0}, radiance.size());
+  std::vector<TagLight> pixels;
+  for (int row = box.y; row < box.y + box.height; ++row)
+    for (int column = box.x; column < box.x + box.width; ++column)
+      if (inside(row, column) != 0) {
+        const cv::Vec3f& pixel = radiance(row, column);
+        pixels.push_back({(pixel[0] + pixel[1] + pixel[2]) / 3.0, developed.saturated(row, column) != 0});
+      }
+  if (pixels.size() < kFewestPixels) return std::nullopt;
+  const auto at = pixels.begin() + static_cast<std::ptrdiff_t>(pixels.size() * kTagPercentile / 100);
+  std::ranges::nth_element(pixels, at, {}, &TagLight::radiance);
+  return *at;
+}
+
+}  // namespace
+
+LampChecks::LampChecks(const SessionFile& asked, const RigCalibration& calibration)
+    : asked_(asked), calibration_(calibration) {}
+
+std::vector<Finding> LampChecks::judge(const PlanStep& step, const calibration::Developed& developed,
+                                       const renderer::Camera& camera, const Eigen::Isometry3d& holder_from_world) {
+  const std::optional<Finding> on_side = side(step, developed, camera, holder_from_world);
+  const std::optional<double> part = strength(step, developed, camera, holder_from_world);
+  // The calibrated lamp is the one on the right side; a lamp that is off is on no side.
+  const bool wrong_side = on_side && on_side->grade == Grade::bad && (!part || *part >= kLampOff);
+  std::vector<Finding> findings;
+  if (part && !wrong_side) {
+    const std::string reason = problem(step, *part);
+    findings.push_back({.check = "lamp",
+                        .grade = reason.empty() ? Grade::good : Grade::bad,
+                        .value = 100 * *part,
+                        .reason = reason});
+    if (reason.empty()) last_ = LastView{step.lamp, step.mounting, *part};
+  }
+  if (on_side) findings.push_back(*on_side);
+  return findings;
+}
+
+inversion::NearLight LampChecks::lamp(rig::Lamp side, const Eigen::Isometry3d& holder_from_world) const {
+  return lamp_in_holder(calibration_, asked_.rig.lamp_radius_mm, side == rig::Lamp::back, holder_from_world);
+}
+
+// Measured / expected at the reference patch; nothing where it cannot be read.
+std::optional<double> LampChecks::strength(const PlanStep& step, const calibration::Developed& developed,
+                                           const renderer::Camera& camera,
+                                           const Eigen::Isometry3d& holder_from_world) const {
+  if (!asked_.rig.reference_patch) return std::nullopt;
+  const auto reading =
+      read_patch(developed.radiance, developed.saturated, camera, *asked_.rig.reference_patch, asked_.spool.wrapping,
+                 step.mounting, lamp(step.lamp, holder_from_world), calibration_.light.droop);
+  return reading ? std::optional(reading->strength) : std::nullopt;
+}
+
+std::string LampChecks::problem(const PlanStep& step, double strength) const {
+  const calibration::LampGates limits;
+  const std::string found_there =
+      "'" + step.id + "': the reference patch shows " + percent_text(strength) + " of the calibrated lamp";
+  if (strength < kLampOff) return found_there + "; switch the lamp on and see that nothing covers it, then resume";
+  if (strength > 1 + limits.largest_change)
+    return found_there + "; switch the room light off and see that only the lamp shines, then resume";
+  if (strength < 1 - limits.largest_change) return found_there + "; cool or replace the lamp and calibrate again";
+  const bool comparable = last_ && last_->lamp == step.lamp && last_->mounting == step.mounting;
+  if (comparable && std::abs(strength / last_->strength - 1) > limits.largest_jump)
+    return found_there + ", " + percent_text(last_->strength) +
+           " in the view before; let the lamp settle, then resume";
+  return {};
+}
+
+// The holder's tags are on its front: bright under the lamp in front, dark under the one behind.
+std::optional<Finding> LampChecks::side(const PlanStep& step, const calibration::Developed& developed,
+                                        const renderer::Camera& camera,
+                                        const Eigen::Isometry3d& holder_from_world) const {
+  const inversion::NearLight front = lamp(rig::Lamp::front, holder_from_world);
+  std::vector<double> parts;
+  std::size_t saturated = 0;
+  for (const calibration::Tag& tag : asked_.rig.holder_tags.tags) {
+    const Eigen::Vector3d centre = tag.object_from_tag.translation();
+    const Eigen::Vector3d to_lamp = front.position - centre, to_eye = camera.world_from_camera.translation() - centre;
+    const Eigen::Vector3d normal = tag.object_from_tag.linear().col(2);
+    const double cosine = normal.dot(to_lamp.normalized());
+    if (cosine < 0.2 || normal.dot(to_eye) <= 0) continue;
+    std::vector<cv::Point> outline;
+    for (const Eigen::Vector3d& corner : calibration::corners_in_object(tag)) {
+      const Eigen::Vector2d pixel = renderer::project(camera, corner);
+      outline.emplace_back(cvRound(pixel.x()), cvRound(pixel.y()));
+    }
+    const double white = front.intensity.mean() * cosine / to_lamp.squaredNorm() / M_PI;
+    if (const auto light = tag_light(developed, outline)) {
+      parts.push_back(light->radiance / white);
+      saturated += light->saturated;
+    }
+  }
+  if (parts.empty()) return std::nullopt;
+  const double part = calibration::median(parts);
+  const bool from_front = part > kLitFromTheFront, wanted = step.lamp == rig::Lamp::front;
+  if (!from_front && saturated > 0) return std::nullopt;
+  Finding finding{.check = "lamp_side", .grade = Grade::good, .value = 100 * part, .reason = {}};
+  if (from_front != wanted) {
+    finding.grade = Grade::bad;
+    finding.reason = "'" + step.id + "' was to be lit from " + (wanted ? "the front" : "behind") +
+                     " and the holder's front is " + (from_front ? "lit" : "dark") + "; put the lamp " +
+                     (wanted ? "in front of" : "behind") + " the platform, then resume";
+  }
+  return finding;
+}
+
+}  // namespace station
