@@ -299,6 +299,21 @@ TEST_F(WeaveDocuments, EveryDraftInFixturesIsReadAndHasADrawing) {
   EXPECT_EQ(count, 13);
 }
 
+TEST_F(WeaveDocuments, EveryDraftInFixturesComesToRestAsDrafted) {
+  for (const fs::directory_entry& file : fs::directory_iterator(kDrafts)) {
+    if (file.path().extension() != ".json") continue;
+    const renderer::RelaxationReport report = renderer::relax(read_draft(file.path())).report;
+    std::printf("%-20s gradient %.1e, overlap %.2f %%, gap at crossings %.2f %%\n",
+                file.path().filename().string().c_str(), report.gradient, 100 * report.overlap,
+                100 * report.crown_gap);
+    EXPECT_TRUE(report.converged) << file.path();
+    EXPECT_LT(report.gradient, renderer::kAtRest) << file.path();
+    EXPECT_TRUE(report.as_drafted) << file.path();
+    EXPECT_FALSE(report.jammed) << file.path();
+    EXPECT_LE(report.overlap, renderer::kMostOverlap) << file.path();
+  }
+}
+
 TEST_F(WeaveDocuments, TheExampleOfEveryOptionSaysWhatItsReadmeSays) {
   const renderer::Draft draft = read_draft(kDrafts / "slubbed_linen.json");
   EXPECT_EQ(draft.transverse_modulus_n_mm2, 8);
