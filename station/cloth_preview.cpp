@@ -39,6 +39,11 @@ renderer::Draft scaled_draft(renderer::Draft draft, double diameter_mm) {
     system->pitch_mm *= scale;
     system->threads = {0};
   }
+  draft.plies.radius_mm *= scale;
+  draft.plies.turns_per_mm /= scale;
+  draft.slubs.length_mm *= scale;
+  draft.slubs.shade_mm = 0;
+  draft.unevenness.shades = 1;
   return draft;
 }
 

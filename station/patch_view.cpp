@@ -104,10 +104,11 @@ cv::Mat3f section(const YarnPatch& patch, double width_mm, int width_px) {
   constexpr int kSteps = 24, kShift = 8;
   for (const Yarn& yarn : patch.yarns) {
     const renderer::PeriodicSpline line = center_line(patch, yarn);
-    const double wide = half_width(yarn), high = half_height(yarn), along_cut = yarn.warp ? wide : high,
-                 across_cut = yarn.warp ? high : wide;
     for (std::size_t i = 0; i < line.control_points.size() * kSteps; ++i) {
-      const Vector3d at = spline_value(line, static_cast<double>(i) / kSteps);
+      const double t = static_cast<double>(i) / kSteps, thick = thickness(yarn, t), wide = half_width(yarn) * thick,
+                   high = half_height(yarn) * thick, along_cut = yarn.warp ? wide : high,
+                   across_cut = yarn.warp ? high : wide;
+      const Vector3d at = spline_value(line, t);
       const double off = std::remainder(at.y() - cut_mm, patch.period_y_mm) / across_cut;
       if (std::abs(off) >= 1) continue;
       const double share = std::sqrt(1 - off * off);
@@ -116,7 +117,7 @@ cv::Mat3f section(const YarnPatch& patch, double width_mm, int width_px) {
         const auto fixed = [](double px) { return static_cast<int>(std::lround(px * (1 << kShift))); };
         cv::ellipse(picture, cv::Point(fixed(x * scale), fixed(height_px / 2.0 - at.z() * scale)),
                     cv::Size(fixed(along_cut * share * scale), fixed(high * share * scale)), 0, 0, 360,
-                    color_of(yarn.thread), cv::FILLED, cv::LINE_8, kShift);
+                    color_of(thread_of_segment(yarn, static_cast<int>(i) / kSteps)), cv::FILLED, cv::LINE_8, kShift);
       }
     }
   }

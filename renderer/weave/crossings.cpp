@@ -1,5 +1,6 @@
 #include "renderer/weave/crossings.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -40,7 +41,15 @@ Crossing crossing_of(const YarnPatch& patch, std::size_t warp, std::size_t weft)
     t += move[1];
     if (move.cwiseAbs().maxCoeff() < 1e-12) break;
   }
-  return {.warp = warp, .weft = weft, .warp_z_mm = spline_value(a, s).z(), .weft_z_mm = spline_value(b, t).z()};
+  const double warp_z = spline_value(a, s).z(), weft_z = spline_value(b, t).z();
+  const Eigen::Vector3d across_both = spline_value(a, s, 1).cross(spline_value(b, t, 1)).normalized();
+  return {.warp = warp,
+          .weft = weft,
+          .warp_z_mm = warp_z,
+          .weft_z_mm = weft_z,
+          .distance_mm = std::abs((warp_z - weft_z) * across_both.z()),
+          .warp_t = s,
+          .weft_t = t};
 }
 
 }  // namespace

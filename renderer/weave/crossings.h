@@ -10,6 +10,8 @@ namespace renderer {
 struct Crossing {
   std::size_t warp = 0, weft = 0;       // indices into the patch's yarns
   double warp_z_mm = 0, weft_z_mm = 0;  // heights of the centre lines where they meet in plan
+  double distance_mm = 0;         // between the tangents there: less than the heights say where yarns are inclined
+  double warp_t = 0, weft_t = 0;  // parameters there
 };
 
 // One for each pair of a warp and a weft yarn, warp by warp.

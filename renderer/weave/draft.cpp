@@ -158,6 +158,40 @@ Problem problem_of_height_scale(const Draft& draft) {
   return "height scale is " + shown(draft.height_scale) + "; give a positive one, 1 for the shape as it is";
 }
 
+Problem problem_of_unevenness(const Unevenness& uneven, const Slubs& slubs) {
+  const auto refused = [](const char* what, double value, const char* wanted) {
+    return what + (" is " + shown(value)) + "; give " + wanted;
+  };
+  const auto share = [](double value) { return value >= 0 && value <= kMostUnevenness; };
+  const auto length = [](double value) { return value >= kLeastSlub && value <= kMostSlub; };
+  constexpr const char* kShare = "a share from 0 to 0.2";
+  if (!share(uneven.radius)) return refused("unevenness of the radius", uneven.radius, kShare);
+  if (!share(uneven.pitch)) return refused("unevenness of the pitch", uneven.pitch, kShare);
+  if (uneven.shades < 1 || uneven.shades > kMostShades)
+    return refused("number of shades of a thread", uneven.shades, "1 to 64");
+  if (!share(slubs.radius)) return refused("slubs' deviation of the radius", slubs.radius, kShare);
+  if (!share(slubs.twist)) return refused("slubs' deviation of the twist", slubs.twist, kShare);
+  if (!length(slubs.length_mm)) return refused("slubs' length", slubs.length_mm, "0.01 to 10000 mm");
+  if (slubs.shade_mm != 0 && !length(slubs.shade_mm))
+    return refused("length of a shade along a yarn", slubs.shade_mm,
+                   "0.01 to 10000 mm, or 0 for yarns of one shade each");
+  if (slubs.shade_mm > 0 && uneven.shades == 1)
+    return "threads have one shade, so it cannot change along a yarn; give 2 to 64 shades, or no length of a shade";
+  return {};
+}
+
+Problem problem_of_sections(double modulus_n_mm2, const Plies& plies) {
+  if (!(modulus_n_mm2 >= 0 && modulus_n_mm2 < kMostModulus))
+    return "transverse modulus is " + shown(modulus_n_mm2) + "; give newtons / mm^2, 0 for sections as drafted";
+  if (plies.count < 1 || plies.count > kMostPlies)
+    return "number of plies of a yarn is " + std::to_string(plies.count) + "; give 1 to 12";
+  if (!(std::abs(plies.turns_per_mm) <= kMostTurnsPerMm))
+    return "turns of the plies are " + shown(plies.turns_per_mm) + " per mm; give at most 20 either way";
+  if (!(plies.radius_mm >= 0 && std::isfinite(plies.radius_mm)))
+    return "radius of a ply is " + shown(plies.radius_mm) + " mm; give a positive one, or 0 for as large as fits";
+  return {};
+}
+
 }  // namespace
 
 Draft plain_draft() {
@@ -202,6 +236,8 @@ std::optional<std::string> check_draft(const Draft& draft) {
   if (!problem) problem = problem_of_mechanics("warp", draft.warp, draft.free_periods);
   if (!problem) problem = problem_of_mechanics("weft", draft.weft, draft.free_periods);
   if (!problem) problem = problem_of_height_scale(draft);
+  if (!problem) problem = problem_of_unevenness(draft.unevenness, draft.slubs);
+  if (!problem) problem = problem_of_sections(draft.transverse_modulus_n_mm2, draft.plies);
   if (!problem) problem = problem_of_threads("warp", draft.warp);
   if (!problem) problem = problem_of_threads("weft", draft.weft);
   if (!problem) problem = problem_of_extent(draft);

@@ -6,6 +6,7 @@
 // y.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,12 +32,43 @@ struct YarnSystem {
 double bending_of(const YarnSystem& system);
 inline constexpr double kBundleBending = 0.05;  // N
 
+// Yarns that differ from each other. Normal deviations cut at twice their scale.
+struct Unevenness {
+  double radius = 0;  // scale of the deviation of a yarn's radius, of the radius
+  double pitch = 0;   // of its place from the even sett, of the room between its neighbours and it
+  int shades = 1;     // thread t becomes one of the threads t shades .. t shades + shades - 1
+  std::uint64_t seed = 1;
+};
+
+// Yarns that differ along themselves (unevenness.h).
+struct Slubs {
+  double radius = 0;     // standard deviation along a yarn of its radius, of the radius
+  double twist = 0;      // of the turns of its plies, of their number per mm
+  double length_mm = 5;  // along the yarn, at which the correlation of either has fallen to 1 / e
+  double shade_mm = 0;   // mean length of a yarn's pieces of one shade; 0: a yarn has one shade
+};
+
+// Yarns of plies twisted round their centre line.
+struct Plies {
+  int count = 1;
+  double turns_per_mm = 0.5;  // rounded to whole turns in a period, so that the patch repeats
+  double radius_mm = 0;       // of a ply; 0: as large as lets the plies touch each other inside the yarn
+};
+
 struct Draft {
   std::string name;
   std::vector<std::vector<bool>> warp_over;  // [pick][end]: true where the warp lies on top
   YarnSystem warp, weft;
   bool free_periods = false;  // relaxation: the cell takes the size at which it pulls at nothing; needs contraction
   double height_scale = 1.0;  // multiplies the heights of all centre lines; not 1: no longer a contact shape
+
+  // What makes yarns less ideal than round, equal ones: for woven_patch(), not for relax().
+  // N / mm^2. A yarn under a load of q per length is lower than round by 1 + q / (modulus x diameter), and so much wider: an
+  // ellipse of the same area, as wide as the sett lets it be at most. 0: sections keep their system's flatness.
+  double transverse_modulus_n_mm2 = 0.0;
+  Unevenness unevenness{};
+  Slubs slubs{};
+  Plies plies{};
 };
 
 // The common weaves; sizes, sett and threads are those of YarnSystem until the caller changes them.
@@ -59,5 +91,9 @@ inline constexpr int kPointsPerCrossing = 8;  // of a yarn's curve, from one cro
 inline constexpr int kMostCrossings = 4096;
 inline constexpr int kMostThreads = 4096;
 inline constexpr double kMostContraction = 0.3, kMostFlatness = 4;
+inline constexpr double kMostUnevenness = 0.2;
+inline constexpr int kMostShades = 64, kMostPlies = 12;
+inline constexpr double kMostTurnsPerMm = 20, kMostModulus = 1e9;
+inline constexpr double kLeastSlub = 0.01, kMostSlub = 1e4;  // mm
 
 }  // namespace renderer

@@ -23,6 +23,11 @@ struct Yarn {
   double flatness = 1.0;                        // width / height of the section
   double tex = 0.0;                             // g per km; 0: unknown
   std::vector<Eigen::Vector3d> control_points;  // one period, mm; at least 4
+
+  // Along the yarn, one per control point, or empty for a yarn that is the same all along.
+  std::vector<double> thickness{};  // of radius_mm; a profile
+  std::vector<double> twist{};      // a profile of the turns per length of its plies; no part of a patch file
+  std::vector<int> threads{};       // instead of `thread`: of the segment that begins at this knot
 };
 
 struct YarnPatch {
@@ -41,9 +46,20 @@ struct YarnPatch {
   double least_gap_mm = 0.0;     // between the surfaces of any two yarns; negative: how deep they overlap
 };
 
-// Of the section, mm; their product is radius^2.
+// Of the section where the yarn is as thick as its radius, mm; their product is radius^2.
 double half_width(const Yarn& yarn);
 double half_height(const Yarn& yarn);
+
+// A profile holds the control points of a periodic spline like the centre line; an empty one is 1 everywhere. At t; at
+// control point k, any k; the largest of these, which no place between them exceeds.
+double profile_value(const std::vector<double>& profile, double t);
+double profile_point(const std::vector<double>& profile, int k);
+double profile_bound(const std::vector<double>& profile);
+
+inline double thickness(const Yarn& yarn, double t) {
+  return profile_value(yarn.thickness, t);
+}
+int thread_of_segment(const Yarn& yarn, int k);  // any k
 
 Eigen::Vector3d period_of(const YarnPatch& patch, const Yarn& yarn);
 PeriodicSpline center_line(const YarnPatch& patch, const Yarn& yarn);

@@ -12,11 +12,12 @@ namespace renderer {
 namespace {
 
 // Segments first .. last - 1 of a yarn, moved by `offset`, as one curve.
-void add_segments(CurveSet& set, const PeriodicSpline& line, double radius_mm, const Eigen::Vector3d& offset,
+void add_segments(CurveSet& set, const Yarn& yarn, const PeriodicSpline& line, const Eigen::Vector3d& offset,
                   int first, int last) {
   const auto start = static_cast<std::uint32_t>(set.control_points.size());
   for (int k = first - 1; k < last + 2; ++k) {
     const Eigen::Vector3f p = (line.control_point(k) + offset).cast<float>();
+    const double radius_mm = yarn.radius_mm * profile_point(yarn.thickness, k);
     set.control_points.push_back({p.x(), p.y(), p.z(), static_cast<float>(radius_mm)});
   }
   for (int k = first; k < last; ++k) set.segments.push_back(start + static_cast<std::uint32_t>(k - first));
@@ -34,15 +35,14 @@ bool reaches(const PeriodicSpline& line, double radius_mm, const Eigen::Vector3d
   return (most.array() + radius_mm >= low.array()).all() && (least.array() - radius_mm <= high.array()).all();
 }
 
-// The runs of neighbouring segments of one image of a yarn that reach the box, each as one curve.
-void add_reaching_runs(CurveSet& set, const PeriodicSpline& line, double radius_mm, const Eigen::Vector3d& offset,
-                       int periods, const Eigen::Vector2d& low, const Eigen::Vector2d& high) {
-  const int count = static_cast<int>(line.control_points.size());
-  const int end = (periods + 1) * count;
-  for (int k = -periods * count; k < end; ++k) {
-    const int first = k;
-    while (k < end && reaches(line, radius_mm, offset, k, low, high)) ++k;
-    if (k > first) add_segments(set, line, radius_mm, offset, first, k);
+// The runs of neighbouring segments from `first` to `end` - 1 that are wanted, each as one curve.
+template <typename Wanted>
+void add_runs(CurveSet& set, const Yarn& yarn, const PeriodicSpline& line, const Eigen::Vector3d& offset, int first,
+              int end, Wanted&& wanted) {
+  for (int k = first; k < end; ++k) {
+    const int start = k;
+    while (k < end && wanted(k)) ++k;
+    if (k > start) add_segments(set, yarn, line, offset, start, k);
   }
 }
 
@@ -51,9 +51,9 @@ double stray_of(const YarnPatch& patch) {
   double stray = 0;
   const Eigen::Vector2d cell(patch.period_x_mm, patch.period_y_mm);
   for (const Yarn& yarn : patch.yarns) {
+    const double radius = yarn.radius_mm * profile_bound(yarn.thickness);
     for (const Eigen::Vector3d& p : yarn.control_points)
-      stray = std::max(
-          {stray, yarn.radius_mm - p.head<2>().minCoeff(), yarn.radius_mm + (p.head<2>() - cell).maxCoeff()});
+      stray = std::max({stray, radius - p.head<2>().minCoeff(), radius + (p.head<2>() - cell).maxCoeff()});
   }
   return stray;
 }
@@ -62,7 +62,10 @@ double stray_of(const YarnPatch& patch) {
 
 std::vector<int> threads_of(const YarnPatch& patch) {
   std::set<int> threads;
-  for (const Yarn& yarn : patch.yarns) threads.insert(yarn.thread);
+  for (const Yarn& yarn : patch.yarns) {
+    if (yarn.threads.empty()) threads.insert(yarn.thread);
+    threads.insert(yarn.threads.begin(), yarn.threads.end());
+  }
   return {threads.begin(), threads.end()};
 }
 
@@ -75,7 +78,8 @@ void check_cloth(const YarnPatch& patch, std::size_t threads) {
   }
   double height = 0;
   for (const Yarn& yarn : patch.yarns)
-    for (const Eigen::Vector3d& p : yarn.control_points) height = std::max(height, std::abs(p.z()) + yarn.radius_mm);
+    for (const Eigen::Vector3d& p : yarn.control_points)
+      height = std::max(height, std::abs(p.z()) + yarn.radius_mm * profile_bound(yarn.thickness));
   const double reach = std::max(stray_of(patch), 2 * height) / std::min(patch.period_x_mm, patch.period_y_mm);
   if (!(reach <= kMostReach))
     throw std::runtime_error("cloth: yarns of the patch \"" + patch.name + "\" reach " + std::to_string(reach) +
@@ -109,13 +113,13 @@ CurveSet curves_of(const YarnPatch& patch, int tiles_x, int tiles_y, int thread)
   assert(tiles_x > 0 && tiles_y > 0);
   CurveSet set;
   for (const Yarn& yarn : patch.yarns) {
-    if (yarn.thread != thread) continue;
     const PeriodicSpline line = center_line(patch, yarn);
     const int along = yarn.warp ? tiles_y : tiles_x, across = yarn.warp ? tiles_x : tiles_y;
     for (int tile = 0; tile < across; ++tile) {
       const Eigen::Vector3d offset = yarn.warp ? Eigen::Vector3d(tile * patch.period_x_mm, 0, 0)
                                                : Eigen::Vector3d(0, tile * patch.period_y_mm, 0);
-      add_segments(set, line, yarn.radius_mm, offset, 0, along * static_cast<int>(line.control_points.size()));
+      add_runs(set, yarn, line, offset, 0, along * static_cast<int>(line.control_points.size()),
+               [&](int k) { return thread_of_segment(yarn, k) == thread; });
     }
   }
   return set;
@@ -130,13 +134,16 @@ CurveSet cell_curves_of(const YarnPatch& patch, int thread, double margin_mm) {
   const int images_x = 1 + static_cast<int>(reach / patch.period_x_mm),
             images_y = 1 + static_cast<int>(reach / patch.period_y_mm);
   for (const Yarn& yarn : patch.yarns) {
-    if (yarn.thread != thread) continue;
     const PeriodicSpline line = center_line(patch, yarn);
     const int across = yarn.warp ? images_x : images_y, along = yarn.warp ? images_y : images_x;
+    const double radius = yarn.radius_mm * profile_bound(yarn.thickness);
     for (int image = -across; image <= across; ++image) {
       const Eigen::Vector3d offset = yarn.warp ? Eigen::Vector3d(image * patch.period_x_mm, 0, 0)
                                                : Eigen::Vector3d(0, image * patch.period_y_mm, 0);
-      add_reaching_runs(set, line, yarn.radius_mm, offset, along, low, high);
+      const int count = static_cast<int>(line.control_points.size());
+      add_runs(set, yarn, line, offset, -along * count, (along + 1) * count, [&](int k) {
+        return thread_of_segment(yarn, k) == thread && reaches(line, radius, offset, k, low, high);
+      });
     }
   }
   return set;

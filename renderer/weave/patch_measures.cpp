@@ -46,7 +46,7 @@ class SampleGrid {
     double size = 0;
     std::array<double, 2> yarns{0, 0};
     for (const Yarn& yarn : patch.yarns) {
-      size = std::max(size, 2 * yarn.radius_mm);
+      size = std::max(size, 2 * yarn.radius_mm * profile_bound(yarn.thickness));
       ++yarns[yarn.warp ? 0 : 1];
     }
     // One diameter or pitch, so that neighbouring squares hold the neighbouring yarns.
@@ -100,16 +100,22 @@ class SampleGrid {
   std::vector<std::vector<Sample>> squares_;
 };
 
-// Closest points of two centre lines near a pair of samples: a few Gauss-Newton steps, each at most one sample long.
-double refined_distance(const YarnPatch& patch, const Pair& pair) {
+double reach(const YarnPatch& patch, std::size_t a, double s, std::size_t b, double t) {
+  const Yarn &first = patch.yarns[a], &second = patch.yarns[b];
+  return first.radius_mm * thickness(first, s) + second.radius_mm * thickness(second, t);
+}
+
+// Gap at the closest points of two centre lines near a pair of samples: a few Gauss-Newton steps, each at most one sample
+// long.
+double refined_gap(const YarnPatch& patch, const Pair& pair) {
   const PeriodicSpline a = center_line(patch, patch.yarns[pair.a.yarn]),
                        b = center_line(patch, patch.yarns[pair.b.yarn]);
   const Eigen::Vector3d difference = pair.b.point - pair.a.point;
   const Eigen::Vector3d shift = nearest_image(patch, difference) - difference;
-  double s = pair.a.t, t = pair.b.t, best = (difference + shift).norm();
+  double s = pair.a.t, t = pair.b.t, best = pair.gap_mm;
   for (int step = 0; step < 20; ++step) {
     const Eigen::Vector3d gap = spline_value(b, t) + shift - spline_value(a, s);
-    best = std::min(best, gap.norm());
+    best = std::min(best, gap.norm() - reach(patch, pair.a.yarn, s, pair.b.yarn, t));
     Eigen::Matrix<double, 3, 2> jacobian;
     jacobian << -spline_value(a, s, 1), spline_value(b, t, 1);
     Eigen::Matrix2d normal = jacobian.transpose() * jacobian;
@@ -134,9 +140,10 @@ SurfaceRange surface_range(const YarnPatch& patch) {
   for (const Yarn& yarn : patch.yarns) {
     const PeriodicSpline line = center_line(patch, yarn);
     for (std::size_t k = 0; k < line.control_points.size() * kSteps; ++k) {
-      const double z = spline_value(line, static_cast<double>(k) / kSteps).z();
-      range.low_mm = std::min(range.low_mm, z - half_height(yarn));
-      range.high_mm = std::max(range.high_mm, z + half_height(yarn));
+      const double t = static_cast<double>(k) / kSteps, z = spline_value(line, t).z(),
+                   high = half_height(yarn) * thickness(yarn, t);
+      range.low_mm = std::min(range.low_mm, z - high);
+      range.high_mm = std::max(range.high_mm, z + high);
     }
   }
   return range;
@@ -165,13 +172,11 @@ double areal_mass(const YarnPatch& patch) {
 double least_gap(const YarnPatch& patch) {
   Pair closest;
   SampleGrid(patch).for_each_near_pair([&](const Sample& a, const Sample& b) {
-    const double reach = patch.yarns[a.yarn].radius_mm + patch.yarns[b.yarn].radius_mm;
-    const double gap = nearest_image(patch, b.point - a.point).norm() - reach;
+    const double gap = nearest_image(patch, b.point - a.point).norm() - reach(patch, a.yarn, a.t, b.yarn, b.t);
     if (gap < closest.gap_mm) closest = {a, b, gap};
   });
   if (!std::isfinite(closest.gap_mm)) return closest.gap_mm;  // fewer than two yarns
-  const double reach = patch.yarns[closest.a.yarn].radius_mm + patch.yarns[closest.b.yarn].radius_mm;
-  return refined_distance(patch, closest) - reach;
+  return refined_gap(patch, closest);
 }
 
 void measure(YarnPatch& patch) {

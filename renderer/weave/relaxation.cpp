@@ -47,8 +47,9 @@ Cell cell_of(const YarnPatch& patch, const Draft& draft) {
     } else {
       model.tension_n = system.tension_n;
     }
+    model.thickness = yarn.thickness;
     cell.model.points += model.count;
-    cell.model.yarns.push_back(model);
+    cell.model.yarns.push_back(std::move(model));
   }
   cell.points.resize(3, cell.model.points);
   for (std::size_t i = 0; i < patch.yarns.size(); ++i)
@@ -71,7 +72,10 @@ void add_anchors(Cell& cell, double stiffness_n_mm) {
 
 double thinnest_radius(const WeaveModel& model) {
   double radius = std::numeric_limits<double>::infinity();
-  for (const ModelYarn& yarn : model.yarns) radius = std::min(radius, yarn.radius_mm);
+  for (const ModelYarn& yarn : model.yarns) {
+    radius = std::min(radius, yarn.radius_mm);
+    for (const double thick : yarn.thickness) radius = std::min(radius, yarn.radius_mm * thick);
+  }
   return radius;
 }
 
@@ -205,8 +209,9 @@ double least_crown_gap(const YarnPatch& patch) {
   double least = std::numeric_limits<double>::infinity();
   for (const Crossing& crossing : crossings_of(patch)) {
     const Yarn &warp = patch.yarns[crossing.warp], &weft = patch.yarns[crossing.weft];
-    const double contact = half_height(warp) + half_height(weft);
-    least = std::min(least, std::abs(crossing.warp_z_mm - crossing.weft_z_mm) / contact - 1);
+    const double contact =
+        half_height(warp) * thickness(warp, crossing.warp_t) + half_height(weft) * thickness(weft, crossing.weft_t);
+    least = std::min(least, crossing.distance_mm / contact - 1);
   }
   return least;
 }
@@ -229,7 +234,15 @@ RelaxedPatch relax(const YarnPatch& start, const Draft& draft, const RelaxationO
   report.force_scale_n = force_scale(cell.model);
   add_anchors(cell, report.force_scale_n / thinnest_radius(cell.model));
   stiffen_contact(cell, options, report);
-  if (draft.free_periods) settle_periods(cell, options, report);
+  if (draft.free_periods) {
+    settle_periods(cell, options, report);
+    // The cell has drawn its yarns together.
+    while (report.overlap > options.overlap_goal && report.stages < options.most_stages) {
+      ++report.stages;
+      cell.model.contact_n_mm2 *= 4;
+      settle_periods(cell, options, report);
+    }
+  }
 
   report.contact_n_mm2 = cell.model.contact_n_mm2;
   std::tie(report.contact_forces_n, report.contact_loads_n) = cell.contacts.forces(cell.model, cell.points);

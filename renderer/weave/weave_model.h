@@ -26,10 +26,11 @@ struct ModelYarn {
   double radius_mm = 0.25;
   double flatness = 1.0;
   double bending_n_mm2 = 0.05;
-  double tension_n = 0.0;       // dead load: energy tension x length
-  double axial_n = 0.0;         // spring: energy axial / 2 x (length / rest length - 1)^2 x rest length
-  double rest_length_mm = 0.0;  // of one period; for the spring
-  double length_mm = 0.0;       // of one period at the start, for the weights of contact samples
+  double tension_n = 0.0;           // dead load: energy tension x length
+  double axial_n = 0.0;             // spring: energy axial / 2 x (length / rest length - 1)^2 x rest length
+  double rest_length_mm = 0.0;      // of one period; for the spring
+  double length_mm = 0.0;           // of one period at the start, for the weights of contact samples
+  std::vector<double> thickness{};  // profile (patch.h) of the radius, for contact
 };
 
 // A spring that holds the mean of one coordinate of some control points where it was.

@@ -3,51 +3,18 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <stdexcept>
 #include <string>
+
+#include "renderer/weave/unevenness.h"
 
 namespace renderer {
 namespace {
 
 using Eigen::Vector3d;
 
-void check(const WovenOptions& options) {
-  const auto refuse = [](const std::string& what) { throw std::runtime_error("weave: " + what); };
-  const Unevenness& uneven = options.unevenness;
-  const auto share = [](double value) { return value >= 0 && value <= kMostUnevenness; };
-  if (!share(uneven.radius) || !share(uneven.pitch)) refuse("unevenness is a share from 0 to 0.2");
-  if (uneven.shades < 1 || uneven.shades > kMostShades) refuse("shades of a thread are 1 to 64");
-  if (!(options.transverse_modulus_n_mm2 >= 0 && options.transverse_modulus_n_mm2 < 1e9))
-    refuse("the transverse modulus is 0 (sections as drafted) or positive, N/mm^2");
-  if (options.plies.count < 1 || options.plies.count > kMostPlies) refuse("plies of a yarn are 1 to 12");
-  if (!(std::abs(options.plies.turns_per_mm) <= kMostTurnsPerMm)) refuse("plies turn at most 20 times per mm");
-  if (!(options.plies.radius_mm >= 0)) refuse("the radius of a ply is 0 (as large as fits) or positive, mm");
-}
-
-// The same numbers everywhere: the generator is specified, the standard's normal distribution is not.
-double deviation(std::mt19937_64& random) {
-  for (;;) {
-    double sum = -6;
-    for (int i = 0; i < 12; ++i) sum += static_cast<double>(random() >> 11) * 0x1p-53;
-    if (std::abs(sum) <= 2) return sum;
-  }
-}
-
-void make_uneven(YarnPatch& patch, const Draft& draft, const Unevenness& uneven) {
-  std::mt19937_64 random(uneven.seed);
-  for (Yarn& yarn : patch.yarns) {
-    const double room = (yarn.warp ? draft.warp : draft.weft).pitch_mm - 2 * yarn.radius_mm;
-    const double thicker = deviation(random), aside = deviation(random);
-    const auto shade = static_cast<int>(random() % static_cast<std::uint64_t>(uneven.shades));
-    yarn.radius_mm *= 1 + uneven.radius * thicker;
-    for (Vector3d& point : yarn.control_points) point[yarn.warp ? 0 : 1] += uneven.pitch * room * aside;
-    yarn.thread = yarn.thread * uneven.shades + shade;
-  }
-}
-
 // How flat each yarn is under the loads of the patch at rest.
-std::vector<double> flatness_under_load(const RelaxedPatch& relaxed, const Draft& draft, double modulus_n_mm2) {
+std::vector<double> flatness_under_load(const RelaxedPatch& relaxed, const Draft& draft) {
   std::vector<double> flatness;
   for (std::size_t i = 0; i < relaxed.patch.yarns.size(); ++i) {
     const Yarn& yarn = relaxed.patch.yarns[i];
@@ -55,7 +22,7 @@ std::vector<double> flatness_under_load(const RelaxedPatch& relaxed, const Draft
     const double length_mm = spline_length(center_line(relaxed.patch, yarn));
     const double load =
         relaxed.report.contact_loads_n[static_cast<Eigen::Index>(i)] / 2 / length_mm;  // from each side
-    const double lower = 1 + load / (modulus_n_mm2 * 2 * yarn.radius_mm);
+    const double lower = 1 + load / (draft.transverse_modulus_n_mm2 * 2 * yarn.radius_mm);
     const double widest = system.pitch_mm / (2 * yarn.radius_mm);
     const double most = std::max(system.flatness, std::min(kMostFlatness, widest * widest));
     flatness.push_back(std::min(system.flatness * lower * lower, most));
@@ -64,12 +31,12 @@ std::vector<double> flatness_under_load(const RelaxedPatch& relaxed, const Draft
 }
 
 // Sections and loads that belong to each other: each round relaxes with sections halfway to those that its loads ask for.
-RelaxedPatch flattened(YarnPatch start, const Draft& draft, const WovenOptions& options) {
+RelaxedPatch flattened(YarnPatch start, const Draft& draft, const RelaxationOptions& options) {
   constexpr int kMostRounds = 12;
   constexpr double kGoal = 1e-3;
-  RelaxedPatch relaxed = relax(start, draft, options.relaxation);
+  RelaxedPatch relaxed = relax(start, draft, options);
   for (int round = 0; round < kMostRounds; ++round) {
-    const std::vector<double> wanted = flatness_under_load(relaxed, draft, options.transverse_modulus_n_mm2);
+    const std::vector<double> wanted = flatness_under_load(relaxed, draft);
     double change = 0;
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       double& flatness = start.yarns[i].flatness;
@@ -77,9 +44,32 @@ RelaxedPatch flattened(YarnPatch start, const Draft& draft, const WovenOptions& 
       flatness = (flatness + wanted[i]) / 2;
     }
     if (change < kGoal) break;
-    relaxed = relax(start, draft, options.relaxation);
+    relaxed = relax(start, draft, options);
   }
   return relaxed;
+}
+
+// Of the yarn's thickness at the plies' knots.
+std::vector<double> thickness_of_plies(const Yarn& yarn, int per_knot) {
+  std::vector<Vector3d> knots;
+  for (std::size_t i = 0; i < yarn.thickness.size() * static_cast<std::size_t>(per_knot); ++i)
+    knots.push_back({thickness(yarn, static_cast<double>(i) / per_knot), 0, 0});
+  std::vector<double> control;
+  if (knots.empty()) return control;
+  for (const Vector3d& point : spline_through(knots, Vector3d::Zero()).control_points) control.push_back(point.x());
+  return control;
+}
+
+// Of all turns of the plies in a period, the share that is done at each of their knots.
+std::vector<double> shares_of_turns(const Yarn& yarn, int knots, int per_knot) {
+  std::vector<double> shares;
+  double sum = 0;
+  for (int i = 0; i < knots * per_knot; ++i) {
+    shares.push_back(sum);
+    sum += profile_value(yarn.twist, (i + 0.5) / per_knot);
+  }
+  for (double& share : shares) share /= sum;
+  return shares;
 }
 
 }  // namespace
@@ -105,6 +95,12 @@ YarnPatch with_plies(const YarnPatch& patch, const Plies& plies) {
       throw std::runtime_error("weave: a ply of radius " + std::to_string(ply.radius_mm) +
                                " mm is thicker than its yarn of " + std::to_string(yarn.radius_mm) + " mm");
     ply.tex = yarn.tex / plies.count;
+    ply.thickness = thickness_of_plies(yarn, per_knot);
+    ply.twist.clear();
+    ply.threads.clear();
+    for (int i = 0; i < (yarn.threads.empty() ? 0 : knots * per_knot); ++i)
+      ply.threads.push_back(thread_of_segment(yarn, i / per_knot));
+    const std::vector<double> turned = shares_of_turns(yarn, knots, per_knot);
     // A flat yarn is the round one with its plies, pressed: the plies are as flat as it is, so they keep touching.
     const double room = yarn.radius_mm - ply.radius_mm, flat = std::sqrt(yarn.flatness), wide = room * flat,
                  high = room / flat;
@@ -112,12 +108,14 @@ YarnPatch with_plies(const YarnPatch& patch, const Plies& plies) {
     for (int k = 0; k < plies.count; ++k) {
       std::vector<Vector3d> points;
       for (int i = 0; i < knots * per_knot; ++i) {
-        const double t = static_cast<double>(i) / per_knot;
-        const double angle = 2 * M_PI * (turns * t / knots + static_cast<double>(k) / plies.count);
+        const double t = static_cast<double>(i) / per_knot, thick = thickness(yarn, t);
+        const double angle =
+            2 * M_PI * (turns * turned[static_cast<std::size_t>(i)] + static_cast<double>(k) / plies.count);
         // Yarns of a cloth never run upright, so a frame with one axis in its plane turns as little as they do.
         const Vector3d along = spline_value(line, t, 1).normalized(), up = along.cross(side).normalized();
         const Vector3d across = up.cross(along);
-        points.push_back(spline_value(line, t) + wide * std::cos(angle) * across + high * std::sin(angle) * up);
+        points.push_back(spline_value(line, t) +
+                         thick * (wide * std::cos(angle) * across + high * std::sin(angle) * up));
       }
       ply.control_points = spline_through(points, line.period).control_points;
       twisted.yarns.push_back(ply);
@@ -126,16 +124,15 @@ YarnPatch with_plies(const YarnPatch& patch, const Plies& plies) {
   return twisted;
 }
 
-RelaxedPatch woven_patch(const Draft& draft, const WovenOptions& options) {
-  check(options);
+RelaxedPatch woven_patch(const Draft& draft, const RelaxationOptions& options) {
   Draft unscaled = draft;
   unscaled.height_scale = 1;
-  YarnPatch start = initial_patch(unscaled, options.relaxation.points_per_crossing);
-  make_uneven(start, draft, options.unevenness);
-  RelaxedPatch relaxed = options.transverse_modulus_n_mm2 > 0 ? flattened(std::move(start), draft, options)
-                                                              : relax(start, draft, options.relaxation);
+  YarnPatch start = initial_patch(unscaled, options.points_per_crossing);
+  make_uneven(start, draft);
+  RelaxedPatch relaxed =
+      draft.transverse_modulus_n_mm2 > 0 ? flattened(std::move(start), draft, options) : relax(start, draft, options);
   check_at_rest(relaxed);
-  if (options.plies.count > 1) relaxed.patch = with_plies(relaxed.patch, options.plies);
+  if (draft.plies.count > 1) relaxed.patch = with_plies(relaxed.patch, draft.plies);
   return relaxed;
 }
 

@@ -32,6 +32,10 @@ double half_height(const ModelYarn& yarn) {
   return yarn.radius_mm / std::sqrt(yarn.flatness);
 }
 
+double least_thickness(const ModelYarn& yarn) {
+  return yarn.thickness.empty() ? 1 : *std::min_element(yarn.thickness.begin(), yarn.thickness.end());
+}
+
 }  // namespace
 
 // How far apart two yarns are: the length of scale x difference, which is `contact` where they touch.
@@ -39,13 +43,13 @@ struct ContactList::Metric {
   Eigen::Vector3d scale;
   double contact;
 
-  Metric(const ModelYarn& a, const ModelYarn& b) : scale(1, 1, 1), contact(half_height(a) + half_height(b)) {
+  Metric(const Section& a, const Section& b) : scale(1, 1, 1), contact(a.half_height + b.half_height) {
     if (a.warp == b.warp) {
-      scale[a.warp ? 0 : 1] = contact / (half_width(a) + half_width(b));
+      scale[a.warp ? 0 : 1] = contact / (a.half_width + b.half_width);
     } else {
-      const ModelYarn &warp = a.warp ? a : b, &weft = a.warp ? b : a;
-      scale[0] = contact / (half_width(warp) + half_height(weft));
-      scale[1] = contact / (half_width(weft) + half_height(warp));
+      const Section &warp = a.warp ? a : b, &weft = a.warp ? b : a;
+      scale[0] = contact / (warp.half_width + weft.half_height);
+      scale[1] = contact / (weft.half_width + warp.half_height);
     }
   }
 };
@@ -60,15 +64,20 @@ struct ContactList::Touch {
 
 void ContactList::make_samples(const WeaveModel& model) {
   double thinnest = std::numeric_limits<double>::infinity();
-  for (const ModelYarn& yarn : model.yarns) thinnest = std::min(thinnest, 2 * half_height(yarn));
+  for (const ModelYarn& yarn : model.yarns)
+    thinnest = std::min(thinnest, 2 * half_height(yarn) * least_thickness(yarn));
   skin_mm_ = kSkin * thinnest;
   for (std::size_t i = 0; i < model.yarns.size(); ++i) {
     const ModelYarn& yarn = model.yarns[i];
     const double segment_mm = yarn.length_mm / yarn.count;
     const int count = std::max(1, static_cast<int>(std::ceil(segment_mm / (spacing_ * thinnest))));
-    for (int k = 0; k < yarn.count; ++k)
-      for (int m = 0; m < count; ++m)
-        samples_.push_back({static_cast<int>(i), k, spline_weights((m + 0.5) / count), segment_mm / count});
+    for (int k = 0; k < yarn.count; ++k) {
+      for (int m = 0; m < count; ++m) {
+        const double u = (m + 0.5) / count, thick = profile_value(yarn.thickness, k + u);
+        samples_.push_back({static_cast<int>(i), k, spline_weights(u), segment_mm / count,
+                            Section{yarn.warp, half_width(yarn) * thick, half_height(yarn) * thick}});
+      }
+    }
   }
 }
 
@@ -123,7 +132,7 @@ void ContactList::search(const WeaveModel& model, const Eigen::Matrix3Xd& points
     largest = std::max(largest, segment.radius);
     segments.push_back(segment);
   }
-  for (const ModelYarn& yarn : model.yarns) widest = std::max(widest, 2 * half_width(yarn));
+  for (const Sample& sample : samples_) widest = std::max(widest, 2 * sample.section.half_width);
   Grid grid(model.period_mm, widest + skin_mm_ + 2 * largest);
   std::vector<Eigen::Vector2i> squares;
   for (std::size_t i = 0; i < segments.size(); ++i) {
@@ -141,12 +150,14 @@ void ContactList::search(const WeaveModel& model, const Eigen::Matrix3Xd& points
     Eigen::Vector3d image = Eigen::Vector3d::Zero();
     image.head<2>() = model.period_mm.cwiseProduct(cell.cast<double>());
     if ((a.center - b.center - image).norm() > widest + skin_mm_ + a.radius + b.radius) return;
-    const Metric metric(model.yarns[static_cast<std::size_t>(a.yarn)], model.yarns[static_cast<std::size_t>(b.yarn)]);
-    const double reach = metric.contact + skin_mm_;
     for (int s = a.first; s < a.last; ++s) {
       const Eigen::Vector3d from = at.col(s) - image;
-      for (int t = b.first; t < b.last; ++t)
+      const Section& section = samples_[static_cast<std::size_t>(s)].section;
+      for (int t = b.first; t < b.last; ++t) {
+        const Metric metric(section, samples_[static_cast<std::size_t>(t)].section);
+        const double reach = metric.contact + skin_mm_;
         if (metric.scale.cwiseProduct(from - at.col(t)).squaredNorm() < reach * reach) pairs_.push_back({s, t, cell});
+      }
     }
   };
   struct Neighbour {
@@ -182,7 +193,7 @@ void ContactList::for_each_touch(const WeaveModel& model, const Eigen::Matrix3Xd
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const Pair& pair = pairs_[i];
     const Sample &a = samples_[static_cast<std::size_t>(pair.a)], &b = samples_[static_cast<std::size_t>(pair.b)];
-    const Metric metric(model.yarns[static_cast<std::size_t>(a.yarn)], model.yarns[static_cast<std::size_t>(b.yarn)]);
+    const Metric metric(a.section, b.section);
     Eigen::Vector3d difference = at.col(pair.a) - at.col(pair.b);
     difference.head<2>() -= model.period_mm.cwiseProduct(pair.cell.cast<double>());
     const Eigen::Vector3d scaled = metric.scale.cwiseProduct(difference);

@@ -5,7 +5,8 @@
 // integrals are sums over samples, `spacing` D apart or closer. Periodic images count; a yarn does not touch itself.
 // Flattened sections (half width a, half height b): d is measured with x and y shrunk so that contact of two crossing
 // yarns begins at the sums of b in z and of a of the yarn that is wrapped and b of the other across it; side by side at
-// the sums of a.
+// the sums of a. Of yarns
+// whose thickness varies, each sample has the section of its place.
 //
 // Source: Kaldor et al. 2008 (models.md 4.1, 4.2). A single integral over samples and closest points was tried and
 // refused: where yarns wrap each other a yarn's crown is the centre of the other's arc, the closest point is anywhere
@@ -31,10 +32,15 @@ class ContactList {
   std::pair<Eigen::Matrix3Xd, Eigen::VectorXd> forces(const WeaveModel& model, const Eigen::Matrix3Xd& points) const;
 
  private:
+  struct Section {
+    bool warp;
+    double half_width, half_height;  // mm
+  };
   struct Sample {
     int yarn = 0, segment = 0;
     Eigen::Vector4d weights;  // of the segment's control points
     double length_mm = 0;
+    Section section;
   };
   struct Pair {
     int a = 0, b = 0;                                // samples; the yarn of a comes before that of b

@@ -1,6 +1,10 @@
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <iostream>
+#include <stdexcept>
+#include <vector>
 
 #include "renderer/image_file.h"
 #include "renderer/weave/woven_patch.h"
@@ -72,9 +76,10 @@ void write_drawing(const std::string& file, const renderer::Draft& draft) {
 }  // namespace
 
 void add_weave_command(CLI::App& app) {
+  using renderer::Draft;
   struct Arguments {
     std::string draft, out, drawing, view;
-    renderer::WovenOptions woven;
+    std::vector<std::function<void(Draft&)>> changes;
     bool json = false;
   };
   auto arguments = std::make_shared<Arguments>();
@@ -83,22 +88,61 @@ void add_weave_command(CLI::App& app) {
   command->add_option("--out", arguments->out, "patch file to write")->required();
   command->add_option("--drawing", arguments->drawing, "the draft as weavers draw it, PNG or SVG");
   command->add_option("--view", arguments->view, "the patch from above, in perspective and in section, PNG or EXR");
-  renderer::WovenOptions& woven = arguments->woven;
-  command->add_option("--transverse-modulus", woven.transverse_modulus_n_mm2,
-                      "N/mm^2: yarns flatten where they press each other; 0 = sections as drafted");
-  command->add_option("--plies", woven.plies.count, "plies of each yarn");
-  command->add_option("--ply-turns", woven.plies.turns_per_mm, "turns of the plies per mm");
-  command->add_option("--ply-radius", woven.plies.radius_mm, "mm; 0 = as thick as fit into the yarn");
-  command->add_option("--uneven-radius", woven.unevenness.radius, "deviation of yarns' radii, a share of the radius");
-  command->add_option("--uneven-pitch", woven.unevenness.pitch, "deviation of yarns' places, a share of their room");
-  command->add_option("--shades", woven.unevenness.shades,
-                      "threads that take turns at random for each of the draft's");
-  command->add_option("--seed", woven.unevenness.seed, "of the unevenness and the shades");
+  // Each stands for a key of the draft file, and wins over it.
+  const auto change = [&]<typename T>(const char* name, T& (*key)(Draft&), const char* help) {
+    command->add_option_function<T>(
+        name,
+        [arguments, key](const T& value) {
+          arguments->changes.push_back([key, value](Draft& draft) { key(draft) = value; });
+        },
+        help);
+  };
+  change.operator()<double>(
+      "--warp-pitch", [](Draft& d) -> double& { return d.warp.pitch_mm; }, "mm from end to end");
+  change.operator()<double>(
+      "--weft-pitch", [](Draft& d) -> double& { return d.weft.pitch_mm; }, "mm from pick to pick");
+  change.operator()<double>(
+      "--height-scale", [](Draft& d) -> double& { return d.height_scale; },
+      "multiplies the heights of the yarns at rest");
+  change.operator()<double>(
+      "--transverse-modulus", [](Draft& d) -> double& { return d.transverse_modulus_n_mm2; },
+      "N/mm^2: yarns flatten where they press each other; 0 = sections as drafted");
+  change.operator()<int>(
+      "--plies", [](Draft& d) -> int& { return d.plies.count; }, "plies of each yarn");
+  change.operator()<double>(
+      "--ply-turns", [](Draft& d) -> double& { return d.plies.turns_per_mm; }, "turns of the plies per mm");
+  change.operator()<double>(
+      "--ply-radius", [](Draft& d) -> double& { return d.plies.radius_mm; }, "mm; 0 = as thick as fit into the yarn");
+  change.operator()<double>(
+      "--uneven-radius", [](Draft& d) -> double& { return d.unevenness.radius; },
+      "deviation of yarns' radii, a share of the radius");
+  change.operator()<double>(
+      "--uneven-pitch", [](Draft& d) -> double& { return d.unevenness.pitch; },
+      "deviation of yarns' places, a share of their room");
+  change.operator()<int>(
+      "--shades", [](Draft& d) -> int& { return d.unevenness.shades; },
+      "threads that take turns at random for each of the draft's");
+  change.operator()<double>(
+      "--slub-radius", [](Draft& d) -> double& { return d.slubs.radius; },
+      "deviation of the radius along each yarn, a share of the radius");
+  change.operator()<double>(
+      "--slub-twist", [](Draft& d) -> double& { return d.slubs.twist; },
+      "deviation of the plies' turns along each yarn, a share of them");
+  change.operator()<double>(
+      "--slub-length", [](Draft& d) -> double& { return d.slubs.length_mm; },
+      "mm: correlation length of both along the yarn");
+  change.operator()<double>(
+      "--shade-length", [](Draft& d) -> double& { return d.slubs.shade_mm; },
+      "mm: mean length of one shade along a yarn; 0 = yarns of one shade");
+  change.operator()<std::uint64_t>(
+      "--seed", [](Draft& d) -> std::uint64_t& { return d.unevenness.seed; }, "of all that is uneven");
   command->add_flag("--json", arguments->json, "what was measured as JSON, for machines");
   command->callback([arguments] {
-    const renderer::Draft draft = read_draft(arguments->draft);
+    Draft draft = read_draft(arguments->draft);
+    for (const auto& change_key : arguments->changes) change_key(draft);
+    if (const auto problem = check_draft(draft)) throw std::runtime_error(arguments->draft + ": " + *problem);
     if (!arguments->drawing.empty()) write_drawing(arguments->drawing, draft);
-    const RelaxedPatch relaxed = renderer::woven_patch(draft, arguments->woven);
+    const RelaxedPatch relaxed = renderer::woven_patch(draft);
     const YarnPatch& patch = relaxed.patch;
     const json document = to_json(patch);
     write_json_file(arguments->out, document);

@@ -1,6 +1,7 @@
 #include "station/documents/draft_file.h"
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "station/documents/reader.h"
@@ -10,6 +11,9 @@ namespace station {
 namespace {
 
 using nlohmann::json;
+
+constexpr double kMost = 1000;
+constexpr int kMostSeed = std::numeric_limits<int>::max();
 
 std::vector<std::vector<bool>> parse_structure(ObjectReader& draft) {
   const json& rows = draft.raw("structure");
@@ -30,7 +34,7 @@ std::vector<std::vector<bool>> parse_structure(ObjectReader& draft) {
 }
 
 renderer::YarnSystem parse_system(ObjectReader reader) {
-  constexpr double kMost = 1000, kMostMechanics = 1e9;
+  constexpr double kMostMechanics = 1e9;
   renderer::YarnSystem system;
   system.diameter_mm = reader.number("diameter_mm", -kMost, kMost);  // check_draft says what is wrong with its value
   system.pitch_mm = reader.number("pitch_mm", -kMost, kMost);
@@ -50,6 +54,29 @@ renderer::YarnSystem parse_system(ObjectReader reader) {
   optional("flatness", system.flatness);
   reader.finish();
   return system;
+}
+
+void parse_unevenness(ObjectReader reader, renderer::Unevenness& uneven) {
+  if (reader.has("radius")) uneven.radius = reader.number("radius", -kMost, kMost);  // check_draft, as below
+  if (reader.has("pitch")) uneven.pitch = reader.number("pitch", -kMost, kMost);
+  if (reader.has("shades")) uneven.shades = reader.integer("shades", 1, renderer::kMostShades);
+  if (reader.has("seed")) uneven.seed = static_cast<std::uint64_t>(reader.integer("seed", 0, kMostSeed));
+  reader.finish();
+}
+
+void parse_slubs(ObjectReader reader, renderer::Slubs& slubs) {
+  if (reader.has("radius")) slubs.radius = reader.number("radius", -kMost, kMost);
+  if (reader.has("twist")) slubs.twist = reader.number("twist", -kMost, kMost);
+  if (reader.has("length_mm")) slubs.length_mm = reader.number("length_mm", -kMost, kMost);
+  if (reader.has("shade_mm")) slubs.shade_mm = reader.number("shade_mm", -kMost, kMost);
+  reader.finish();
+}
+
+void parse_plies(ObjectReader reader, renderer::Plies& plies) {
+  plies.count = reader.integer("count", 1, renderer::kMostPlies);
+  if (reader.has("turns_per_mm")) plies.turns_per_mm = reader.number("turns_per_mm", -kMost, kMost);
+  if (reader.has("radius_mm")) plies.radius_mm = reader.number("radius_mm", -kMost, kMost);
+  reader.finish();
 }
 
 json system_json(const renderer::YarnSystem& system) {
@@ -74,6 +101,11 @@ renderer::Draft parse_draft(const json& document, const std::string& source) {
   draft.weft = parse_system(reader.object("weft"));
   if (reader.has("height_scale")) draft.height_scale = reader.number("height_scale", -10, 10);
   if (reader.has("periods")) draft.free_periods = reader.choice("periods", {"fixed", "free"}) == "free";
+  if (reader.has("transverse_modulus_n_mm2"))
+    draft.transverse_modulus_n_mm2 = reader.number("transverse_modulus_n_mm2", -kMost, renderer::kMostModulus);
+  if (reader.has("unevenness")) parse_unevenness(reader.object("unevenness"), draft.unevenness);
+  if (reader.has("slubs")) parse_slubs(reader.object("slubs"), draft.slubs);
+  if (reader.has("plies")) parse_plies(reader.object("plies"), draft.plies);
   reader.finish();
   if (const auto problem = renderer::check_draft(draft)) throw std::runtime_error(source + ": " + *problem);
   return draft;
@@ -99,7 +131,22 @@ json to_json(const renderer::Draft& draft) {
           {"warp", system_json(draft.warp)},
           {"weft", system_json(draft.weft)},
           {"periods", draft.free_periods ? "free" : "fixed"},
-          {"height_scale", draft.height_scale}};
+          {"height_scale", draft.height_scale},
+          {"transverse_modulus_n_mm2", draft.transverse_modulus_n_mm2},
+          {"unevenness",
+           {{"radius", draft.unevenness.radius},
+            {"pitch", draft.unevenness.pitch},
+            {"shades", draft.unevenness.shades},
+            {"seed", draft.unevenness.seed}}},
+          {"slubs",
+           {{"radius", draft.slubs.radius},
+            {"twist", draft.slubs.twist},
+            {"length_mm", draft.slubs.length_mm},
+            {"shade_mm", draft.slubs.shade_mm}}},
+          {"plies",
+           {{"count", draft.plies.count},
+            {"turns_per_mm", draft.plies.turns_per_mm},
+            {"radius_mm", draft.plies.radius_mm}}}};
 }
 
 }  // namespace station

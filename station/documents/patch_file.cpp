@@ -38,6 +38,13 @@ renderer::Yarn parse_yarn(ObjectReader reader) {
     reader.refuse("control_points_mm", "expected a list of at least " + std::to_string(kFewestPoints) + " points");
   for (const json& point : points)
     yarn.control_points.push_back(parse_point(reader, point, yarn.control_points.size()));
+  const std::size_t count = yarn.control_points.size();
+  if (reader.has("thickness")) yarn.thickness = reader.numbers("thickness", count, Range{0.01, 100});
+  if (reader.has("threads"))
+    for (const double thread : reader.numbers("threads", count, Range{0, renderer::kMostThreads - 1})) {
+      if (thread != std::floor(thread)) reader.refuse("threads", "expected whole numbers");
+      yarn.threads.push_back(static_cast<int>(thread));
+    }
   reader.finish();
   return yarn;
 }
@@ -55,12 +62,15 @@ void parse_measures(ObjectReader reader, renderer::YarnPatch& patch) {
 json yarn_json(const renderer::Yarn& yarn) {
   json points = json::array();
   for (const Eigen::Vector3d& point : yarn.control_points) points.push_back(to_json(point));
-  return {{"system", yarn.warp ? "warp" : "weft"},
-          {"thread", yarn.thread},
-          {"radius_mm", yarn.radius_mm},
-          {"flatness", yarn.flatness},
-          {"tex", yarn.tex},
-          {"control_points_mm", points}};
+  json document{{"system", yarn.warp ? "warp" : "weft"},
+                {"thread", yarn.thread},
+                {"radius_mm", yarn.radius_mm},
+                {"flatness", yarn.flatness},
+                {"tex", yarn.tex},
+                {"control_points_mm", points}};
+  if (!yarn.thickness.empty()) document["thickness"] = yarn.thickness;
+  if (!yarn.threads.empty()) document["threads"] = yarn.threads;
+  return document;
 }
 
 }  // namespace

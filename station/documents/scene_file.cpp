@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "renderer/weave/patch_curves.h"
 #include "renderer/weave/woven_patch.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/patch_file.h"
@@ -68,9 +69,9 @@ renderer::YarnPatch parse_weave(ObjectReader& cloth, const std::filesystem::path
 }
 
 void check_threads(const ObjectReader& cloth, const renderer::YarnPatch& patch, std::size_t count) {
-  for (const renderer::Yarn& yarn : patch.yarns)
-    if (static_cast<std::size_t>(yarn.thread) >= count)
-      cloth.refuse("draft", "\"" + patch.name + "\" has a yarn of thread " + std::to_string(yarn.thread) +
+  for (const int thread : renderer::threads_of(patch))
+    if (static_cast<std::size_t>(thread) >= count)
+      cloth.refuse("draft", "\"" + patch.name + "\" has a yarn of thread " + std::to_string(thread) +
                                 ", but the scene lists " + std::to_string(count) +
                                 " threads (counted from 0); add the thread or change the order of threads");
 }

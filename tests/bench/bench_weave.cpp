@@ -1,10 +1,12 @@
-// Relaxation of the ready weaves against the number of yarns: time, and time per yarn over that of the smallest.
+// Relaxation of the ready weaves against the number of yarns: processor time, and time per yarn over that of the smallest;
+// energy and gradient, and with second derivatives, against the number of control points.
 #include <benchmark/benchmark.h>
 
 #include <ctime>
 #include <map>
 
 #include "../renderer/weave/relaxed_cloths.h"
+#include "../renderer/weave/shaken_cell.h"
 
 namespace renderer {
 namespace {
@@ -35,6 +37,23 @@ BENCHMARK(relaxation)
     ->Iterations(1)
     ->Unit(benchmark::kSecond)
     ->MeasureProcessCPUTime();
+
+void energy(benchmark::State& state) {
+  const ShakenCell cell(ready_weaves(static_cast<std::size_t>(state.range(0)))[0], 0, 1, 1, 0,
+                        static_cast<int>(state.range(1)));
+  const Curvature curvature = state.range(2) ? Curvature::exact : Curvature::none;
+  ContactList contacts;
+  contacts.update(cell.model, cell.points);
+  for (auto _ : state) benchmark::DoNotOptimize(cell.at(cell.points, curvature, contacts).energy);
+  state.counters["points"] = cell.model.points;
+  state.counters["per_point"] = benchmark::Counter(
+      cell.model.points, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(energy)
+    ->ArgNames({"yarns_each_way", "points_per_crossing", "second_derivatives"})
+    ->ArgsProduct({{6, 12, 24}, {8}, {0, 1}})
+    ->ArgsProduct({{6}, {4, 16, 32}, {0, 1}})
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace renderer

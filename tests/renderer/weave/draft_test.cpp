@@ -86,6 +86,18 @@ TEST(DraftTest, EachBadDraftIsRefusedInOneLineThatNamesTheFault) {
        },
        "weft thread -1"},
       {[](Draft& d) { d.height_scale = 0; }, "height scale is 0"},
+      {[](Draft& d) { d.transverse_modulus_n_mm2 = -1; }, "transverse modulus is -1"},
+      {[](Draft& d) { d.unevenness.radius = 0.3; }, "unevenness of the radius is 0.3"},
+      {[=](Draft& d) { d.unevenness.pitch = nan; }, "unevenness of the pitch is nan"},
+      {[](Draft& d) { d.unevenness.shades = 0; }, "number of shades of a thread is 0"},
+      {[](Draft& d) { d.slubs.radius = -0.1; }, "slubs' deviation of the radius is -0.1"},
+      {[](Draft& d) { d.slubs.twist = 0.5; }, "slubs' deviation of the twist is 0.5"},
+      {[](Draft& d) { d.slubs.length_mm = 0; }, "slubs' length is 0"},
+      {[](Draft& d) { d.slubs.shade_mm = -1; }, "length of a shade along a yarn is -1"},
+      {[](Draft& d) { d.slubs.shade_mm = 3; }, "threads have one shade"},
+      {[](Draft& d) { d.plies.count = 0; }, "number of plies of a yarn is 0"},
+      {[](Draft& d) { d.plies.turns_per_mm = 1e9; }, "turns of the plies are 1e+09"},
+      {[=](Draft& d) { d.plies.radius_mm = nan; }, "radius of a ply is nan"},
       {[](Draft& d) { d.warp.threads.assign(2049, 0); }, "too large: 4098 ends x 2 picks are 8196 crossings"},
       {[](Draft& d) { d.warp.threads.assign(5000, 0); }, "a repeat of 5000 yarns is too large"}};
   for (const BadDraft& bad : cases) {

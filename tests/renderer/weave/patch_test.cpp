@@ -7,6 +7,7 @@
 #include <random>
 
 #include "renderer/weave/patch_measures.h"
+#include "tests/renderer/weave/relaxed_cloths.h"
 
 namespace renderer {
 namespace {
@@ -205,17 +206,10 @@ TEST(PatchTest, MovingTheDraftByOneYarnMovesTheClothByOnePitch) {
   }
 }
 
-// Turning the cloth by 90 degrees about z makes weft of warp; what is on top stays on top.
 TEST(PatchTest, TurningTheDraftExchangesWarpAndWeft) {
   for (const Draft& draft : free_drafts()) {
-    Draft turned = draft;
-    std::swap(turned.warp, turned.weft);
+    const YarnPatch a = initial_patch(draft), b = initial_patch(turned(draft));
     const std::size_t picks = draft.warp_over.size(), ends = draft.warp_over[0].size();
-    turned.warp_over.assign(ends, std::vector<bool>(picks));
-    for (std::size_t pick = 0; pick < picks; ++pick)
-      for (std::size_t end = 0; end < ends; ++end)
-        turned.warp_over[end][picks - 1 - pick] = !draft.warp_over[pick][end];
-    const YarnPatch a = initial_patch(draft), b = initial_patch(turned);
     EXPECT_NEAR(a.crimp_warp, b.crimp_weft, 1e-12) << draft.name;
     EXPECT_NEAR(a.crimp_weft, b.crimp_warp, 1e-12) << draft.name;
     EXPECT_NEAR(a.thickness_mm, b.thickness_mm, 1e-12) << draft.name;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 
 #include "renderer/weave/crossings.h"
 #include "renderer/weave/patch_measures.h"
@@ -113,12 +112,29 @@ TEST(RelaxationTest, CrimpIsInterchangedAsTheStiffnessesAndPitchesOfTheBeamsSay)
 }
 
 TEST(RelaxationTest, ClothThatIsTighterThanPeircesJamIsReportedAsJammed) {
-  for (const double pitch : {0.80, 0.84, 0.86, 0.88, 0.90, 0.95}) {  // square cloth jams at sqrt(3) / 2
+  for (const double pitch :
+       {0.80, 0.84, 0.86, 0.865, 0.867, 0.87, 0.88, 0.90, 0.95}) {  // square cloth jams at sqrt(3) / 2
     const RelaxedPatch cloth = relax(plain_cloth(pitch, pitch, 0.5));
-    std::printf("p/D %.2f: overlap %.2f %% of the radius, gap at the crowns %.2f %%%s\n", pitch,
+    std::printf("p/D %.3f: overlap %.2f %% of the radius, gap at the crowns %.2f %%%s\n", pitch,
                 100 * cloth.report.overlap, 100 * cloth.report.crown_gap, cloth.report.jammed ? ", jammed" : "");
     EXPECT_EQ(cloth.report.jammed, pitch < 0.866) << pitch;
     EXPECT_TRUE(cloth.report.as_drafted);
+  }
+}
+
+// Where floats begin and end both yarns are inclined, and yarns that touch there are apart in height by more than their
+// contact distance: in a 2/2 twill by 3.3 %. Between tangents 1.5 % are left, which is the yarns' curvature, at any sett.
+TEST(RelaxationTest, AnOpenTwillIsNotTakenForJammed) {
+  for (const double pitch : {0.65, 0.8, 1.0}) {
+    Draft draft = twill_draft(2, 2);
+    draft.warp.pitch_mm = pitch;
+    draft.weft.pitch_mm = 1.2;
+    const RelaxedPatch cloth = relax(draft);
+    const Crossing crossing = crossings_of(cloth.patch).front();
+    std::printf("warp pitch %.2f mm: gap %.2f %%, in height %.2f %%\n", pitch, 100 * cloth.report.crown_gap,
+                100 * (std::abs(crossing.warp_z_mm - crossing.weft_z_mm) / 0.5 - 1));
+    EXPECT_FALSE(cloth.report.jammed);
+    EXPECT_LT(cloth.report.crown_gap, kJammedCrownGap / 2);
   }
 }
 
@@ -229,30 +245,17 @@ TEST(RelaxationTest, ACellOfFreePeriodsTakesTheSizeThatItsYarnsFill) {
   const RelaxedPatch cloth = relax(draft);
   expect_at_rest(cloth);
   const double length = (1 + peirce_crimp(1.25, 1)) * 2.5;
-  std::printf("periods %.5f %.5f mm from 2.5 mm, crimp %.4f, cell force %.1e %.1e N\n", cloth.patch.period_x_mm,
-              cloth.patch.period_y_mm, cloth.patch.crimp_warp, cloth.report.cell_force_n.x(),
-              cloth.report.cell_force_n.y());
+  std::printf("periods %.5f %.5f mm from 2.5 mm, crimp %.4f, cell force %.1e %.1e N, overlap %.2f %%\n",
+              cloth.patch.period_x_mm, cloth.patch.period_y_mm, cloth.patch.crimp_warp, cloth.report.cell_force_n.x(),
+              cloth.report.cell_force_n.y(), 100 * cloth.report.overlap);
   EXPECT_NEAR(cloth.patch.period_x_mm / cloth.patch.period_y_mm, 1, 1e-3);
   EXPECT_LT(cloth.patch.period_x_mm, 2.5);
   EXPECT_LT(cloth.patch.period_x_mm * (1 + cloth.patch.crimp_weft), length);  // 2 % shorter, but for the stretch
-  EXPECT_LE(cloth.report.overlap, 2 * kMostOverlap);
+  EXPECT_LE(cloth.report.overlap, kMostOverlap);
 }
 
 TEST(RelaxationTest, EveryReadyWeaveComesToRestAsDraftedWithLittleOverlap) {
-  for (const Draft& draft : ready_weaves(6)) {
-    const std::clock_t start = std::clock();
-    const RelaxedPatch cloth = relax(draft);
-    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-    const RelaxationReport& r = cloth.report;
-    std::printf(
-        "%-12s %3zu yarns: %5.2f s of processor time, %d stages, %d Newton, gradient %.1e, overlap %.2f %%, gap %.2f "
-        "%%\n",
-        draft.name.c_str(), cloth.patch.yarns.size(), seconds, r.stages, r.newton_steps, r.gradient, 100 * r.overlap,
-        400 * cloth.patch.least_gap_mm);
-    expect_at_rest(cloth);
-    EXPECT_FALSE(r.jammed) << draft.name;
-    EXPECT_GE(cloth.patch.least_gap_mm, -kMostOverlap * 0.25) << draft.name;
-  }
+  for (const Draft& draft : ready_weaves(6)) expect_woven(draft);
 }
 
 }  // namespace

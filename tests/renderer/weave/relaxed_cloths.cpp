@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <ctime>
+#include <utility>
+
 namespace renderer {
 
 namespace {
@@ -37,6 +41,32 @@ std::vector<Draft> ready_weaves(std::size_t yarns) {
     draft.weft.threads = draft.warp.threads;
   }
   return drafts;
+}
+
+Draft turned(const Draft& draft) {
+  Draft result = draft;
+  std::swap(result.warp, result.weft);
+  const std::size_t picks = draft.warp_over.size(), ends = draft.warp_over[0].size();
+  result.warp_over.assign(ends, std::vector<bool>(picks));
+  for (std::size_t pick = 0; pick < picks; ++pick)
+    for (std::size_t end = 0; end < ends; ++end)
+      result.warp_over[end][picks - 1 - pick] = !draft.warp_over[pick][end];
+  return result;
+}
+
+void expect_woven(const Draft& draft) {
+  const std::clock_t start = std::clock();
+  const RelaxedPatch cloth = relax(draft);
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  const RelaxationReport& r = cloth.report;
+  std::printf(
+      "%-12s %3zu yarns: %5.2f s of processor time, %d stages, %d Newton, gradient %.1e, overlap %.2f %%, gap %.2f "
+      "%%, at crossings %.2f %%\n",
+      draft.name.c_str(), cloth.patch.yarns.size(), seconds, r.stages, r.newton_steps, r.gradient, 100 * r.overlap,
+      400 * cloth.patch.least_gap_mm, 100 * r.crown_gap);
+  expect_at_rest(cloth);
+  EXPECT_FALSE(r.jammed) << draft.name;
+  EXPECT_GE(cloth.patch.least_gap_mm, -kMostOverlap * 0.25) << draft.name;
 }
 
 void expect_at_rest(const RelaxedPatch& relaxed) {

@@ -16,6 +16,12 @@ std::vector<Draft> uneven_drafts();
 // The ready weaves at the setts of fixtures/drafts, `yarns` or a little more each way.
 std::vector<Draft> ready_weaves(std::size_t yarns);
 
+// The cloth turned by 90 degrees about z: weft becomes warp; what is on top stays on top.
+Draft turned(const Draft& draft);
+
+// Relaxes a draft of yarns of 0.5 mm, prints what it took, and expects it at rest, not jammed, with little overlap.
+void expect_woven(const Draft& draft);
+
 // Comes to rest at a gradient below 1e-6 of the pull on the yarns, as drafted.
 void expect_at_rest(const RelaxedPatch& relaxed);
 

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "renderer/weave/relaxation.h"
+#include "renderer/weave/unevenness.h"
 #include "station/documents/draft_drawing.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/patch_file.h"
@@ -67,6 +68,10 @@ TEST_F(WeaveDocuments, ADraftThatIsWrittenAndReadIsTheSameDraft) {
   draft.weft.contraction = 0.02;
   draft.weft.flatness = 1.25;
   draft.free_periods = true;
+  draft.transverse_modulus_n_mm2 = 12.5;
+  draft.unevenness = {.radius = 0.03, .pitch = 0.1, .shades = 5, .seed = 77};
+  draft.slubs = {.radius = 0.04, .twist = 0.06, .length_mm = 4.5, .shade_mm = 7.5};
+  draft.plies = {.count = 3, .turns_per_mm = -0.4, .radius_mm = 0.06};
   write_json_file(folder_ / "draft.json", to_json(draft));
   const renderer::Draft read = read_draft(folder_ / "draft.json");
   EXPECT_EQ(to_json(read), to_json(draft));
@@ -78,7 +83,10 @@ TEST_F(WeaveDocuments, ADraftThatIsWrittenAndReadIsTheSameDraft) {
 TEST_F(WeaveDocuments, APatchThatIsWrittenAndReadIsTheSamePatchToTheLastDigit) {
   renderer::Draft draft = read_draft(kDrafts / "satin_5.json");
   draft.warp.threads = {0, 3};
-  const renderer::YarnPatch patch = renderer::initial_patch(draft);
+  draft.unevenness.shades = 2;
+  draft.slubs = {.radius = 0.05, .length_mm = 2, .shade_mm = 3};
+  renderer::YarnPatch patch = renderer::initial_patch(draft);
+  make_uneven(patch, draft);
   write_json_file(folder_ / "patch.json", to_json(patch));
   const renderer::YarnPatch read = read_patch(folder_ / "patch.json");
   EXPECT_EQ(read.name, patch.name);
@@ -96,6 +104,10 @@ TEST_F(WeaveDocuments, APatchThatIsWrittenAndReadIsTheSamePatchToTheLastDigit) {
     EXPECT_EQ(read.yarns[i].thread, patch.yarns[i].thread);
     EXPECT_EQ(read.yarns[i].radius_mm, patch.yarns[i].radius_mm);
     EXPECT_EQ(read.yarns[i].control_points, patch.yarns[i].control_points);
+    EXPECT_FALSE(read.yarns[i].thickness.empty());
+    EXPECT_EQ(read.yarns[i].thickness, patch.yarns[i].thickness);
+    EXPECT_FALSE(read.yarns[i].threads.empty());
+    EXPECT_EQ(read.yarns[i].threads, patch.yarns[i].threads);
   }
 }
 
@@ -129,6 +141,19 @@ TEST_F(WeaveDocuments, EachBadDraftFileIsRefusedInOneLineThatNamesTheKey) {
   expect_refused(spoiled("/weft/tex", -2), true, "weft tex is -2");
   expect_refused(spoiled("/periods", "free"), true, "warp yarns have no contraction");
   expect_refused(spoiled("/periods", "loose"), true, "\"periods\"");
+  expect_refused(spoiled("/transverse_modulus_n_mm2", -1), true, "transverse modulus is -1");
+  expect_refused(spoiled("/unevenness", json{{"radius", 0.5}}), true, "unevenness of the radius is 0.5");
+  expect_refused(spoiled("/unevenness", json{{"depth", 0.5}}), true, "unknown key \"unevenness.depth\"");
+  expect_refused(spoiled("/unevenness", json{{"shades", 0}}), true, "\"unevenness.shades\"");
+  expect_refused(spoiled("/unevenness", json{{"seed", -1}}), true, "\"unevenness.seed\"");
+  expect_refused(spoiled("/slubs", json{{"radius", -0.1}}), true, "slubs' deviation of the radius is -0.1");
+  expect_refused(spoiled("/slubs", json{{"length_mm", 0}}), true, "slubs' length is 0");
+  expect_refused(spoiled("/slubs", json{{"shade_mm", 4}}), true, "threads have one shade");
+  expect_refused(spoiled("/slubs", 3), true, "\"slubs\"");
+  expect_refused(spoiled("/plies", json{{"count", 99}}), true, "\"plies.count\"");
+  expect_refused(spoiled("/plies", json{{"count", 2}, {"turns_per_mm", 50}}), true,
+                 "turns of the plies are 50 per mm");
+  expect_refused(spoiled("/plies", json::object()), true, "\"plies.count\": is missing");
   json without = good;
   without.erase("weft");
   expect_refused(without, true, "\"weft\": is missing");
@@ -147,6 +172,9 @@ TEST_F(WeaveDocuments, EachBadPatchFileIsRefusedInOneLineThatNamesTheKey) {
   expect_refused(spoiled("/yarns/0/system", "knit"), false, "\"yarns[0].system\"");
   expect_refused(spoiled("/yarns/0/radius_mm", 0), false, "\"yarns[0].radius_mm\"");
   expect_refused(spoiled("/yarns/1/thread", -1), false, "\"yarns[1].thread\"");
+  expect_refused(spoiled("/yarns/1/thickness", json{1, 1}), false, "\"yarns[1].thickness\"");
+  expect_refused(spoiled("/yarns/1/thickness", std::vector<double>(16, 0)), false, "\"yarns[1].thickness\"");
+  expect_refused(spoiled("/yarns/1/threads", std::vector<double>(16, 0.5)), false, "\"yarns[1].threads\"");
   expect_refused(spoiled("/yarns/1/control_points_mm", json::array()), false, "at least 4 points");
   expect_refused(spoiled("/yarns/1/control_points_mm/3", json::array({1, 2})), false, "point 4 is not [x, y, z]");
   expect_refused(spoiled("/yarns/1/control_points_mm/3/0", nullptr), false, "point 4 is not [x, y, z]");
@@ -268,7 +296,39 @@ TEST_F(WeaveDocuments, EveryDraftInFixturesIsReadAndHasADrawing) {
     EXPECT_NE(svg.find("</svg>"), std::string::npos);
     ++count;
   }
-  EXPECT_EQ(count, 12);
+  EXPECT_EQ(count, 13);
+}
+
+TEST_F(WeaveDocuments, EveryDraftInFixturesComesToRestAsDrafted) {
+  for (const fs::directory_entry& file : fs::directory_iterator(kDrafts)) {
+    if (file.path().extension() != ".json") continue;
+    const renderer::RelaxationReport report = renderer::relax(read_draft(file.path())).report;
+    std::printf("%-20s gradient %.1e, overlap %.2f %%, gap at crossings %.2f %%\n",
+                file.path().filename().string().c_str(), report.gradient, 100 * report.overlap,
+                100 * report.crown_gap);
+    EXPECT_TRUE(report.converged) << file.path();
+    EXPECT_LT(report.gradient, renderer::kAtRest) << file.path();
+    EXPECT_TRUE(report.as_drafted) << file.path();
+    EXPECT_FALSE(report.jammed) << file.path();
+    EXPECT_LE(report.overlap, renderer::kMostOverlap) << file.path();
+  }
+}
+
+TEST_F(WeaveDocuments, TheExampleOfEveryOptionSaysWhatItsReadmeSays) {
+  const renderer::Draft draft = read_draft(kDrafts / "slubbed_linen.json");
+  EXPECT_EQ(draft.transverse_modulus_n_mm2, 8);
+  EXPECT_EQ(draft.height_scale, 1);
+  EXPECT_EQ(draft.unevenness.radius, 0.04);
+  EXPECT_EQ(draft.unevenness.pitch, 0.1);
+  EXPECT_EQ(draft.unevenness.shades, 2);
+  EXPECT_EQ(draft.unevenness.seed, 1u);
+  EXPECT_EQ(draft.slubs.radius, 0.08);
+  EXPECT_EQ(draft.slubs.twist, 0.1);
+  EXPECT_EQ(draft.slubs.length_mm, 2);
+  EXPECT_EQ(draft.slubs.shade_mm, 6);
+  EXPECT_EQ(draft.plies.count, 2);
+  EXPECT_EQ(draft.plies.turns_per_mm, 0.4);
+  EXPECT_EQ(draft.plies.radius_mm, 0);
 }
 
 TEST_F(WeaveDocuments, TheDrawingShowsTheYarnOnTopAndTheFirstPickAtTheBottom) {

@@ -71,10 +71,11 @@ TEST(WovenPatchTest, FlattenedYarnsAreRefusedByBruteForceInOneLine) {
 }
 
 TEST(WovenPatchTest, YarnsFlattenTheMoreTheSofterTheyAreAndKeepTheirArea) {
-  const Draft draft = plain_cloth(1.2, 1.0, 0.5);
+  Draft draft = plain_cloth(1.2, 1.0, 0.5);
   double flattest = 1, thinnest = relax(draft).patch.thickness_mm;
   for (const double modulus : {16.0, 4.0, 1.0}) {
-    const RelaxedPatch cloth = woven_patch(draft, {.transverse_modulus_n_mm2 = modulus});
+    draft.transverse_modulus_n_mm2 = modulus;
+    const RelaxedPatch cloth = woven_patch(draft);
     expect_at_rest(cloth);
     double flatness = 0;
     for (const Yarn& yarn : cloth.patch.yarns) {
@@ -137,11 +138,13 @@ TEST(WovenPatchTest, PliesTouchEachOtherInsideTheirYarnAndRepeatWithThePatch) {
 TEST(WovenPatchTest, UnevenYarnsDifferBySeedOnlyAndAreAtRestAsDrafted) {
   Draft draft = plain_cloth(1.1, 1.1, 0.5);
   draft.warp.threads.assign(8, 1);
-  const Unevenness uneven{.radius = 0.05, .pitch = 0.1, .shades = 3, .seed = 7};
-  const RelaxedPatch a = woven_patch(draft, {.unevenness = uneven}), b = woven_patch(draft, {.unevenness = uneven});
-  Unevenness other = uneven;
-  other.seed = 8;
-  const RelaxedPatch c = woven_patch(draft, {.unevenness = other});
+  const YarnPatch even = woven_patch(draft).patch, plain = relax(draft).patch;
+  for (std::size_t i = 0; i < even.yarns.size(); ++i)
+    EXPECT_EQ(even.yarns[i].control_points, plain.yarns[i].control_points);
+  draft.unevenness = {.radius = 0.05, .pitch = 0.1, .shades = 3, .seed = 7};
+  const RelaxedPatch a = woven_patch(draft), b = woven_patch(draft);
+  draft.unevenness.seed = 8;
+  const RelaxedPatch c = woven_patch(draft);
   expect_at_rest(a);
   double sum = 0;
   for (std::size_t i = 0; i < a.patch.yarns.size(); ++i) {
@@ -154,20 +157,12 @@ TEST(WovenPatchTest, UnevenYarnsDifferBySeedOnlyAndAreAtRestAsDrafted) {
   }
   EXPECT_GT(sum, 0.01 * static_cast<double>(a.patch.yarns.size()));
   EXPECT_LE(a.report.overlap, kMostOverlap);
-  const YarnPatch even = woven_patch(draft).patch, plain = relax(draft).patch;
-  for (std::size_t i = 0; i < even.yarns.size(); ++i)
-    EXPECT_EQ(even.yarns[i].control_points, plain.yarns[i].control_points);
 }
 
-TEST(WovenPatchTest, OptionsOutOfRangeAreRefusedInOneLine) {
-  const WovenOptions cases[]{{.transverse_modulus_n_mm2 = -1},
-                             {.unevenness = {.radius = 0.3}},
-                             {.unevenness = {.pitch = std::nan("")}},
-                             {.unevenness = {.shades = 0}},
-                             {.plies = {.count = 0}},
-                             {.plies = {.count = 2, .turns_per_mm = 1e9}},
-                             {.plies = {.count = 2, .radius_mm = 1}}};
-  for (const WovenOptions& options : cases) EXPECT_THROW(woven_patch(plain_draft(), options), std::runtime_error);
+TEST(WovenPatchTest, APlyThatIsThickerThanItsYarnIsRefusedInOneLine) {
+  Draft draft = plain_draft();
+  draft.plies = {.count = 2, .radius_mm = 1};
+  EXPECT_THROW(woven_patch(draft), std::runtime_error);
 }
 
 }  // namespace
