@@ -2,25 +2,44 @@
 // asks libusb, and the program answers in its place. What the driver asks only after it has the camera is not here.
 #include <libusb-1.0/libusb.h>
 
+#include <cstdint>
+
+struct libusb_context {};
 struct libusb_device {};
 struct libusb_device_handle {};
 
 namespace {
 
+libusb_context context_here;
 libusb_device camera;
 libusb_device_handle opened;
 libusb_device* bus[] = {&camera, nullptr};
 
+constexpr libusb_endpoint_descriptor endpoint(std::uint8_t address, std::uint8_t kind) {
+  return {.bLength = LIBUSB_DT_ENDPOINT_SIZE,
+          .bDescriptorType = LIBUSB_DT_ENDPOINT,
+          .bEndpointAddress = address,
+          .bmAttributes = kind,
+          .wMaxPacketSize = 512,
+          .bInterval = 0,
+          .bRefresh = 0,
+          .bSynchAddress = 0,
+          .extra = nullptr,
+          .extra_length = 0};
+}
+const libusb_endpoint_descriptor endpoints[] = {endpoint(0x81, LIBUSB_TRANSFER_TYPE_BULK),
+                                                endpoint(0x02, LIBUSB_TRANSFER_TYPE_BULK),
+                                                endpoint(0x83, LIBUSB_TRANSFER_TYPE_INTERRUPT)};
 const libusb_interface_descriptor still_image{.bLength = LIBUSB_DT_INTERFACE_SIZE,
                                               .bDescriptorType = LIBUSB_DT_INTERFACE,
                                               .bInterfaceNumber = 0,
                                               .bAlternateSetting = 0,
-                                              .bNumEndpoints = 0,
+                                              .bNumEndpoints = 3,
                                               .bInterfaceClass = LIBUSB_CLASS_IMAGE,
                                               .bInterfaceSubClass = 1,
                                               .bInterfaceProtocol = 1,
                                               .iInterface = 0,
-                                              .endpoint = nullptr,
+                                              .endpoint = endpoints,
                                               .extra = nullptr,
                                               .extra_length = 0};
 const libusb_interface only_interface{.altsetting = &still_image, .num_altsetting = 1};
@@ -41,7 +60,7 @@ libusb_config_descriptor only_configuration{.bLength = LIBUSB_DT_CONFIG_SIZE,
 extern "C" {
 
 int libusb_init(libusb_context** context) {
-  *context = nullptr;
+  *context = &context_here;
   return 0;
 }
 void libusb_exit(libusb_context*) {}
