@@ -101,6 +101,10 @@ int libusb_get_config_descriptor(libusb_device*, uint8_t, libusb_config_descript
 }
 void libusb_free_config_descriptor(libusb_config_descriptor*) {}
 
+int libusb_get_max_packet_size(libusb_device*, unsigned char) {
+  return 512;
+}
+
 int libusb_open(libusb_device*, libusb_device_handle** handle) {
   *handle = &opened;
   return 0;
@@ -114,6 +118,12 @@ int libusb_claim_interface(libusb_device_handle*, int) {
 }
 int libusb_release_interface(libusb_device_handle*, int) {
   return LIBUSB_ERROR_NOT_FOUND;
+}
+int libusb_handle_events(libusb_context*) {
+  return 0;
+}
+int libusb_handle_events_timeout(libusb_context*, timeval*) {
+  return 0;
 }
 
 }  // extern "C"
