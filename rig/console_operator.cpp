@@ -1,10 +1,9 @@
 #include "rig/console_operator.h"
 
-#include <istream>
 #include <optional>
-#include <ostream>
-#include <stdexcept>
 #include <string>
+
+#include "rig/asked_person.h"
 
 namespace rig {
 namespace {
@@ -17,24 +16,12 @@ class ConsoleOperator final : public Operator {
     const std::string todo = standing_ ? instruction(*standing_, wanted) : full_instruction(wanted);
     if (!todo.empty()) {
       standing_.reset();  // until the person confirms, the bench may be half way
-      out_ << todo << "\nPress Enter when it is done, or q and Enter to end: " << std::flush;
-      wait_for_confirmation(todo);
+      ask_person(in_, out_, todo, "Press Enter when it is done, or q and Enter to end: ");
     }
     standing_ = wanted;
   }
 
  private:
-  void wait_for_confirmation(const std::string& todo) {
-    std::string answer;
-    if (!std::getline(in_, answer)) {
-      throw std::runtime_error("asked to: \"" + todo +
-                               "\", but the input ended before anybody answered; run it at a terminal");
-    }
-    if (answer == "q" || answer == "Q") {
-      throw std::runtime_error("asked to: \"" + todo + "\", and the person declined; resume when it can be done");
-    }
-  }
-
   std::istream& in_;
   std::ostream& out_;
   std::optional<Arrangement> standing_;

@@ -7,16 +7,21 @@
 namespace rig {
 
 enum class CameraFault {
-  silence,          // nothing is done and nothing answered
-  lost_answer,      // done, and not answered
-  cut,              // the connection breaks in the middle of the answer: a truncated file
-  garbage,          // the answer is noise
-  unplug,           // the camera is gone until it is plugged in
-  refused_setting,  // from here on settings are accepted and not done
-  stale_picture,    // from here on the picture before is delivered again
-  store_full,       // from here on
-  battery_empty,    // from here on
-  dial_turned       // from here on another mode than M
+  silence,      // nothing is done and nothing answered
+  lost_answer,  // done, and not answered
+  cut,          // the connection breaks in the middle of the answer: a truncated file
+  garbage,      // the answer is noise
+  unplug,       // the camera is gone until it is plugged in
+  // From here on this setting is accepted and not done.
+  refused_shutter,
+  refused_iso,
+  refused_f_number,
+  refused_quality,
+  overstepped,    // from here on it goes one step further than it was asked
+  stale_picture,  // from here on the picture before is delivered again
+  store_full,     // from here on
+  battery_empty,  // from here on
+  dial_turned     // from here on another mode than M
 };
 
 struct PlannedCameraFault {

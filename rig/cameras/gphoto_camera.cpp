@@ -189,7 +189,8 @@ class GphotoCamera final : public Camera {
     if (status == GP_ERROR) {  // on the network nothing more is said
       throw CameraLost("the camera at " + setup_.port + " is there and turns the program away: " + kHeldByAnother);
     }
-    check("be connected at " + setup_.port, status);
+    // The library's word for an address on USB at which nothing is.
+    check("be connected at " + setup_.port, status == GP_ERROR_FILE_NOT_FOUND ? GP_ERROR_IO_USB_FIND : status);
     // Some answer properly only after this question.
     CameraText summary{};
     check("tell about itself", gp_camera_get_summary(handle_.get(), &summary, context_.get()));

@@ -101,14 +101,8 @@ class Server final : public PtpipServer {
   Server(SimulatedSony& camera, int port, CameraFaultPlan plan)
       : camera_(camera), plan_(std::move(plan)), port_(port) {
     listen_there();
-    thread_ = std::thread([this] { serve(); });
+    thread_ = std::jthread([this](const std::stop_token& ending) { serve(ending); });
   }
-  ~Server() override {
-    ending_ = true;
-    thread_.join();
-  }
-  Server(const Server&) = delete;
-  Server& operator=(const Server&) = delete;
 
   int port() const override { return port_; }
   void unplug() override {
@@ -147,8 +141,8 @@ class Server final : public PtpipServer {
     listening_ = true;
   }
 
-  void serve() {
-    while (!ending_) {
+  void serve(const std::stop_token& ending) {
+    while (!ending.stop_requested()) {
       try {
         serve_once();
       } catch (const Broken&) {
@@ -260,8 +254,20 @@ class Server final : public PtpipServer {
       return std::nullopt;
     }
     switch (found->fault) {
-      case CameraFault::refused_setting:
+      case CameraFault::refused_shutter:
         camera_.set_condition({.shutter_locked = true});
+        break;
+      case CameraFault::refused_iso:
+        camera_.set_condition({.iso_locked = true});
+        break;
+      case CameraFault::refused_f_number:
+        camera_.set_condition({.f_number_locked = true});
+        break;
+      case CameraFault::refused_quality:
+        camera_.set_condition({.quality_locked = true});
+        break;
+      case CameraFault::overstepped:
+        camera_.set_condition({.oversteps = true});
         break;
       case CameraFault::stale_picture:
         camera_.set_condition({.repeats_last_picture = true});
@@ -346,9 +352,9 @@ class Server final : public PtpipServer {
   Socket door_, command_, event_;
   int announced_ = 0;
   std::atomic<int> operations_ = 0;
-  std::atomic<bool> ending_ = false, plugged_ = true, listening_ = false;
+  std::atomic<bool> plugged_ = true, listening_ = false;
   std::atomic<long> cut_after_ = -1;
-  std::thread thread_;
+  std::jthread thread_;  // last: it ends before what it uses
 };
 
 }  // namespace

@@ -199,11 +199,11 @@ class Sony final : public SimulatedSony {
       const auto found = std::find(values.begin(), values.end(), wanted);
       index = found == values.end() ? index : static_cast<std::size_t>(found - values.begin());
     };
-    if (property == kQuality) {
+    if (property == kQuality && !condition_.quality_locked) {
       quality_ = ptp_number<std::uint8_t>(data, 0).value_or(quality_);
-    } else if (property == kFNumber) {
+    } else if (property == kFNumber && !condition_.f_number_locked) {
       choose(kFNumbers, ptp_number<std::uint16_t>(data, 0).value_or(0), f_number_);
-    } else if (property == kIso) {
+    } else if (property == kIso && !condition_.iso_locked) {
       choose(kIsos, ptp_number<std::uint32_t>(data, 0).value_or(0), iso_);
     } else if (property == kFocusMode) {
       condition_.focus_mode = ptp_number<std::uint16_t>(data, 0).value_or(1);
@@ -214,10 +214,11 @@ class Sony final : public SimulatedSony {
   // Steps and buttons.
   PtpAnswer control(std::uint16_t property, const std::string& data) {
     const std::lock_guard hold(mutex_);
-    const int steps = ptp_number<std::int8_t>(data, 0).value_or(0);
-    if (property == kFNumber) {
+    const int asked = ptp_number<std::int8_t>(data, 0).value_or(0);
+    const int steps = asked + (!condition_.oversteps || asked == 0 ? 0 : asked > 0 ? 1 : -1);
+    if (property == kFNumber && !condition_.f_number_locked) {
       f_number_ = stepped(f_number_, steps, kFNumbers.size());
-    } else if (property == kIso) {
+    } else if (property == kIso && !condition_.iso_locked) {
       iso_ = stepped(iso_, steps, kIsos.size());
     } else if (property == kShutter && !condition_.shutter_locked) {
       shutter_ = stepped(shutter_, steps, kShutterTable.size());

@@ -31,7 +31,9 @@ struct SonyCondition {
   int exposure_program = 1;  // 1 = M; 2 P, 3 A, 4 S
   int focus_mode = 1;        // 1 = manual; 2 AF-S
   int battery_percent = 80;
-  bool shutter_locked = false;  // accepts every step and does none
+  // Settings that it accepts and does not do.
+  bool shutter_locked = false, iso_locked = false, f_number_locked = false, quality_locked = false;
+  bool oversteps = false;  // goes one step further than it was asked
   bool store_full = false;
   bool repeats_last_picture = false;
 };

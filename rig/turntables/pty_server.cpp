@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <cstring>
 #include <stdexcept>
@@ -35,14 +34,8 @@ class Server final : public PtyServer {
     }
     path_ = name.data();
     make_raw();
-    thread_ = std::thread([this] { serve(); });
+    thread_ = std::jthread([this](const std::stop_token& ending) { serve(ending); });
   }
-  ~Server() override {
-    ending_ = true;
-    thread_.join();
-  }
-  Server(const Server&) = delete;
-  Server& operator=(const Server&) = delete;
 
   std::string path() const override { return path_; }
 
@@ -61,9 +54,9 @@ class Server final : public PtyServer {
     }
   }
 
-  void serve() {
+  void serve(const std::stop_token& ending) {
     bool open = false;
-    while (!ending_ && port_->plugged()) {
+    while (!ending.stop_requested() && port_->plugged()) {
       pollfd watched{.fd = master_, .events = POLLIN, .revents = 0};
       ::poll(&watched, 1, kLookEveryMs);
       if ((watched.revents & POLLHUP) != 0) {
@@ -93,8 +86,7 @@ class Server final : public PtyServer {
   std::shared_ptr<SimulatedPort> port_;
   int master_;
   std::string path_;
-  std::atomic<bool> ending_ = false;
-  std::thread thread_;
+  std::jthread thread_;  // last: it ends before what it uses
 };
 
 }  // namespace

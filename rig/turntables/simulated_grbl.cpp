@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "rig/turntables/grbl_code.h"
-#include "rig/turntables/simulated_firmware.h"
+#include "rig/turntables/simulated_controller.h"
 #include "rig/turntables/simulated_grbl_settings.h"
 
 namespace rig {
@@ -24,58 +24,29 @@ struct Block {
 
 enum class State { idle, run, hold, jog, alarm, home };
 
-class SimulatedGrbl final : public SimulatedFirmware {
+class SimulatedGrbl final : public SimulatedController {
  public:
-  SimulatedGrbl(SimulatedMotor motor, Clock& clock, bool with_switch)
-      : motor_(motor), clock_(clock), with_switch_(with_switch), settings_(motor, with_switch) {
+  SimulatedGrbl(const SimulatedMotor& motor, Clock& clock, bool with_switch)
+      : SimulatedController(motor), clock_(clock), with_switch_(with_switch), settings_(motor, with_switch) {
     power_on();
   }
 
-  void power_on() override {
-    motor_.halt();
-    motor_.count_from(0);
-    motor_.halt();
-    wait_for_reset_ = false;
-    start(settings_.at(22) != 0);
-  }
-
-  void receive(std::string_view bytes) override {
-    update();
-    for (const char byte : bytes) {
-      if (!real_time(byte)) {
-        collect(byte);
-      }
-    }
-    update();
-  }
-
-  std::string transmit() override {
-    update();
-    return std::exchange(said_, {});
-  }
-
-  void break_down(Breakdown breakdown) override {
-    update();
-    switch (breakdown) {
-      case Breakdown::reset:
-        power_on();
-        break;
-      case Breakdown::alarm:
-        hard_limit();
-        break;
-      case Breakdown::jam:
-        motor_.jam(true);
-        break;
-    }
-  }
-
  private:
-  void say(const std::string& line) { said_ += line + "\r\n"; }
+  void start() override {
+    wait_for_reset_ = false;
+    greet(settings_.at(22) != 0);
+  }
+
+  void take(char byte) override {
+    if (!real_time(byte)) {
+      collect(byte);
+    }
+  }
 
   double machine_deg() const { return std::round(motor_.counted_steps()) / settings_.at(100); }
 
   // The firmware's start after power-on or reset.
-  void start(bool locked) {
+  void greet(bool locked) {
     line_.clear();
     waiting_.clear();
     planner_.clear();
@@ -102,10 +73,10 @@ class SimulatedGrbl final : public SimulatedFirmware {
       locked = true;
     }
     wait_for_reset_ = false;
-    start(locked);
+    greet(locked);
   }
 
-  void hard_limit() {
+  void run_into_switch() override {
     motor_.halt();
     planner_.clear();
     state_ = State::alarm;
@@ -215,7 +186,7 @@ class SimulatedGrbl final : public SimulatedFirmware {
   }
 
   // Everything that time has brought: the motor's way, lines that waited for it, the end of homing.
-  void update() {
+  void update() override {
     for (;;) {
       motor_.update();
       if (homing_ && !motor_.turning()) {
@@ -345,8 +316,7 @@ class SimulatedGrbl final : public SimulatedFirmware {
     }
     homing_ = false;
     state_ = State::idle;
-    motor_.count_from(-settings_.at(27) * settings_.at(100));
-    motor_.halt();
+    stand_and_count_from(-settings_.at(27) * settings_.at(100));
     say("ok");
   }
 
@@ -394,12 +364,11 @@ class SimulatedGrbl final : public SimulatedFirmware {
     return 0;
   }
 
-  SimulatedMotor motor_;
   Clock& clock_;
   bool with_switch_;
   SimulatedGrblSettings settings_;
   State state_ = State::idle;
-  std::string line_, said_;
+  std::string line_;
   std::deque<std::string> waiting_;  // lines not yet taken
   std::deque<Block> planner_;
   bool begun_ = false;  // the planner's first block

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "rig/turntables/number_text.h"
-#include "rig/turntables/simulated_firmware.h"
+#include "rig/turntables/simulated_controller.h"
 #include "rig/turntables/zaber_reply.h"
 
 namespace rig {
@@ -21,57 +21,30 @@ struct Command {
   std::vector<std::string> words;
 };
 
-class SimulatedZaber final : public SimulatedFirmware {
+class SimulatedZaber final : public SimulatedController {
  public:
-  explicit SimulatedZaber(const SimulatedMotor& motor) : motor_(motor) {
-    power_on();
-    said_.clear();
-  }
+  explicit SimulatedZaber(const SimulatedMotor& motor) : SimulatedController(motor) { power_on(); }
 
-  void power_on() override {
-    motor_.halt();
-    motor_.count_from(0);
-    motor_.halt();
+ private:
+  // Without a greeting.
+  void start() override {
     line_.clear();
     homed_ = homing_ = stalled_ = interrupted_ = false;
   }
 
-  void receive(std::string_view bytes) override {
-    update();
-    for (const char byte : bytes) {
-      if (byte == '\n' || byte == '\r') {
-        const std::string line = std::exchange(line_, {});
-        if (const auto command = parsed(line)) {
-          answer(*command);
-        }
-      } else {
-        line_ += byte;
-      }
+  void take(char byte) override {
+    if (byte != '\n' && byte != '\r') {
+      line_ += byte;
+    } else if (const auto command = parsed(std::exchange(line_, {}))) {
+      answer(*command);
     }
   }
 
-  std::string transmit() override {
-    update();
-    return std::exchange(said_, {});
+  void run_into_switch() override {
+    motor_.halt();
+    stalled_ = true;
   }
 
-  void break_down(Breakdown breakdown) override {
-    update();
-    switch (breakdown) {
-      case Breakdown::reset:
-        power_on();
-        break;
-      case Breakdown::alarm:
-        motor_.halt();
-        stalled_ = true;
-        break;
-      case Breakdown::jam:
-        motor_.jam(true);
-        break;
-    }
-  }
-
- private:
   static std::optional<Command> parsed(std::string line) {
     if (!line.starts_with('/')) {
       return std::nullopt;
@@ -98,13 +71,12 @@ class SimulatedZaber final : public SimulatedFirmware {
     return command;
   }
 
-  void update() {
+  void update() override {
     motor_.update();
     if (homing_ && !motor_.turning()) {
       homing_ = false;
       homed_ = true;
-      motor_.count_from(0);
-      motor_.halt();
+      stand_and_count_from(0);
     }
   }
 
@@ -115,8 +87,7 @@ class SimulatedZaber final : public SimulatedFirmware {
     if (command.message) {
       text += (*command.message < 10 ? "0" : "") + std::to_string(*command.message) + " ";
     }
-    said_ += "@" + text + (accepted ? "OK " : "RJ ") + (motor_.turning() ? "BUSY " : "IDLE ") + warning() + " " +
-             data + "\r\n";
+    say("@" + text + (accepted ? "OK " : "RJ ") + (motor_.turning() ? "BUSY " : "IDLE ") + warning() + " " + data);
   }
 
   // A stage does not answer for another one of the chain.
@@ -184,9 +155,7 @@ class SimulatedZaber final : public SimulatedFirmware {
     reply(command, "0");
   }
 
-  SimulatedMotor motor_;
-
-  std::string line_, said_;
+  std::string line_;
   bool homed_ = false, homing_ = false, stalled_ = false, interrupted_ = false;
 };
 

@@ -153,6 +153,9 @@ class CaptureRun {
     remove_stale(step);
     arrange(step);
     for (int attempt = 1;; ++attempt) {
+      if (options_.begins) {
+        options_.begins(step, recorder_.deliveries(step.id));
+      }
       PictureRecord record = record_of(step);
       record.read_angle_rad = turn(step.platform_angle_rad);
       record.asked = set_camera(devices_.camera, exposure_for(step));

@@ -27,13 +27,17 @@ constexpr std::array<std::pair<const char*, LineFault>, 12> kLineFaults{{{"silen
                                                                          {"jam", LineFault::jam},
                                                                          {"unplug", LineFault::unplug},
                                                                          {"wrong_device", LineFault::wrong_device}}};
-constexpr std::array<std::pair<const char*, CameraFault>, 10> kCameraFaults{
+constexpr std::array<std::pair<const char*, CameraFault>, 14> kCameraFaults{
     {{"silence", CameraFault::silence},
      {"lost_answer", CameraFault::lost_answer},
      {"cut", CameraFault::cut},
      {"garbage", CameraFault::garbage},
      {"unplug", CameraFault::unplug},
-     {"refused_setting", CameraFault::refused_setting},
+     {"refused_shutter", CameraFault::refused_shutter},
+     {"refused_iso", CameraFault::refused_iso},
+     {"refused_f_number", CameraFault::refused_f_number},
+     {"refused_quality", CameraFault::refused_quality},
+     {"overstepped", CameraFault::overstepped},
      {"stale_picture", CameraFault::stale_picture},
      {"store_full", CameraFault::store_full},
      {"battery_empty", CameraFault::battery_empty},

@@ -70,6 +70,9 @@ std::string RecordedBench::run(SessionRun options) {
   Camera watched_camera(*this);
   Turntable watched_turntable(*this);
   Person watched_person(*this);
+  options.begins = [this](const PlanStep& step, std::size_t before) {
+    bench->begin_occasion(step.id + " " + std::to_string(before));
+  };
   return message_of([&] {
     nlohmann::json document = read_json_file(recorded_session() / "session.json");
     document["plan"] = plan_to_json(asked.plan);

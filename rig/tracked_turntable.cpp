@@ -1,0 +1,53 @@
+#include "rig/tracked_turntable.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <stdexcept>
+
+namespace rig {
+namespace {
+
+constexpr double kLimitRad = 2 * std::numbers::pi * (1 + 1e-9);
+
+}  // namespace
+
+std::string degrees_text(double angle_rad) {
+  std::array<char, 400> text{};  // a double may have 309 digits before the point
+  std::snprintf(text.data(), text.size(), "%.1f deg", angle_rad * 180 / std::numbers::pi);
+  return text.data();
+}
+
+void TrackedTurntable::require_reachable(double angle_rad) const {
+  if (!std::isfinite(angle_rad) || std::abs(angle_rad) > kLimitRad) {
+    throw std::runtime_error("the platform was asked to turn to " + degrees_text(angle_rad) +
+                             "; it turns between -360 and 360 deg");
+  }
+  require_known_position("turn to " + degrees_text(angle_rad));
+}
+
+void TrackedTurntable::require_known_position(const std::string& asked) const {
+  if (state_ == TurntableState::unknown_position) {
+    throw std::runtime_error("the platform was asked to " + asked + ", but its position is unknown; home it first");
+  }
+}
+
+// In this order: a stop that comes between the two is not forgotten.
+void TrackedTurntable::begin_moving() {
+  stop_asked_ = false;
+  state_ = TurntableState::moving;
+}
+
+void TrackedTurntable::stop() {
+  stop_asked_ = true;
+  auto standing = TurntableState::idle;  // a moving platform tells itself, an unknown position stays unknown
+  state_.compare_exchange_strong(standing, TurntableState::stopped);
+}
+
+double TrackedTurntable::angle_rad() {
+  require_known_position("tell its angle");
+  return reading_rad_;
+}
+
+}  // namespace rig
