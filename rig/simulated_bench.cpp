@@ -134,6 +134,23 @@ std::uint64_t SimulatedBench::noise_of_next_picture(const ExposureSettings& sett
   return key.take(photographed_[key.bits()]++).bits();
 }
 
+std::uint64_t key_of(const BenchState& state) {
+  Key key(placement_key(state.arrangement));
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      key.take_rounded(state.world_from_object(row, column));
+    }
+  }
+  key.take_rounded(state.platform_angle_rad).take(state.lamp ? 1 : 0);
+  for (int i = 0; i < 3; ++i) {
+    if (state.lamp) {
+      key.take_rounded(state.lamp->position[i]).take_rounded(state.lamp->aim[i]);
+    }
+    key.take_rounded(state.room_radiance[i]);
+  }
+  return key.bits();
+}
+
 bool same_state(const BenchState& a, const BenchState& b) {
   return same_arrangement(a.arrangement, b.arrangement) &&
          a.world_from_object.matrix() == b.world_from_object.matrix() &&

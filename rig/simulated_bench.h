@@ -90,6 +90,8 @@ struct BenchState {
 
 // True when a drawing of `a` is a drawing of `b`; the lens is left out, a bench has only one.
 bool same_state(const BenchState& a, const BenchState& b);
+// The same number for such states, and others for others: seeds what a drawing draws at random.
+std::uint64_t key_of(const BenchState& state);
 
 // Radiance (RGB, radiance unit = full scale per second at the image centre, base ISO and f/8) that falls on each
 // pixel of the sensor, lens distortion included; height x width. Vignetting, exposure, noise, mosaic and quantisation

@@ -84,8 +84,8 @@ RunState run(SessionFolder& session, RigDevices& devices, const SessionFile& ask
       display.note(step.id + " is refused: " + verdict.reason());
   };
   if (devices.bench)
-    run.begins = [&](const PlanStep& step, std::size_t before) {
-      devices.bench->begin_occasion(step.id + " " + std::to_string(before));
+    run.begins = [&](const PlanStep& step, std::size_t before, bool tests) {
+      devices.bench->begin_occasion(step.id + " " + std::to_string(before) + (tests ? " tests" : ""));
     };
   watch_interrupts(2);
   const StopOnInterrupt emergency(

@@ -153,13 +153,12 @@ class CaptureRun {
     remove_stale(step);
     arrange(step);
     for (int attempt = 1;; ++attempt) {
-      if (options_.begins) {
-        options_.begins(step, recorder_.deliveries(step.id));
-      }
+      begin(step, true);
       PictureRecord record = record_of(step);
       record.read_angle_rad = turn(step.platform_angle_rad);
       record.asked = set_camera(devices_.camera, exposure_for(step));
       poll();
+      begin(step, false);
       const rig::Picture delivered = devices_.camera.capture();
       record.verdict = judge(step, record, delivered);
       if (options_.judged) {
@@ -176,6 +175,12 @@ class CaptureRun {
         throw std::runtime_error(record.verdict.reason());
       }
       poll();
+    }
+  }
+
+  void begin(const PlanStep& step, bool tests) {
+    if (options_.begins) {
+      options_.begins(step, recorder_.deliveries(step.id), tests);
     }
   }
 
