@@ -8,33 +8,18 @@
 namespace rig {
 namespace {
 
-// One number for many.
-class Key {
- public:
-  explicit Key(std::uint64_t first) : bits_(mixed(first + 1)) {}
-  Key& take(std::uint64_t value) {
-    bits_ = mixed(bits_ ^ mixed(value + 1));
-    return *this;
-  }
-  // Millionths, so that a number that went through a file or over a wire is the same number.
-  Key& take_rounded(double value) { return take(static_cast<std::uint64_t>(std::llround(value * 1e6))); }
-  std::uint64_t bits() const { return bits_; }
-
- private:
-  std::uint64_t bits_;
-};
-
-// What a hand placed where.
+// One number for what a hand placed where. Millionths, so that a pose that went through a file is the same pose.
 std::uint64_t placement_key(const Arrangement& arrangement) {
-  Key key(static_cast<std::uint64_t>(arrangement.object));
-  key.take(arrangement.object == BenchObject::holder ? static_cast<std::uint64_t>(arrangement.mounting) : 0);
-  key.take(arrangement.on_platform ? 1 : 0);
+  std::uint64_t key = mixed(static_cast<std::uint64_t>(arrangement.object) + 1);
+  const auto take = [&key](std::uint64_t value) { key = mixed(key ^ mixed(value + 1)); };
+  take(arrangement.object == BenchObject::holder ? static_cast<std::uint64_t>(arrangement.mounting) : 0);
+  take(arrangement.on_platform ? 1 : 0);
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) {
-      key.take_rounded(arrangement.pose(row, column));
+      take(static_cast<std::uint64_t>(std::llround(arrangement.pose(row, column) * 1e6)));
     }
   }
-  return key.bits();
+  return key;
 }
 
 bool same_lamp(const std::optional<TrueLamp>& a, const std::optional<TrueLamp>& b) {
@@ -111,44 +96,6 @@ void SimulatedBench::place(const Arrangement& arrangement) {
   if (turn.norm() > 0) {
     placed_pose_.rotate(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
   }
-}
-
-void SimulatedBench::begin_occasion(const std::string& name) {
-  Key key(0);
-  for (const char letter : name) {
-    key.take(static_cast<unsigned char>(letter));
-  }
-  const std::lock_guard hold(counting_);
-  occasion_ = key.bits();
-  photographed_.clear();
-}
-
-std::uint64_t SimulatedBench::noise_of_next_picture(const ExposureSettings& settings) {
-  const std::lock_guard hold(counting_);
-  Key key(occasion_);
-  key.take(placement_key(arrangement_)).take_rounded(platform_angle_rad_);
-  key.take(static_cast<std::uint64_t>(arrangement_.lamp)).take(arrangement_.room_light ? 1 : 0);
-  key.take_rounded(settings.exposure_s)
-      .take(static_cast<std::uint64_t>(settings.iso))
-      .take_rounded(settings.f_number);
-  return key.take(photographed_[key.bits()]++).bits();
-}
-
-std::uint64_t key_of(const BenchState& state) {
-  Key key(placement_key(state.arrangement));
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      key.take_rounded(state.world_from_object(row, column));
-    }
-  }
-  key.take_rounded(state.platform_angle_rad).take(state.lamp ? 1 : 0);
-  for (int i = 0; i < 3; ++i) {
-    if (state.lamp) {
-      key.take_rounded(state.lamp->position[i]).take_rounded(state.lamp->aim[i]);
-    }
-    key.take_rounded(state.room_radiance[i]);
-  }
-  return key.bits();
 }
 
 bool same_state(const BenchState& a, const BenchState& b) {

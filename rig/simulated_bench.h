@@ -7,12 +7,9 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <opencv2/core.hpp>
 #include <optional>
-#include <string>
 
 #include "rig/camera.h"
 #include "rig/clock.h"
@@ -90,8 +87,6 @@ struct BenchState {
 
 // True when a drawing of `a` is a drawing of `b`; the lens is left out, a bench has only one.
 bool same_state(const BenchState& a, const BenchState& b);
-// The same number for such states, and others for others: seeds what a drawing draws at random.
-std::uint64_t key_of(const BenchState& state);
 
 // Radiance (RGB, radiance unit = full scale per second at the image centre, base ISO and f/8) that falls on each
 // pixel of the sensor, lens distortion included; height x width. Vignetting, exposure, noise, mosaic and quantisation
@@ -117,29 +112,18 @@ class SimulatedBench {
   void place(const Arrangement& arrangement);
   void turn_platform(double true_angle_rad) { platform_angle_rad_ = true_angle_rad; }
 
-  // Noise belongs to what is photographed, not to when: to the occasion (in the words of who plans the pictures), to what
-  // stands where in which light, to the exposure, and to how often just this was photographed on this occasion. So a
-  // session that is interrupted or goes in another order gets the pictures that it would have got, and two pictures of
-  // the same still differ. From any thread.
-  void begin_occasion(const std::string& name);
-  std::uint64_t noise_of_next_picture(const ExposureSettings& settings);  // number of the noise's stream
-
  private:
   BenchTruth truth_;
   DrawPicture draw_;
   Arrangement arrangement_;
   Eigen::Isometry3d placed_pose_ = Eigen::Isometry3d::Identity();
   std::atomic<double> platform_angle_rad_ = 0.0;  // a simulated motor turns it from the thread of its wire
-  std::mutex counting_;                           // a simulated camera exposes in a thread of its own
-  std::uint64_t occasion_ = 0;
-  std::map<std::uint64_t, std::uint64_t> photographed_;  // on this occasion: what, how often
 };
 
 // Devices that share one bench and one clock (both must outlive them).
-// Camera: draws only when the bench has changed since its last picture; each picture has noise of its own
-// (noise_of_next_picture), and the lamp has the strength of the exposure's own seconds on the clock. It offers thirds of
-// stops; light gathered goes with (8 / f)^2. Files: rig/raw_writer.h. Turntable: the position is unknown until it is
-// homed; angles within +-360 deg, on the truth's steps.
+// Camera: draws only when the bench has changed since its last picture; the noise is fresh each time, and the lamp has the
+// strength of the exposure's own seconds on the clock. It offers thirds of stops; light gathered goes with (8 / f)^2. Files: rig/raw_writer.h. Turntable: the position is unknown
+// until it is homed; angles within +-360 deg, on the truth's steps.
 std::unique_ptr<Camera> make_simulated_camera(SimulatedBench& bench, Clock& clock);
 std::unique_ptr<Turntable> make_simulated_turntable(SimulatedBench& bench, Clock& clock);
 std::unique_ptr<Operator> make_simulated_operator(SimulatedBench& bench);

@@ -182,6 +182,7 @@ class SimulatedCamera final : public Camera {
     return light;
   }
 
+  // Fresh noise for each picture, the same in each run.
   cv::Mat1w expose(const cv::Mat3f& light) {
     const BenchTruth& truth = bench_.truth();
     if (defects_.sensitivity.empty()) {
@@ -190,7 +191,7 @@ class SimulatedCamera final : public Camera {
     ExposureSettings true_settings = settings_;
     true_settings.exposure_s *= shutter_factor(truth.sensor.defects, settings_.exposure_s, truth.seed);
     const Conversion convert = conversion(truth.sensor, true_settings);
-    NoiseStream noise(truth.seed, bench_.noise_of_next_picture(settings_));
+    NoiseStream noise(truth.seed, ++pictures_taken_);
     cv::Mat1w mosaic(light.size());
     for (int row = 0; row < mosaic.rows; ++row) {
       for (int column = 0; column < mosaic.cols; ++column) {
@@ -208,6 +209,7 @@ class SimulatedCamera final : public Camera {
   SimulatedBench& bench_;
   Clock& clock_;
   ExposureSettings settings_;
+  std::uint64_t pictures_taken_ = 0;
   std::optional<BenchState> drawn_state_;  // what the drawings show
   cv::Mat3f by_lamp_, without_lamp_;       // one of them may be empty
   DefectMaps defects_;

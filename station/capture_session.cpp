@@ -83,10 +83,6 @@ RunState run(SessionFolder& session, RigDevices& devices, const SessionFile& ask
     if (verdict.grade() == Grade::bad && verdict.may_pass_again())
       display.note(step.id + " is refused: " + verdict.reason());
   };
-  if (devices.bench)
-    run.begins = [&](const PlanStep& step, std::size_t before, bool tests) {
-      devices.bench->begin_occasion(step.id + " " + std::to_string(before) + (tests ? " tests" : ""));
-    };
   watch_interrupts(2);
   const StopOnInterrupt emergency(
       [&] {

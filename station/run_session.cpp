@@ -43,7 +43,6 @@ RunState run_session(SessionFolder& session, const RunDevices& devices, const Se
   };
   options.progress = run.progress;
   options.judged = run.judged;
-  options.begins = run.begins;
   options.reshoot = steps_to_reshoot(asked.plan, run.reshoot);
   options.stop_wish = run.stop_wish;
   if (!run.record) return run_plan(asked.plan, devices, session, options);

@@ -20,7 +20,6 @@ struct SessionRun {
   std::function<StopWish()> stop_wish{};
   std::function<void(const Progress&)> progress{};
   std::function<void(const PlanStep&, const Verdict&)> judged{};
-  std::function<void(const PlanStep&, std::size_t before, bool tests)> begins{};  // RunOptions
 };
 
 // Errors: those of run_plan; std::runtime_error for a view to be taken again that the plan does not have.

@@ -53,6 +53,7 @@ struct Painter {
   RigFile rig;
   std::optional<Spool> spool;
   renderer::CurveSet fibers;  // empty until a holder is drawn first
+  std::uint64_t pictures = 0;
 
   // The scene in the frame of the object, where long straight fibers are axis-aligned and their boxes tight.
   renderer::Scene scene(const rig::BenchState& state, const Eigen::Isometry3d& object_from_world) {
@@ -103,7 +104,7 @@ struct Painter {
         camera_of(lens_of(state.lens), object_from_world * state.lens.world_from_camera, false);
     renderer::RenderOptions options;
     options.samples_per_pixel = rig.simulation->target_samples_per_pixel;
-    options.seed = rig.simulation->truth.seed + rig::key_of(state);
+    options.seed = rig.simulation->truth.seed + 7919 * ++pictures;
     const bool threads_lit = state.arrangement.object == rig::BenchObject::holder && state.lamp;
     if (!threads_lit) return tracer.render(camera, options);
     // Fibers scatter far more noisily than paper: their pixels get their own number of samples.

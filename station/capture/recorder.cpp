@@ -95,13 +95,6 @@ void Recorder::camera(const rig::CameraIdentity& identity) {
   });
 }
 
-std::size_t Recorder::deliveries(const std::string& step) const {
-  return static_cast<std::size_t>(std::ranges::count_if(session_.records(), [&](const JournalRecord& record) {
-    return (record.event == "picture" || record.event == "refused") && record.data.at("step") == step &&
-           !record.data.contains("same_as");
-  }));
-}
-
 void Recorder::arranged(const PlanStep& step) {
   durably([&] {
     session_.append("arranged", {{"step", step.id},

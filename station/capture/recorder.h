@@ -54,7 +54,6 @@ class Recorder {
   void stop(RunState outcome, const std::string& message = {});
 
   const std::map<std::string, PictureRecord>& taken() const { return taken_; }  // by step
-  std::size_t deliveries(const std::string& step) const;  // kept, refused and withdrawn ones, in all runs
 
  private:
   void discard(const std::string& file, const std::string& reason);

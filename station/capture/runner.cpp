@@ -153,12 +153,10 @@ class CaptureRun {
     remove_stale(step);
     arrange(step);
     for (int attempt = 1;; ++attempt) {
-      begin(step, true);
       PictureRecord record = record_of(step);
       record.read_angle_rad = turn(step.platform_angle_rad);
       record.asked = set_camera(devices_.camera, exposure_for(step));
       poll();
-      begin(step, false);
       const rig::Picture delivered = devices_.camera.capture();
       record.verdict = judge(step, record, delivered);
       if (options_.judged) {
@@ -175,12 +173,6 @@ class CaptureRun {
         throw std::runtime_error(record.verdict.reason());
       }
       poll();
-    }
-  }
-
-  void begin(const PlanStep& step, bool tests) {
-    if (options_.begins) {
-      options_.begins(step, recorder_.deliveries(step.id), tests);
     }
   }
 

@@ -48,9 +48,6 @@ struct RunOptions {
   std::function<Eigen::Isometry3d(rig::Mounting)> nominal_holder_pose;  // platform_from_holder, required
   std::function<void(const Progress&)> progress;                        // may be empty
   std::function<void(const PlanStep&, const Verdict&)> judged;          // of each picture; may be empty
-  // Before the test pictures of a step and again before its picture: how many pictures of this step the camera has
-  // delivered in this session, kept or not; may be empty.
-  std::function<void(const PlanStep&, std::size_t before, bool tests)> begins;
   std::function<StopWish()> stop_wish;                        // asked between and within steps; may be empty
   std::vector<std::string> reshoot;                           // steps to take again although they have a picture
   double angle_tolerance_rad = 0.5 * std::numbers::pi / 180;  // |asked - read| of the platform

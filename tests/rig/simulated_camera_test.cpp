@@ -183,29 +183,6 @@ TEST(SimulatedCamera, RepeatsItselfForTheSameSeedWhileEachPictureHasItsOwnNoise)
   EXPECT_NE(first, one.camera->capture().bytes);
 }
 
-TEST(SimulatedCamera, NoiseBelongsToWhatIsPhotographedInWhateverOrder) {
-  UniformBench one({0.2F, 0.2F, 0.2F}), other({0.2F, 0.2F, 0.2F});
-  const auto photograph = [](UniformBench& rig, double angle_rad, double exposure_s) {
-    rig.bench.turn_platform(angle_rad);
-    rig.camera->configure({.exposure_s = exposure_s});
-    return read_raw(rig.camera->capture().bytes).mosaic;
-  };
-  const auto same = [](const cv::Mat& a, const cv::Mat& b) { return cv::norm(a, b, cv::NORM_INF) == 0; };
-  const auto first = photograph(one, 0.1, 0.5), second = photograph(one, 0.2, 0.5), again = photograph(one, 0.1, 0.5),
-             longer = photograph(one, 0.1, 1);
-  EXPECT_TRUE(same(longer, photograph(other, 0.1, 1)));
-  EXPECT_TRUE(same(second, photograph(other, 0.2, 0.5)));
-  EXPECT_TRUE(same(first, photograph(other, 0.1, 0.5)));
-  EXPECT_TRUE(same(again, photograph(other, 0.1, 0.5)));
-  EXPECT_FALSE(same(first, again));
-  EXPECT_FALSE(same(first, second));
-  other.bench.begin_occasion("another day");
-  EXPECT_FALSE(same(first, photograph(other, 0.1, 0.5)));
-  other.bench.begin_occasion("another day");
-  one.bench.begin_occasion("another day");
-  EXPECT_TRUE(same(photograph(one, 0.1, 0.5), photograph(other, 0.1, 0.5)));
-}
-
 TEST(SimulatedCamera, DrawsAgainOnlyWhenTheBenchHasChanged) {
   UniformBench rig({0.2F, 0.2F, 0.2F});
   rig.camera->capture();

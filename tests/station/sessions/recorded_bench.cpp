@@ -59,10 +59,6 @@ RecordedBench::RecordedBench()
                          "reflection-horizontal-2", "reflection-horizontal-3", "transmission-1"})
     plan.steps.push_back(*find_step(asked.plan, id));
   asked.plan = plan;
-  build();
-}
-
-void RecordedBench::build() {
   bench =
       std::make_unique<rig::SimulatedBench>(asked.rig.simulation->truth, make_bench_picture(asked.rig, asked.spool));
   camera = rig::make_simulated_camera(*bench, *clock);
@@ -74,9 +70,6 @@ std::string RecordedBench::run(SessionRun options) {
   Camera watched_camera(*this);
   Turntable watched_turntable(*this);
   Person watched_person(*this);
-  options.begins = [this](const PlanStep& step, std::size_t before, bool tests) {
-    bench->begin_occasion(step.id + " " + std::to_string(before) + (tests ? " tests" : ""));
-  };
   return message_of([&] {
     nlohmann::json document = read_json_file(recorded_session() / "session.json");
     document["plan"] = plan_to_json(asked.plan);

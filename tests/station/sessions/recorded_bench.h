@@ -22,8 +22,6 @@ struct RecordedBench {
   RecordedBench(const RecordedBench&) = delete;
   RecordedBench& operator=(const RecordedBench&) = delete;
 
-  // Bench and devices anew, as `asked` has them now.
-  void build();
   // Starts the session, or goes on with it; what it threw, or nothing.
   std::string run(SessionRun options = {});
   std::vector<JournalRecord> records() const { return records_of(path); }
