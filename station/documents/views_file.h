@@ -24,8 +24,8 @@ struct DevelopedView {
   double saturated_fraction = 0.0;  // of the masked pixels
   double pose_rms_px = 0.0;         // of the holder's tags at this mounting
   double lamp_strength = 1.0;       // relative to the first view, by the reference patch
-  std::optional<inversion::NoiseLaw>
-      noise{};  // of the picture as it is on the disk; none without a sensor's calibration
+  // Of the picture as it is on the disk; none without a sensor's calibration.
+  std::optional<inversion::NoiseLaw> noise{};
 };
 
 struct DevelopedViews {
