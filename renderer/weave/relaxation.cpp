@@ -234,15 +234,7 @@ RelaxedPatch relax(const YarnPatch& start, const Draft& draft, const RelaxationO
   report.force_scale_n = force_scale(cell.model);
   add_anchors(cell, report.force_scale_n / thinnest_radius(cell.model));
   stiffen_contact(cell, options, report);
-  if (draft.free_periods) {
-    settle_periods(cell, options, report);
-    // The cell has drawn its yarns together.
-    while (report.overlap > options.overlap_goal && report.stages < options.most_stages) {
-      ++report.stages;
-      cell.model.contact_n_mm2 *= 4;
-      settle_periods(cell, options, report);
-    }
-  }
+  if (draft.free_periods) settle_periods(cell, options, report);
 
   report.contact_n_mm2 = cell.model.contact_n_mm2;
   std::tie(report.contact_forces_n, report.contact_loads_n) = cell.contacts.forces(cell.model, cell.points);

@@ -1,16 +1,20 @@
 #include "station/calibrate/chart_patches.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
+#include <utility>
 
 #include "calibration/colour_chart.h"
+#include "calibration/polygon_mask.h"
 #include "station/views.h"
 
 namespace station {
 namespace {
 
 constexpr double kUsedFraction = 0.6;  // of a patch's edge: away from its border, and from the pose's error
+constexpr std::array<std::pair<int, int>, 4> kSquare{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
 
 }  // namespace
 
@@ -26,16 +30,15 @@ std::vector<Eigen::Vector3d> chart_colours(const calibration::Developed& picture
   for (std::size_t patch = 0; patch < kChartColumns * kChartRows; ++patch) {
     colours.emplace_back(Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
     const Eigen::Vector3d centre = chart_patch_centre(chart, patch);
-    std::vector<cv::Point> outline;
+    std::array<Eigen::Vector2d, 4> corners;
     bool inside = true;
-    for (const auto& [x, y] : {std::pair{-half, -half}, {half, -half}, {half, half}, {-half, half}}) {
-      const Eigen::Vector2d pixel = renderer::project(camera, centre + Eigen::Vector3d(x, y, 0));
-      outline.emplace_back(cvRound(pixel.x()), cvRound(pixel.y()));
-      inside = inside && frame.contains(outline.back());
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Eigen::Vector3d to_corner(kSquare[i].first * half, kSquare[i].second * half, 0);
+      corners[i] = renderer::project(camera, centre + to_corner);
+      inside = inside && frame.contains(cv::Point(cvRound(corners[i].x()), cvRound(corners[i].y())));
     }
     if (!inside) continue;
-    cv::Mat1b mask(picture.radiance.size(), uchar{0});
-    cv::fillConvexPoly(mask, outline, cv::Scalar(255));
+    const cv::Mat1b mask = calibration::polygon_mask(picture.radiance.size(), corners);
     if (cv::countNonZero(mask & picture.saturated) > 0) continue;
     const cv::Scalar mean = cv::mean(picture.radiance, mask);
     const Eigen::Vector3d point = world_from_chart * centre;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
+
+#include "calibration/polygon_mask.h"
 
 namespace station {
 namespace {
@@ -63,10 +65,7 @@ std::vector<std::optional<double>> outputs_under(const std::vector<std::map<int,
 std::map<int, double> tag_radiances(const calibration::Developed& picture, const calibration::StillTags& tags) {
   std::map<int, double> radiances;
   for (const auto& [id, corners] : tags) {
-    std::vector<cv::Point> outline;
-    for (const Eigen::Vector2d& corner : corners) outline.emplace_back(cvRound(corner.x()), cvRound(corner.y()));
-    cv::Mat1b inside(picture.radiance.size(), uchar{0});
-    cv::fillConvexPoly(inside, outline, cv::Scalar(255));
+    const cv::Mat1b inside = calibration::polygon_mask(picture.radiance.size(), corners);
     if (cv::countNonZero(inside) == 0 || cv::countNonZero(inside & picture.saturated) > 0) continue;
     const cv::Scalar mean = cv::mean(picture.radiance, inside);
     radiances[id] = mean[0] + mean[1] + mean[2];

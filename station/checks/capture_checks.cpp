@@ -1,14 +1,16 @@
 #include "station/checks/capture_checks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <stdexcept>
 
 #include "calibration/develop.h"
 #include "calibration/median.h"
+#include "calibration/polygon_mask.h"
 #include "calibration/sensor_maps.h"
 #include "station/bench_reading.h"
 #include "station/calibration_validity.h"
@@ -337,15 +339,15 @@ cv::Mat1b window_region(const RigFile& rig, const inversion::WrappedSpool& spool
       Eigen::AngleAxisd(platform_angle_rad, Eigen::Vector3d::UnitZ()) * nominal_holder_pose(rig, spool, mounting);
   const renderer::Camera camera =
       camera_of(calibration.lens.lens, world_from_holder.inverse() * calibration.platform.world_from_camera, false);
-  cv::Mat1b region(camera.height, camera.width, static_cast<unsigned char>(0));
-  std::vector<cv::Point> outline;
-  for (const auto& [y, z] : {std::pair{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}) {
-    const Eigen::Vector2d pixel =
-        renderer::project(camera, {0, y * spool.window_width_mm, z * spool.window_height_mm});
-    outline.emplace_back(cvRound(pixel.x()), cvRound(pixel.y()));
-  }
-  cv::fillConvexPoly(region, outline, cv::Scalar(255));
-  return region;
+  const double half_width = spool.window_width_mm / 2, half_height = spool.window_height_mm / 2;
+  const std::array<Eigen::Vector3d, 4> corners{{{0, -half_width, -half_height},
+                                                {0, half_width, -half_height},
+                                                {0, half_width, half_height},
+                                                {0, -half_width, half_height}}};
+  std::array<Eigen::Vector2d, 4> corners_px;
+  std::ranges::transform(corners, corners_px.begin(),
+                         [&](const Eigen::Vector3d& corner) { return renderer::project(camera, corner); });
+  return calibration::polygon_mask({camera.width, camera.height}, corners_px);
 }
 
 }  // namespace station

@@ -1,11 +1,13 @@
 #include "station/checks/lamp_checks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
+#include <opencv2/imgproc.hpp>  // boundingRect
 
 #include "calibration/lamp_stability.h"
 #include "calibration/median.h"
+#include "calibration/polygon_mask.h"
 #include "station/reference_patch.h"
 #include "station/report/html.h"
 #include "station/views.h"
@@ -25,11 +27,11 @@ struct TagLight {
   bool saturated = false;  // the light is at least that
 };
 
-std::optional<TagLight> tag_light(const calibration::Developed& developed, const std::vector<cv::Point>& outline) {
+std::optional<TagLight> tag_light(const calibration::Developed& developed,
+                                  const std::array<Eigen::Vector2d, 4>& corners_px) {
   const cv::Mat3f& radiance = developed.radiance;
-  cv::Mat1b inside(radiance.size(), static_cast<unsigned char>(0));
-  cv::fillConvexPoly(inside, outline, cv::Scalar(255));
-  const cv::Rect box = cv::boundingRect(outline) & cv::Rect({0, 0}, radiance.size());
+  const cv::Mat1b inside = calibration::polygon_mask(radiance.size(), corners_px);
+  const cv::Rect box = cv::boundingRect(inside);
   std::vector<TagLight> pixels;
   for (int row = box.y; row < box.y + box.height; ++row)
     for (int column = box.x; column < box.x + box.width; ++column)
@@ -110,13 +112,12 @@ std::optional<Finding> LampChecks::side(const PlanStep& step, const calibration:
     const Eigen::Vector3d normal = tag.object_from_tag.linear().col(2);
     const double cosine = normal.dot(to_lamp.normalized());
     if (cosine < 0.2 || normal.dot(to_eye) <= 0) continue;
-    std::vector<cv::Point> outline;
-    for (const Eigen::Vector3d& corner : calibration::corners_in_object(tag)) {
-      const Eigen::Vector2d pixel = renderer::project(camera, corner);
-      outline.emplace_back(cvRound(pixel.x()), cvRound(pixel.y()));
-    }
+    const std::array<Eigen::Vector3d, 4> corners = calibration::corners_in_object(tag);
+    std::array<Eigen::Vector2d, 4> corners_px;
+    std::ranges::transform(corners, corners_px.begin(),
+                           [&](const Eigen::Vector3d& corner) { return renderer::project(camera, corner); });
     const double white = front.intensity.mean() * cosine / to_lamp.squaredNorm() / M_PI;
-    if (const auto light = tag_light(developed, outline)) {
+    if (const auto light = tag_light(developed, corners_px)) {
       parts.push_back(light->radiance / white);
       saturated += light->saturated;
     }

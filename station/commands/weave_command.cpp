@@ -4,6 +4,8 @@
 #include <functional>
 #include <iostream>
 #include <stdexcept>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "renderer/image_file.h"
@@ -20,6 +22,7 @@ namespace {
 
 using nlohmann::json;
 
+using renderer::Draft;
 using renderer::RelaxationReport;
 using renderer::RelaxedPatch;
 using renderer::YarnPatch;
@@ -31,12 +34,12 @@ std::string number(const char* format, double value) {
 }
 
 // Overlap in percent of the thinner system's radius; 0 where yarns are apart.
-double overlap_percent(const YarnPatch& patch, const renderer::Draft& draft) {
+double overlap_percent(const YarnPatch& patch, const Draft& draft) {
   const double radius_mm = std::min(draft.warp.diameter_mm, draft.weft.diameter_mm) / 2;
   return 100 * std::max(0.0, -patch.least_gap_mm) / radius_mm;
 }
 
-std::string described(const RelaxedPatch& relaxed, const renderer::Draft& draft) {
+std::string described(const RelaxedPatch& relaxed, const Draft& draft) {
   const YarnPatch& patch = relaxed.patch;
   std::string text = patch.name + ": " + std::to_string(ends_in_patch(draft)) + " ends x " +
                      std::to_string(picks_in_patch(draft)) + " picks, " + number("%.3f", patch.period_x_mm) + " x " +
@@ -63,7 +66,48 @@ json relaxation_json(const RelaxationReport& report) {
           {"energy_n_mm", report.energy_n_mm}};
 }
 
-void write_drawing(const std::string& file, const renderer::Draft& draft) {
+// An option that stands for a key of the draft file and wins over it.
+template <typename T>
+struct KeyOption {
+  const char* name;
+  T& (*key)(Draft&);
+  const char* help;
+};
+
+const KeyOption<double> kNumbers[] = {
+    {"--warp-pitch", [](Draft& d) -> double& { return d.warp.pitch_mm; }, "mm from end to end"},
+    {"--weft-pitch", [](Draft& d) -> double& { return d.weft.pitch_mm; }, "mm from pick to pick"},
+    {"--height-scale", [](Draft& d) -> double& { return d.height_scale; },
+     "multiplies the heights of the yarns at rest"},
+    {"--transverse-modulus", [](Draft& d) -> double& { return d.transverse_modulus_n_mm2; },
+     "N/mm^2: yarns flatten where they press each other; 0 = sections as drafted"},
+    {"--ply-turns", [](Draft& d) -> double& { return d.plies.turns_per_mm; }, "turns of the plies per mm"},
+    {"--ply-radius", [](Draft& d) -> double& { return d.plies.radius_mm; }, "mm; 0 = as thick as fit into the yarn"},
+    {"--uneven-radius", [](Draft& d) -> double& { return d.unevenness.radius; },
+     "deviation of yarns' radii, a share of the radius"},
+    {"--uneven-pitch", [](Draft& d) -> double& { return d.unevenness.pitch; },
+     "deviation of yarns' places, a share of their room"},
+    {"--slub-radius", [](Draft& d) -> double& { return d.slubs.radius; },
+     "deviation of the radius along each yarn, a share of the radius"},
+    {"--slub-twist", [](Draft& d) -> double& { return d.slubs.twist; },
+     "deviation of the plies' turns along each yarn, a share of them"},
+    {"--slub-length", [](Draft& d) -> double& { return d.slubs.length_mm; },
+     "mm: correlation length of both along the yarn"},
+    {"--shade-length", [](Draft& d) -> double& { return d.slubs.shade_mm; },
+     "mm: mean length of one shade along a yarn; 0 = yarns of one shade"},
+};
+
+const KeyOption<int> kCounts[] = {
+    {"--plies", [](Draft& d) -> int& { return d.plies.count; }, "plies of each yarn"},
+    {"--shades", [](Draft& d) -> int& { return d.unevenness.shades; },
+     "threads that take turns at random for each of the draft's"},
+};
+
+const KeyOption<std::uint64_t> kSeeds[] = {
+    {"--seed", [](Draft& d) -> std::uint64_t& { return d.unevenness.seed; }, "of all that is uneven"},
+};
+
+void write_drawing(const std::string& file, const Draft& draft) {
   const std::string kind = std::filesystem::path(file).extension().string();
   if (kind == ".svg")
     write_text_file(file, draw_draft_svg(draft));
@@ -76,7 +120,6 @@ void write_drawing(const std::string& file, const renderer::Draft& draft) {
 }  // namespace
 
 void add_weave_command(CLI::App& app) {
-  using renderer::Draft;
   struct Arguments {
     std::string draft, out, drawing, view;
     std::vector<std::function<void(Draft&)>> changes;
@@ -88,54 +131,16 @@ void add_weave_command(CLI::App& app) {
   command->add_option("--out", arguments->out, "patch file to write")->required();
   command->add_option("--drawing", arguments->drawing, "the draft as weavers draw it, PNG or SVG");
   command->add_option("--view", arguments->view, "the patch from above, in perspective and in section, PNG or EXR");
-  // Each stands for a key of the draft file, and wins over it.
-  const auto change = [&]<typename T>(const char* name, T& (*key)(Draft&), const char* help) {
-    command->add_option_function<T>(
-        name,
-        [arguments, key](const T& value) {
-          arguments->changes.push_back([key, value](Draft& draft) { key(draft) = value; });
-        },
-        help);
+  const auto add_keys = [&](const auto& options) {
+    for (const auto& option : options)
+      command->add_option_function<std::decay_t<decltype(option.key(std::declval<Draft&>()))>>(
+          option.name,
+          [arguments, key = option.key](const auto& value) {
+            arguments->changes.push_back([key, value](Draft& draft) { key(draft) = value; });
+          },
+          option.help);
   };
-  change.operator()<double>(
-      "--warp-pitch", [](Draft& d) -> double& { return d.warp.pitch_mm; }, "mm from end to end");
-  change.operator()<double>(
-      "--weft-pitch", [](Draft& d) -> double& { return d.weft.pitch_mm; }, "mm from pick to pick");
-  change.operator()<double>(
-      "--height-scale", [](Draft& d) -> double& { return d.height_scale; },
-      "multiplies the heights of the yarns at rest");
-  change.operator()<double>(
-      "--transverse-modulus", [](Draft& d) -> double& { return d.transverse_modulus_n_mm2; },
-      "N/mm^2: yarns flatten where they press each other; 0 = sections as drafted");
-  change.operator()<int>(
-      "--plies", [](Draft& d) -> int& { return d.plies.count; }, "plies of each yarn");
-  change.operator()<double>(
-      "--ply-turns", [](Draft& d) -> double& { return d.plies.turns_per_mm; }, "turns of the plies per mm");
-  change.operator()<double>(
-      "--ply-radius", [](Draft& d) -> double& { return d.plies.radius_mm; }, "mm; 0 = as thick as fit into the yarn");
-  change.operator()<double>(
-      "--uneven-radius", [](Draft& d) -> double& { return d.unevenness.radius; },
-      "deviation of yarns' radii, a share of the radius");
-  change.operator()<double>(
-      "--uneven-pitch", [](Draft& d) -> double& { return d.unevenness.pitch; },
-      "deviation of yarns' places, a share of their room");
-  change.operator()<int>(
-      "--shades", [](Draft& d) -> int& { return d.unevenness.shades; },
-      "threads that take turns at random for each of the draft's");
-  change.operator()<double>(
-      "--slub-radius", [](Draft& d) -> double& { return d.slubs.radius; },
-      "deviation of the radius along each yarn, a share of the radius");
-  change.operator()<double>(
-      "--slub-twist", [](Draft& d) -> double& { return d.slubs.twist; },
-      "deviation of the plies' turns along each yarn, a share of them");
-  change.operator()<double>(
-      "--slub-length", [](Draft& d) -> double& { return d.slubs.length_mm; },
-      "mm: correlation length of both along the yarn");
-  change.operator()<double>(
-      "--shade-length", [](Draft& d) -> double& { return d.slubs.shade_mm; },
-      "mm: mean length of one shade along a yarn; 0 = yarns of one shade");
-  change.operator()<std::uint64_t>(
-      "--seed", [](Draft& d) -> std::uint64_t& { return d.unevenness.seed; }, "of all that is uneven");
+  add_keys(kNumbers), add_keys(kCounts), add_keys(kSeeds);
   command->add_flag("--json", arguments->json, "what was measured as JSON, for machines");
   command->callback([arguments] {
     Draft draft = read_draft(arguments->draft);

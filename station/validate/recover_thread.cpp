@@ -67,6 +67,10 @@ std::vector<View> with_noise(const std::vector<View>& exact, const rig::TrueSens
   return views;
 }
 
+nlohmann::json loss_json(const inversion::IndependentLoss& loss) {
+  return {{"mean", loss.mean}, {"standard_error", loss.standard_error}, {"without_noise", loss.without_noise}};
+}
+
 }  // namespace
 
 RecoveredThread recover_thread(const RecoverRequest& request) {
@@ -88,17 +92,18 @@ RecoveredThread recover_thread(const RecoverRequest& request) {
     if (interrupted()) throw std::runtime_error(kStopped);
   }
   const rig::TrueSensor& sensor = rig.simulation->truth.sensor;
-  const auto fit_draw = [&](int draw, inversion::FitOptions options) {
-    options.seed = request.fit.seed + 100000 * static_cast<std::uint64_t>(draw);
+  const auto draw_of = [&](std::uint64_t seed) { return with_noise(exact, sensor, 1000 * seed); };
+  const auto fit_draw = [&](int draw, inversion::FitOptions options, const std::vector<View>& views) {
     options.progress = [&, draw](const std::string& what, double) {
       show(1 + draw, (draw ? "draw " + std::to_string(draw) + ", " : "cold fit, ") + what);
       return !interrupted();
     };
-    return inversion::fit_views(spool.wrapping, with_noise(exact, sensor, 1000 * options.seed), options);
+    return inversion::fit_views(spool.wrapping, views, options);
   };
 
   const auto started = std::chrono::steady_clock::now();
-  const inversion::ViewFit first = fit_draw(0, request.fit);
+  const std::vector<View> first_views = draw_of(request.fit.seed);
+  const inversion::ViewFit first = fit_draw(0, request.fit, first_views);
   RecoveredThread result{.thread = thread.name,
                          .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count(),
                          .loss_of_truth = {},
@@ -107,7 +112,6 @@ RecoveredThread recover_thread(const RecoverRequest& request) {
                          .quantities = {}};
   inversion::ViewFit truth = first;
   truth.unknowns = inversion::unknowns_of(thread.parameters);
-  const std::vector<View> first_views = with_noise(exact, sensor, 1000 * request.fit.seed);
   const auto loss_of = [&](const inversion::ViewFit& fit) {
     return inversion::independent_loss(spool.wrapping, first_views, fit, kLossPaths, kLossRepetitions,
                                        request.fit.seed + 77777);
@@ -129,7 +133,8 @@ RecoveredThread recover_thread(const RecoverRequest& request) {
                                paths.end());
   std::vector<Reading> draws;
   for (int draw = 1; draw <= request.draws; ++draw) {
-    const inversion::ViewFit fit = fit_draw(draw, again);
+    again.seed = request.fit.seed + 100000 * static_cast<std::uint64_t>(draw);
+    const inversion::ViewFit fit = fit_draw(draw, again, draw_of(again.seed));
     draws.push_back(reading_of(fit, fit.certainty.noise_covariance));
   }
   if (draws.size() > 1)
@@ -189,8 +194,8 @@ nlohmann::json to_json(const RecoveredThread& recovered) {
                           {"predicted", of.predicted}});
   return {{"thread", recovered.thread},
           {"seconds", recovered.seconds},
-          {"loss_of_truth", recovered.loss_of_truth.mean},
-          {"loss_of_fit", recovered.loss_of_fit.mean},
+          {"loss_of_truth", loss_json(recovered.loss_of_truth)},
+          {"loss_of_fit", loss_json(recovered.loss_of_fit)},
           {"draws", recovered.draws},
           {"quantities", quantities}};
 }
