@@ -47,12 +47,17 @@ MatrixXd spread(const MatrixXd& matrix, const std::vector<int>& chosen, Eigen::I
   return whole;
 }
 
+// A symmetric matrix of all unknowns in the scaled free ones.
+MatrixXd in_free(const LinearisedFit& fit, const MatrixXd& matrix, const std::vector<int>& free) {
+  const MatrixXd scaled = fit.scales.asDiagonal() * matrix * fit.scales.asDiagonal();
+  return columns(columns(scaled, free).transpose(), free);
+}
+
 // In the scaled free unknowns; noise may have made it indefinite: then it is J' J, which is too sure of itself.
 MatrixXd data_hessian(const LinearisedFit& fit, const MatrixXd& jacobian, const std::vector<int>& free) {
   const MatrixXd square = jacobian.transpose() * jacobian;
   if (fit.hessian.size() == 0) return square;
-  const MatrixXd scaled = fit.scales.asDiagonal() * fit.hessian * fit.scales.asDiagonal();
-  const MatrixXd kept = columns(columns(scaled, free).transpose(), free);
+  const MatrixXd kept = in_free(fit, fit.hessian, free);
   return Eigen::SelfAdjointEigenSolver<MatrixXd>(kept).eigenvalues().minCoeff() > 0 ? kept : square;
 }
 
@@ -81,7 +86,9 @@ Certainty certainty_of(const LinearisedFit& fit) {
   if (fit.prior_jacobian.rows() > 0) prior = scaled(fit.prior_jacobian).transpose() * scaled(fit.prior_jacobian);
   const double mean_square = fit.residuals.squaredNorm() / static_cast<double>(fit.residuals.size());
   const double floor = 1e-12 * hessian.diagonal().maxCoeff();
-  const MatrixXd noise = jacobian.transpose() * fit.variances.asDiagonal() * jacobian;
+  const MatrixXd noise = fit.gradient_covariance.size() > 0
+                             ? in_free(fit, fit.gradient_covariance, free)
+                             : MatrixXd(jacobian.transpose() * fit.variances.asDiagonal() * jacobian);
   const MatrixXd inverse = (hessian + floor * identity).ldlt().solve(identity);
   const MatrixXd by_noise = inverse * noise * inverse;
   // The deviation of 1 is one more piece of information on each unknown.

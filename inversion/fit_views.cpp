@@ -173,9 +173,17 @@ BiasFreeTerms data_terms(const ViewObjective& objective, const VectorXd& unknown
   const auto& [a, b] = both.residuals;
   const auto& [by_a, by_b] = both.jacobians;
   const Eigen::MatrixXd product = by_a.transpose() * by_b;
-  return {.loss = 0.5 * a.dot(b),
-          .gradient = 0.5 * (by_a.transpose() * b + by_b.transpose() * a),
-          .hessian = 0.5 * (product + product.transpose())};
+  BiasFreeTerms terms{.loss = 0.5 * a.dot(b),
+                      .gradient = VectorXd::Zero(unknowns.size()),
+                      .hessian = 0.5 * (product + product.transpose()),
+                      .gradient_covariance = Eigen::MatrixXd::Zero(unknowns.size(), unknowns.size())};
+  for (Eigen::Index row = 0; row < a.size(); row += 3) {
+    const VectorXd of_block = 0.5 * (by_a.middleRows<3>(row).transpose() * b.segment<3>(row) +
+                                     by_b.middleRows<3>(row).transpose() * a.segment<3>(row));
+    terms.gradient += of_block;
+    terms.gradient_covariance += of_block * of_block.transpose();
+  }
+  return terms;
 }
 
 // From where the search has ended. The last step's paths remain recorded.
@@ -252,7 +260,9 @@ Certainty certainty_at(const ViewObjective& objective, const Search& search, dou
   fit.residuals.resize(objective.residual_count());
   objective.residuals(unknowns, fit.residuals.data(), jacobian.data());
   fit.jacobian = jacobian;
-  fit.hessian = data_terms(objective, unknowns).hessian;
+  BiasFreeTerms terms = data_terms(objective, unknowns);
+  fit.hessian = std::move(terms.hessian);
+  fit.gradient_covariance = std::move(terms.gradient_covariance);
   fit.variances = objective.residual_variances(unknowns);
   fit.views = objective.residual_views();
   fit.fixed = fixed_unknowns(search, unknowns);

@@ -42,6 +42,21 @@ TEST(CertaintyTest, NoiseThatTheWeightsIgnoreIsThatOfTheEstimate) {
   EXPECT_TRUE(certainty.noise_covariance.isApprox(solve * fit.variances.asDiagonal() * solve.transpose(), 1e-9));
 }
 
+// Three residuals of a block that err together are one piece of information.
+TEST(CertaintyTest, NoiseThatColoursShareIsCountedOnce) {
+  LinearisedFit fit = random_fit(3, 0.1);
+  for (Eigen::Index row = 0; row < fit.jacobian.rows(); row += 3)
+    fit.jacobian.row(row + 1) = fit.jacobian.row(row + 2) = fit.jacobian.row(row);
+  const MatrixXd apart = certainty_of(fit).noise_covariance;
+  MatrixXd together = MatrixXd::Zero(3, 3);
+  for (Eigen::Index row = 0; row < fit.jacobian.rows(); row += 3) {
+    const VectorXd summed = 3 * fit.jacobian.row(row).transpose();
+    together += fit.variances[row] * summed * summed.transpose();
+  }
+  fit.gradient_covariance = together;
+  EXPECT_TRUE(certainty_of(fit).noise_covariance.isApprox(3 * apart, 1e-9));
+}
+
 TEST(CertaintyTest, MisfitCommonToAViewAddsToTheTotalOnly) {
   LinearisedFit fit = random_fit(3, 0.1);
   const Certainty before = certainty_of(fit);
