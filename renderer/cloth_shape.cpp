@@ -90,6 +90,10 @@ struct SurfaceBuilder {
     });
     return surface;
   }
+
+  ClothSurface operator()(const MeshShape& s) const {
+    return cloth_surface(*s.mesh, s.placement, world_from_cloth, s.name);
+  }
 };
 
 // How many periods the explicit cloth has, and where a point of it lies in the frame of the shape.
@@ -128,6 +132,8 @@ ClothSurface surface_of(const ClothShape& shape, const YarnPatch& patch, const E
 std::vector<CurveSet> explicit_curves(const ClothShape& shape, const YarnPatch& patch,
                                       const std::vector<ScatteringModel>& threads,
                                       const Eigen::Isometry3d& world_from_cloth) {
+  if (const auto* mesh = std::get_if<MeshShape>(&shape))
+    throw std::runtime_error(mesh->name + ": brute force lays yarns on swatches and cylinders only; use two_scale");
   const Tiling tiles = tiling_of(shape, patch);
   if (!(segments_of(patch, tiles) <= kMostExplicitSegments))
     throw std::runtime_error("cloth: brute force would need " + std::to_string(tiles.x) + " x " +
@@ -153,6 +159,8 @@ std::vector<CurveSet> explicit_curves(const ClothShape& shape, const YarnPatch& 
 }
 
 TriangleMesh body_of(const ClothShape& shape, const Eigen::Isometry3d& world_from_body, const cv::Vec3f& albedo) {
+  if (const auto* s = std::get_if<MeshShape>(&shape))
+    return body(*s->mesh, s->placement.unit_mm, world_from_body, albedo);
   TriangleMesh mesh{.albedo = cv::Mat3f(1, 1, albedo)};
   const auto add = [&](const Vector3d& point) { mesh.vertices.push_back((world_from_body * point).cast<float>()); };
   if (const auto* s = std::get_if<SwatchShape>(&shape)) {

@@ -1,13 +1,16 @@
-// Simple shapes that cloth and bodies take, and cloth as explicit curves on the same shapes.
+// Shapes that cloth and bodies take, and cloth as explicit curves on the simple ones.
 //
 // Each shape lies in a frame of its own (mm); patch coordinates are millimetres on the shape, so threads keep their size.
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
+#include <string>
 #include <variant>
 #include <vector>
 
 #include "renderer/scene.h"
+#include "renderer/uv_mesh.h"
 
 namespace renderer {
 
@@ -23,15 +26,22 @@ struct CylinderShape {
   double radius_mm = 41.0, height_mm = 171.0;
 };
 
-using ClothShape = std::variant<SwatchShape, CylinderShape>;
+// A garment, ready (garment.h) or from a file (mesh_file.h).
+struct MeshShape {
+  std::shared_ptr<const UvMesh> mesh{};
+  UvPlacement placement{};
+  std::string name{};  // of the file, for messages
+};
+
+using ClothShape = std::variant<SwatchShape, CylinderShape, MeshShape>;
 
 // Where the patch lies on the shape. Errors: std::runtime_error with one line when a tube is narrower than half a period
-// of the patch.
+// of the patch; those of cloth_surface.
 ClothSurface surface_of(const ClothShape& shape, const YarnPatch& patch, const Eigen::Isometry3d& world_from_cloth);
 
 // The same cloth as curves, one set per thread that occurs, in whole periods (rounded up, so that it can be larger than
 // the shape along x and y). Yarns bend smoothly on a cylinder and keep their round cross-section. Errors: as surface_of;
-// a thread that is not among `threads`; more than `kMostExplicitSegments` segments.
+// a mesh, which has no brute force; a thread that is not among `threads`; more than `kMostExplicitSegments` segments.
 inline constexpr double kMostExplicitSegments = 2e7;  // about 4 GB with Embree's tree
 std::vector<CurveSet> explicit_curves(const ClothShape& shape, const YarnPatch& patch,
                                       const std::vector<ScatteringModel>& threads,

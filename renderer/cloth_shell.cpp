@@ -108,10 +108,13 @@ ClothShell make_shell(const ClothSurface& surface, const SurfaceRange& heights) 
   check(surface);
   ClothShell shell{.cells = {}, .frames = vertex_frames(surface)};
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
-    // By rising index: the diagonal of a side face goes from the lower index' bottom to the higher one's top, whichever
-    // prism looks at it.
+    // By place: the diagonal of a side face goes from the first corner's bottom to the second one's top, whichever prism
+    // looks at it, across a seam too, where one place has two vertices.
     Triangle v = surface.triangles[i];
-    std::sort(v.begin(), v.end());
+    std::ranges::sort(v, [&](std::uint32_t a, std::uint32_t b) {
+      const Vector3d &p = surface.vertices[a], &q = surface.vertices[b];
+      return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
+    });
     const Corner a{v[0], heights.low_mm}, b{v[1], heights.low_mm}, c{v[2], heights.low_mm};
     const Corner over_a{v[0], heights.high_mm}, over_b{v[1], heights.high_mm}, over_c{v[2], heights.high_mm};
     shell.cells.push_back(make_cell(surface, {a, b, c, over_c}, i));

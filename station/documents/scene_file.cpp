@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "renderer/garment.h"
+#include "renderer/mesh_file.h"
 #include "renderer/weave/patch_curves.h"
 #include "renderer/weave/woven_patch.h"
 #include "station/documents/draft_file.h"
@@ -38,12 +40,63 @@ Vector3d point(ObjectReader& reader, const std::string& key) {
   return found;
 }
 
-ClothShape parse_shape(ObjectReader& reader, std::initializer_list<const char*> kinds) {
-  const bool flat = reader.choice("kind", kinds) != "cylinder";
-  const double size = reader.number(flat ? "width_mm" : "radius_mm", kLeastSize, kMostSize);
-  const double height = reader.number("height_mm", kLeastSize, kMostSize);
-  if (flat) return renderer::SwatchShape{size, height};
-  return renderer::CylinderShape{size, height};
+void read_length(ObjectReader& reader, const char* key, double least, double& value) {
+  if (reader.has(key)) value = reader.number(key, least, kMostSize);
+}
+
+renderer::MeshShape parse_mesh(ObjectReader& reader, const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / reader.text("file");
+  renderer::MeshShape shape{.mesh = std::make_shared<renderer::UvMesh>(renderer::read_mesh(file)),
+                            .name = file.string()};
+  shape.placement.unit_mm = reader.number("unit_mm", 1e-6, 1e6);
+  if (reader.has("uv_mm")) shape.placement.uv_mm = reader.number("uv_mm", 1e-3, 1e6);
+  return shape;
+}
+
+renderer::GarmentShape parse_garment(ObjectReader& reader, const std::string& kind) {
+  constexpr double kLeastGarment = 10;
+  if (kind == "skirt") {
+    renderer::SkirtShape s;
+    read_length(reader, "waist_radius_mm", kLeastGarment, s.waist_radius_mm);
+    read_length(reader, "length_mm", kLeastGarment, s.length_mm);
+    if (reader.has("flare_deg")) s.flare_deg = reader.number("flare_deg", 60, 360);
+    if (reader.has("folds")) s.folds = reader.integer("folds", 3, 40);
+    return s;
+  }
+  if (kind == "pleats") {
+    renderer::PleatedShape s;
+    read_length(reader, "width_mm", kLeastGarment, s.width_mm);
+    read_length(reader, "height_mm", kLeastGarment, s.height_mm);
+    if (reader.has("pleats")) s.pleats = reader.integer("pleats", 2, 40);
+    if (reader.has("gathered")) s.gathered = reader.number("gathered", 0.3, 0.9);
+    return s;
+  }
+  renderer::DrapeShape s;
+  read_length(reader, "side_mm", kLeastGarment, s.side_mm);
+  read_length(reader, "ball_radius_mm", kLeastGarment, s.ball_radius_mm);
+  return s;
+}
+
+ClothShape parse_shape(ObjectReader& reader, std::initializer_list<const char*> kinds,
+                       const std::filesystem::path& folder) {
+  const std::string kind = reader.choice("kind", kinds);
+  if (kind == "cylinder") {
+    const double radius_mm = reader.number("radius_mm", kLeastSize, kMostSize);
+    return renderer::CylinderShape{radius_mm, reader.number("height_mm", kLeastSize, kMostSize)};
+  }
+  if (kind == "swatch" || kind == "plane") {
+    const double width_mm = reader.number("width_mm", kLeastSize, kMostSize);
+    return renderer::SwatchShape{width_mm, reader.number("height_mm", kLeastSize, kMostSize)};
+  }
+  renderer::MeshShape shape;
+  if (kind == "mesh")
+    shape = parse_mesh(reader, folder);
+  else
+    shape = {.mesh = std::make_shared<renderer::UvMesh>(renderer::garment_mesh(parse_garment(reader, kind))),
+             .placement = {.uv_mm = 1},
+             .name = "the ready " + kind};
+  if (reader.has("turn_deg")) shape.placement.turn_rad = reader.number("turn_deg", -360, 360) * renderer::kPi / 180;
+  return shape;
 }
 
 void replace_threads(ObjectReader& cloth, const std::string& key, renderer::YarnSystem& system) {
@@ -81,7 +134,7 @@ SceneCloth parse_cloth(ObjectReader reader, const std::filesystem::path& folder,
   cloth.patch = parse_weave(reader, folder);
   check_threads(reader, cloth.patch, threads);
   ObjectReader shape = reader.object("shape");
-  cloth.shape = parse_shape(shape, {"swatch", "cylinder"});
+  cloth.shape = parse_shape(shape, {"swatch", "cylinder", "mesh", "skirt", "pleats", "drape"}, folder);
   shape.finish();
   cloth.world_from_cloth = pose(reader, "world_from_cloth");
   if (reader.has("method")) cloth.two_scale = reader.choice("method", {"two_scale", "brute_force"}) == "two_scale";
@@ -96,9 +149,9 @@ Vector3d at_least_zero(ObjectReader& reader, const std::string& key, double most
   return found;
 }
 
-SceneBody parse_object(ObjectReader reader) {
+SceneBody parse_object(ObjectReader reader, const std::filesystem::path& folder) {
   SceneBody body;
-  body.shape = parse_shape(reader, {"plane", "cylinder"});
+  body.shape = parse_shape(reader, {"plane", "cylinder", "mesh"}, folder);
   body.world_from_object = pose(reader, "world_from_object");
   const Vector3d albedo = at_least_zero(reader, "albedo", 1);
   for (int c = 0; c < 3; ++c) body.albedo[c] = static_cast<float>(albedo[c]);
@@ -167,7 +220,8 @@ SceneFile parse_scene(const json& document, const std::string& source, const std
   for (const ObjectReader& cloth : reader.objects("cloths"))
     scene.cloths.push_back(parse_cloth(cloth, folder, scene.threads.size()));
   if (reader.has("objects"))
-    for (const ObjectReader& object : reader.objects("objects")) scene.objects.push_back(parse_object(object));
+    for (const ObjectReader& object : reader.objects("objects"))
+      scene.objects.push_back(parse_object(object, folder));
   for (const ObjectReader& light : reader.objects("lights")) scene.lights.push_back(parse_light(light));
   if (scene.lights.empty()) reader.refuse("lights", "the list is empty and the picture would be black; add a light");
   scene.camera = parse_camera(reader.object("camera"));
