@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "renderer/grid_triangles.h"
 #include "renderer/weave/patch_curves.h"
 
 namespace renderer {
@@ -27,14 +28,7 @@ template <class Surface, class Point>
 void add_grid(Surface& surface, int columns, int rows, const Point& point) {
   for (int row = 0; row <= rows; ++row)
     for (int column = 0; column <= columns; ++column) point(column, row);
-  const auto index = [&](int column, int row) { return static_cast<std::uint32_t>(row * (columns + 1) + column); };
-  for (int row = 0; row < rows; ++row)
-    for (int column = 0; column < columns; ++column) {
-      const std::uint32_t a = index(column, row), b = index(column + 1, row), c = index(column + 1, row + 1),
-                          d = index(column, row + 1);
-      surface.triangles.push_back({a, b, c});
-      surface.triangles.push_back({a, c, d});
-    }
+  surface.triangles = grid_triangles(columns, rows);
 }
 
 int periods_around(const CylinderShape& cylinder, const YarnPatch& patch) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "renderer/grid_triangles.h"
 #include "renderer/scattering/lobes.h"
 
 namespace renderer {
@@ -11,18 +12,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-// Triangles of a grid of (columns + 1) x (rows + 1) vertices, row after row; `face` tells which way they turn.
-void add_grid_triangles(UvMesh& mesh, int columns, int rows) {
-  const auto index = [&](int column, int row) { return static_cast<std::uint32_t>(row * (columns + 1) + column); };
-  for (int row = 0; row < rows; ++row)
-    for (int column = 0; column < columns; ++column) {
-      const std::uint32_t a = index(column, row), b = index(column + 1, row), c = index(column + 1, row + 1),
-                          d = index(column, row + 1);
-      mesh.triangles.push_back({a, b, c});
-      mesh.triangles.push_back({a, c, d});
-    }
-}
 
 // Points at equal steps of length along a finely drawn line, both ends included.
 std::vector<Vector2d> by_length(const std::vector<Vector2d>& line, int steps) {
@@ -68,6 +57,22 @@ std::vector<double> heights_of(const std::vector<std::vector<Vector2d>>& rows, d
   return heights;
 }
 
+// From the lowest row upwards, so that triangles turn towards the face; the lowest is at z = 0.
+template <class Uv>
+UvMesh hanging_mesh(const std::vector<std::vector<Vector2d>>& rows, double step_mm, const Uv& uv) {
+  const std::vector<double> heights = heights_of(rows, step_mm);
+  const auto across = static_cast<int>(rows.front().size()) - 1, down = static_cast<int>(rows.size()) - 1;
+  UvMesh mesh{.triangles = grid_triangles(across, down)};
+  for (int row = down; row >= 0; --row)
+    for (int column = 0; column <= across; ++column) {
+      const auto r = static_cast<std::size_t>(row);
+      const Vector2d& at = rows[r][static_cast<std::size_t>(column)];
+      mesh.vertices.emplace_back(at.x(), at.y(), heights[r] - heights.back());
+      mesh.uv.push_back(uv(column, row));
+    }
+  return mesh;
+}
+
 constexpr int kFine = 4096;  // points of a line whose length is measured
 
 struct Maker {
@@ -96,19 +101,10 @@ struct Maker {
                                           }),
                                 kAcross));
     }
-    const std::vector<double> heights = heights_of(rings, step_mm);
-    UvMesh mesh;
-    // From the hem upwards, so that the face is outside.
-    for (int row = kDown; row >= 0; --row)
-      for (int column = 0; column <= kAcross; ++column) {
-        const auto r = static_cast<std::size_t>(row);
-        const Vector2d& at = rings[r][static_cast<std::size_t>(column)];
-        mesh.vertices.emplace_back(at.x(), at.y(), heights[r] - heights.back());
-        const double angle = sector_rad * column / kAcross, radius = inner_mm + row * step_mm;
-        mesh.uv.emplace_back(radius * std::sin(angle), -radius * std::cos(angle));
-      }
-    add_grid_triangles(mesh, kAcross, kDown);
-    return mesh;
+    return hanging_mesh(rings, step_mm, [&](int column, int row) {
+      const double angle = sector_rad * column / kAcross, radius = inner_mm + row * step_mm;
+      return Vector2d(radius * std::sin(angle), -radius * std::cos(angle));
+    });
   }
 
   UvMesh operator()(const PleatedShape& s) const {
@@ -132,17 +128,9 @@ struct Maker {
                                          }),
                                kAcross));
     }
-    const std::vector<double> heights = heights_of(rows, step_mm);
-    UvMesh mesh;
-    for (int row = kDown; row >= 0; --row)
-      for (int column = 0; column <= kAcross; ++column) {
-        const auto r = static_cast<std::size_t>(row);
-        const Vector2d& at = rows[r][static_cast<std::size_t>(column)];
-        mesh.vertices.emplace_back(at.x(), at.y(), heights[r] - heights.back());
-        mesh.uv.emplace_back(s.width_mm * column / kAcross, s.height_mm - row * step_mm);
-      }
-    add_grid_triangles(mesh, kAcross, kDown);
-    return mesh;
+    return hanging_mesh(rows, step_mm, [&](int column, int row) {
+      return Vector2d(s.width_mm * column / kAcross, s.height_mm - row * step_mm);
+    });
   }
 
   UvMesh operator()(const DrapeShape& s) const;
@@ -191,10 +179,9 @@ class HangingGrid {
   }
 
   UvMesh mesh() const {
-    UvMesh made{.vertices = places_};
+    UvMesh made{.vertices = places_, .triangles = grid_triangles(side_, side_)};
     for (int row = 0; row <= side_; ++row)
       for (int column = 0; column <= side_; ++column) made.uv.emplace_back(cell_mm_ * column, cell_mm_ * row);
-    add_grid_triangles(made, side_, side_);
     double lowest = places_.front().z();
     for (const Vector3d& place : places_) lowest = std::min(lowest, place.z());
     for (Vector3d& vertex : made.vertices) vertex.z() -= lowest;
