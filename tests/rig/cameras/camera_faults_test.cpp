@@ -41,10 +41,12 @@ void take_pictures(rig::Camera& camera, const WiredCamera& wired) {
   }
 }
 
-// The port stands in the command as well: the process of one camera is told from the others' by it.
+// The port stands in the command as well: the process of one camera is told from the others' by it. No process hangs
+// here, and under load none may be taken for one that does.
 std::unique_ptr<rig::Camera> open_camera(const WiredCamera& wired) {
   return rig::make_process_camera({.command = {"/proc/self/exe", "camera-process", wired.port()},
-                                   .camera = {.port = wired.port(), .width_px = 60, .height_px = 40}});
+                                   .camera = {.port = wired.port(), .width_px = 60, .height_px = 40},
+                                   .answer_timeout_s = 600});
 }
 
 void crash_its_process(const WiredCamera& wired) {

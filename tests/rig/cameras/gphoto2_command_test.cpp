@@ -88,10 +88,10 @@ TEST_F(Gphoto2Command, ShowsALiveView) {
 
 TEST_F(Gphoto2Command, DownloadsTheRawPictureWhoseMosaicTheBenchDrew) {
   run("--set-config imagequality=RAW --capture-image-and-download");
-  ASSERT_EQ(wired.recorded.taken.size(), 1u);
+  ASSERT_EQ(wired.recorded.count(), 1u);
   const auto bytes = bytes_of("capt0000.arw");
-  EXPECT_EQ(bytes, wired.recorded.taken[0].bytes);
-  const ReadRaw read = read_raw(bytes), drawn = read_raw(wired.recorded.taken[0].bytes);
+  EXPECT_EQ(bytes, wired.recorded.last().bytes);
+  const ReadRaw read = read_raw(bytes), drawn = read_raw(wired.recorded.last().bytes);
   EXPECT_EQ(read.model, "ILCE-7M2");
   EXPECT_EQ(read.mosaic.size(), cv::Size(60, 40));
   EXPECT_EQ(cv::norm(read.mosaic, drawn.mosaic, cv::NORM_INF), 0);
@@ -99,8 +99,8 @@ TEST_F(Gphoto2Command, DownloadsTheRawPictureWhoseMosaicTheBenchDrew) {
 
 TEST_F(Gphoto2Command, DownloadsRawAndJpegOfOneExposure) {
   run("--set-config 'imagequality=RAW+JPEG (Fine)' --capture-image-and-download");
-  ASSERT_EQ(wired.recorded.taken.size(), 1u);
-  EXPECT_EQ(bytes_of("capt0000.arw"), wired.recorded.taken[0].bytes);
+  ASSERT_EQ(wired.recorded.count(), 1u);
+  EXPECT_EQ(bytes_of("capt0000.arw"), wired.recorded.last().bytes);
   std::size_t jpegs = 0;
   for (const auto& entry : fs::directory_iterator(folder)) {
     jpegs += entry.path().extension() == ".jpg";

@@ -53,7 +53,7 @@ struct GphotoCamera : testing::Test {
   }
   bool delivers_what_was_made(rig::Camera& camera) const {
     const rig::Picture picture = camera.capture();
-    return picture.bytes == wired.recorded.taken.back().bytes;
+    return picture.bytes == wired.recorded.last().bytes;
   }
   WiredCamera wired;
 };

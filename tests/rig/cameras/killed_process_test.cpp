@@ -24,7 +24,7 @@ TEST_F(GphotoCamera, AProcessThatIsKilledAtAnyMomentCostsNoPicture) {
     });
     try {
       const rig::Picture picture = camera->capture();
-      EXPECT_TRUE(picture.bytes == wired.recorded.taken.back().bytes) << run;
+      EXPECT_TRUE(picture.bytes == wired.recorded.last().bytes) << run;
       EXPECT_DOUBLE_EQ(picture.settings.exposure_s, 0.25);
     } catch (const std::exception& error) {
       ADD_FAILURE() << "run " << run << ": " << error.what();

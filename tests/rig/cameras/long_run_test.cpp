@@ -120,11 +120,11 @@ TEST_F(LongRun, AThousandCapturesWithFaultsInTwoPercentEndCompleteAndLeakNothing
     }
     until_done([&] {
       const rig::Picture picture = camera->capture();
-      EXPECT_TRUE(picture.bytes == wired.recorded.taken.back().bytes) << capture;
+      EXPECT_TRUE(picture.bytes == wired.recorded.last().bytes) << capture;
       different.insert(
           std::hash<std::string_view>{}({reinterpret_cast<const char*>(picture.bytes.data()), picture.bytes.size()}));
     });
-    wired.recorded.taken.clear();
+    wired.recorded.forget();
     wired.sony->set_condition({});
     if (capture == 100) {
       early_mb = resident_mb();

@@ -11,7 +11,7 @@
 #include "rig/cameras/simulated_sony.h"
 #include "rig/simulated_bench.h"
 
-// Keeps what the bench's camera drew, to be compared with what came over the wire.
+// Keeps what the bench's camera drew, to be compared with what came over the wire; asked from any thread.
 class RecordingCamera final : public rig::Camera {
  public:
   explicit RecordingCamera(rig::Camera& camera) : camera_(camera) {}
@@ -21,19 +21,27 @@ class RecordingCamera final : public rig::Camera {
   rig::Picture capture() override {
     const rig::Picture picture = camera_.capture();
     const std::lock_guard hold(mutex_);
-    taken.push_back(picture);
+    taken_.push_back(picture);
     return picture;
   }
   std::vector<std::byte> preview() override { return camera_.preview(); }
+  std::size_t count() const {
+    const std::lock_guard hold(mutex_);
+    return taken_.size();
+  }
   rig::Picture last() const {
     const std::lock_guard hold(mutex_);
-    return taken.back();
+    return taken_.at(taken_.size() - 1);
   }
-  std::deque<rig::Picture> taken;  // where no exposure is under way
+  void forget() {
+    const std::lock_guard hold(mutex_);
+    taken_.clear();
+  }
 
  private:
   rig::Camera& camera_;
   mutable std::mutex mutex_;
+  std::deque<rig::Picture> taken_;
 };
 
 // Lets a test act when the camera hears a question.

@@ -16,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       rig::CameraFrames again;
       again.add(rig::encode_frame(frame));
       rig::CameraFrame same;
-      if (!again.next(same) || same.bytes != frame.bytes) {
+      if (!again.next(same) || same.text != frame.text || same.bytes != frame.bytes) {
         std::abort();
       }
     }
