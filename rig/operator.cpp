@@ -20,6 +20,8 @@ std::string object_name(BenchObject object) {
       return "the holder";
     case BenchObject::colour_chart:
       return "the colour chart";
+    case BenchObject::cylinder:
+      return "the cylinder";
     case BenchObject::nothing:
       break;
   }
@@ -102,6 +104,8 @@ std::string place_sentence(const Arrangement& to) {
                                       : place_phrase(to.pose.translation())) +
            ", with the threads " + mounting_name(to.mounting) + ".";
   }
+  if (to.object == BenchObject::cylinder)
+    return "Stand the cylinder with the cloth upright in the middle of the platform, its seam away from the camera.";
   return (to.on_platform ? "Stand " + name + " on the platform, " : "Hold " + name + " ") +
          place_phrase(to.pose.translation()) + ", " + facing_phrase(to.pose.linear().col(2)) + ".";
 }
@@ -114,7 +118,9 @@ std::string lamp_sentence(Lamp to, bool is_on) {
   if (to == Lamp::off) {
     return "Switch the flashlight off.";
   }
-  const std::string where = to == Lamp::front ? "in front of the platform" : "behind the platform";
+  const std::string where = to == Lamp::front        ? "in front of the platform"
+                            : to == Lamp::front_left ? "in front of the platform, on the left"
+                                                     : "behind the platform";
   return is_on ? "Move the flashlight " + where + "." : "Put the flashlight " + where + " and switch it on.";
 }
 

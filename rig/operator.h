@@ -9,9 +9,10 @@
 
 namespace rig {
 
-enum class BenchObject { nothing, board, spectralon, holder, colour_chart };
-enum class Mounting { horizontal, vertical };  // direction of the threads on the holder
-enum class Lamp { off, front, back };
+// cylinder: black, with cloth wrapped round it; its frame has its origin in the middle of its foot and +z up.
+enum class BenchObject { nothing, board, spectralon, holder, colour_chart, cylinder };
+enum class Mounting { horizontal, vertical };      // direction of the threads on the holder
+enum class Lamp { off, front, back, front_left };  // front_left: front, mirrored in the plane of camera and axis
 
 // The whole arrangement that is wanted; a person (or a motor) makes the differences.
 struct Arrangement {

@@ -52,7 +52,9 @@ BenchState SimulatedBench::state() const {
     now.world_from_object = Eigen::AngleAxisd(platform_angle_rad_, Eigen::Vector3d::UnitZ()) * placed_pose_;
   }
   if (arrangement_.lamp != Lamp::off) {
-    now.lamp = arrangement_.lamp == Lamp::front ? truth_.front : truth_.back;
+    now.lamp = arrangement_.lamp == Lamp::front        ? truth_.front
+               : arrangement_.lamp == Lamp::front_left ? truth_.front_left
+                                                       : truth_.back;
   }
   now.room_radiance = (arrangement_.room_light ? 1.0 : truth_.room_leak) * truth_.room_radiance;
   return now;

@@ -62,7 +62,7 @@ struct BenchTruth {
   TrueLens lens{};
   TrueSensor sensor{};
   TrueTurntable turntable{};
-  TrueLamp front{}, back{};
+  TrueLamp front{}, back{}, front_left{};
   // Where the printed tags truly are: the ring glued on the platform, the sheet lying on the table.
   Eigen::Isometry3d platform_from_ring = Eigen::Isometry3d::Identity();  // platform frame at angle 0 = world
   Eigen::Isometry3d world_from_table_sheet = Eigen::Isometry3d::Identity();

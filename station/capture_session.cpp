@@ -122,7 +122,8 @@ CalibrationFiles calibration_files(const std::filesystem::path& place, const Rig
   return files;
 }
 
-Plan plan_of(const RigFile& rig) {
+Plan plan_of(const RigFile& rig, const Spool& spool) {
+  if (spool.fabric) return make_fabric_plan(rig.bracket_stops);
   return make_capture_plan({.reflection_angles_deg = rig.reflection_angles_deg,
                             .transmission_angles_deg = rig.transmission_angles_deg,
                             .bracket_stops = rig.bracket_stops});
@@ -130,7 +131,7 @@ Plan plan_of(const RigFile& rig) {
 
 RunState capture_session(const CaptureRequest& request) {
   const nlohmann::json rig_document = read_json_file(request.rig);
-  nlohmann::json spool_document = read_json_file(request.spool);
+  nlohmann::json spool_document = read_spool_document(request.spool);
   if (request.sample && spool_document.is_object()) {
     if (!request.sample->name.empty()) spool_document["name"] = request.sample->name;
     if (!request.sample->material.empty()) spool_document["material"] = request.sample->material;
@@ -142,7 +143,7 @@ RunState capture_session(const CaptureRequest& request) {
     throw std::runtime_error(request.out.string() +
                              " is a session already; choose another folder, or go on with capture --resume");
   const Plan plan =
-      request.plan.empty() ? plan_of(rig) : plan_from_json(read_json_file(request.plan), request.plan.string());
+      request.plan.empty() ? plan_of(rig, spool) : plan_from_json(read_json_file(request.plan), request.plan.string());
   require_space(request.out, plan, calibration.lens.lens);
   RigDevices devices = open_rig(rig, spool, request.unattended);
   require_valid(calibration, rig, devices.clock->utc(), request.accept_calibration);

@@ -10,6 +10,7 @@
 #include "station/documents/calibration_file.h"
 #include "station/documents/rig_file.h"
 #include "station/documents/sample.h"
+#include "station/documents/spool.h"
 #include "station/progress.h"
 
 namespace station {
@@ -26,7 +27,8 @@ struct CaptureRequest {
   ProgressStyle progress_style = ProgressStyle::automatic;
 };
 
-Plan plan_of(const RigFile& rig);
+// Of a wrapped thread, or of a cloth on the cylinder.
+Plan plan_of(const RigFile& rig, const Spool& spool);
 
 // What a session carries of a calibration (file or folder): calibration.json, and the sensor's maps where it has them.
 CalibrationFiles calibration_files(const std::filesystem::path& calibration_path, const RigCalibration& calibration);

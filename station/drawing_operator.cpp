@@ -23,13 +23,17 @@ class DrawingOperator final : public rig::Operator {
 }  // namespace
 
 std::string drawing(const rig::Arrangement& wanted) {
-  const bool back = wanted.lamp == rig::Lamp::back, front = wanted.lamp == rig::Lamp::front;
-  std::array<std::string, 7> lines = {"   from above                    the holder's front",
+  const bool back = wanted.lamp == rig::Lamp::back, front = wanted.lamp == rig::Lamp::front,
+             left = wanted.lamp == rig::Lamp::front_left;
+  const bool cylinder = wanted.object == rig::BenchObject::cylinder;
+  std::array<std::string, 7> lines = {cylinder ? "   from above                    the cylinder"
+                                               : "   from above                    the holder's front",
                                       back ? "       (*) lamp ON, behind" : "",
                                       "     .-------.",
-                                      "     | ===== |  platform",
+                                      cylinder ? "     |  (_)  |  platform" : "     | ===== |  platform",
                                       "     '-------'",
                                       front  ? "           (*) lamp ON, in front"
+                                      : left ? "  (*) lamp ON, in front on the left"
                                       : back ? ""
                                              : "       lamp OFF",
                                       std::string("      [cam]    room light ") + (wanted.room_light ? "ON" : "OFF")};

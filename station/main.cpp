@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
   station::add_develop_command(app);
   station::add_invert_command(app);
   station::add_report_command(app);
+  station::add_predict_command(app);
   station::add_compare_command(app);
   station::add_library_command(app);
   station::add_scatter_command(app);

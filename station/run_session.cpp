@@ -39,8 +39,9 @@ RunState run_session(SessionFolder& session, const RunDevices& devices, const Se
     return checks.judge(step, picture, reading_rad);
   };
   options.nominal_holder_pose = [&](rig::Mounting mounting) {
-    return nominal_holder_pose(asked.rig, asked.spool.wrapping, mounting);
+    return nominal_pose(asked.rig, asked.spool, mounting);
   };
+  if (asked.spool.fabric) options.object = rig::BenchObject::cylinder;
   options.progress = run.progress;
   options.judged = run.judged;
   options.reshoot = steps_to_reshoot(asked.plan, run.reshoot);

@@ -22,14 +22,18 @@ calibration::Lens lens_of(const rig::TrueLens& lens) {
   return {lens.width_px, lens.height_px, lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, lens.distortion};
 }
 
-inversion::NearLight lamp_in_holder(const RigCalibration& calibration, double radius_mm, bool behind,
+inversion::NearLight lamp_in_holder(const RigCalibration& calibration, const RigFile& rig, rig::Lamp place,
                                     const Eigen::Isometry3d& holder_from_world) {
   const calibration::LightFit& lamp = calibration.light;
-  const std::size_t place = behind ? 1 : 0;
-  return {.position = holder_from_world * lamp.positions.at(place),
+  const bool by_tape = place == rig::Lamp::front_left;
+  const std::size_t calibrated = place == rig::Lamp::back ? 1 : 0;
+  const Eigen::Vector3d position = by_tape ? rig.front_left_lamp_mm : lamp.positions.at(calibrated);
+  const Eigen::Vector3d axis =
+      by_tape ? (rig.lamp_aim_mm - rig.front_left_lamp_mm).normalized() : lamp.beam_axes.at(calibrated);
+  return {.position = holder_from_world * position,
           .intensity = lamp.intensity,
-          .radius_mm = radius_mm,
-          .beam_axis = holder_from_world.linear() * lamp.beam_axes.at(place),
+          .radius_mm = rig.lamp_radius_mm,
+          .beam_axis = holder_from_world.linear() * axis,
           .beam_exponent = lamp.beam_exponent};
 }
 

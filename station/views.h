@@ -10,6 +10,7 @@
 #include "renderer/camera.h"
 #include "rig/simulated_bench.h"
 #include "station/documents/calibration_file.h"
+#include "station/documents/rig_file.h"
 
 namespace station {
 
@@ -22,8 +23,9 @@ calibration::Lens lens_of(const rig::TrueLens& lens);
 
 // Grey of a raw picture: mean of the demosaiced colours, linear, distortion left in, nothing below zero.
 cv::Mat1f linear_grey(const calibration::SensorPicture& picture);
-// The calibrated lamp in front or behind, as the fit of the threads sees it.
-inversion::NearLight lamp_in_holder(const RigCalibration& calibration, double radius_mm, bool behind,
+// The calibrated lamp where it stands, as the fit of the threads sees it; in front on the left it is calibrated but for its
+// place, which is the rig file's.
+inversion::NearLight lamp_in_holder(const RigCalibration& calibration, const RigFile& rig, rig::Lamp place,
                                     const Eigen::Isometry3d& holder_from_world);
 
 // Tags in a raw picture (linear grey of the demosaiced picture, distortion left in).

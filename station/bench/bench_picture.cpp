@@ -8,7 +8,9 @@
 
 #include "renderer/fiber_bundle.h"
 #include "renderer/path_tracer.h"
+#include "renderer/weave/woven_patch.h"
 #include "station/bench/bench_objects.h"
+#include "station/fabric/cloth_on_cylinder.h"
 #include "station/views.h"
 
 namespace station {
@@ -53,6 +55,7 @@ struct Painter {
   RigFile rig;
   std::optional<Spool> spool;
   renderer::CurveSet fibers;  // empty until a holder is drawn first
+  std::optional<renderer::YarnPatch> patch{};  // until a cloth is
   std::uint64_t pictures = 0;
 
   // The scene in the frame of the object, where long straight fibers are axis-aligned and their boxes tight.
@@ -83,6 +86,14 @@ struct Painter {
                reference_patch_meshes(*rig.reference_patch, spool->wrapping, rig.simulation->spectralon_droop))
             scene.meshes.push_back(std::move(chip));
         break;
+      case rig::BenchObject::cylinder:
+        if (!spool || !spool->fabric || !spool->fabric->weave)
+          throw std::runtime_error(
+              "the simulated bench was asked for a cloth on the cylinder and is not told what it is woven of; give "
+              "--spool a fabric file with a \"weave\"");
+        if (!patch) patch = renderer::woven_patch(spool->fabric->weave->draft).patch;
+        add_cloth_on_cylinder(scene, spool->fabric->cylinder, *patch, spool->fabric->weave->threads);
+        break;
     }
     const rig::BenchTruth& truth = rig.simulation->truth;
     const Eigen::Isometry3d world_from_ring =
@@ -105,15 +116,17 @@ struct Painter {
     renderer::RenderOptions options;
     options.samples_per_pixel = rig.simulation->target_samples_per_pixel;
     options.seed = rig.simulation->truth.seed + 7919 * ++pictures;
-    const bool threads_lit = state.arrangement.object == rig::BenchObject::holder && state.lamp;
+    const bool threads = state.arrangement.object == rig::BenchObject::holder ||
+                         state.arrangement.object == rig::BenchObject::cylinder;
+    const bool threads_lit = threads && state.lamp;
     if (!threads_lit) return tracer.render(camera, options);
     // Fibers scatter far more noisily than paper: their pixels get their own number of samples.
-    const cv::Mat1b threads = tracer.curve_coverage(camera, 4);
-    options.only = ~threads;
+    const cv::Mat1b covered = tracer.curve_coverage(camera, 4);
+    options.only = ~covered;
     cv::Mat3f picture = tracer.render(camera, options);
-    options.only = threads;
+    options.only = covered;
     options.samples_per_pixel = rig.simulation->samples_per_pixel;
-    tracer.render(camera, options).copyTo(picture, threads);
+    tracer.render(camera, options).copyTo(picture, covered);
     return picture;
   }
 };

@@ -148,7 +148,7 @@ bool needs_a_hand(const PlanStep& before, const PlanStep& step) {
 }  // namespace
 
 bool is_reflection(const PlanStep& step) {
-  return step.kind == StepKind::view && step.lamp == rig::Lamp::front;
+  return step.kind == StepKind::view && (step.lamp == rig::Lamp::front || step.lamp == rig::Lamp::front_left);
 }
 
 bool is_transmission(const PlanStep& step) {
@@ -192,6 +192,15 @@ Plan make_capture_plan(const PlanRequest& request) {
   if (const std::optional<std::string> problem = check_plan(plan)) {
     throw std::runtime_error(*problem);
   }
+  return plan;
+}
+
+Plan make_fabric_plan(const std::vector<double>& bracket_stops) {
+  Plan plan;
+  add_views(plan, "fabric-right", rig::Mounting::horizontal, rig::Lamp::front, {0}, bracket_stops);
+  add_views(plan, "fabric-left", rig::Mounting::horizontal, rig::Lamp::front_left, {0}, bracket_stops);
+  add_darks(plan);
+  if (const std::optional<std::string> problem = check_plan(plan)) throw std::runtime_error(*problem);
   return plan;
 }
 

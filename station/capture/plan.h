@@ -37,7 +37,7 @@ struct Plan {
   bool operator==(const Plan&) const = default;
 };
 
-bool is_reflection(const PlanStep& step);    // a view with the lamp in front
+bool is_reflection(const PlanStep& step);    // a view with a lamp in front
 bool is_transmission(const PlanStep& step);  // a view with the lamp behind
 std::size_t view_count(const Plan& plan);
 const PlanStep* find_view(const Plan& plan, std::size_t number);     // 1: the first view; nullptr: there are fewer
@@ -53,6 +53,10 @@ struct PlanRequest {
 // exposures; then a dark for each view.
 // Errors: std::runtime_error when the angles are not 6 and 5, or check_plan finds something.
 Plan make_capture_plan(const PlanRequest& request);
+
+// Cloth on the cylinder, seen from where threads are seen and lit from the right (the lamp in front) and from the left; a
+// dark for each. Nothing on the cylinder shows its pose: it stands in the middle of the platform.
+Plan make_fabric_plan(const std::vector<double>& bracket_stops = {});
 
 // One clear line about the first thing that makes the plan impossible. A plan has a pose picture before the first view of
 // each mounting, or none at all (pictures taken by hand: the holder is believed to stand where it should).

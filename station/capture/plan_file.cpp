@@ -46,7 +46,7 @@ PlanStep read_step(ObjectReader& reader) {
   step.id = reader.text("id");
   step.kind = kind_from_name(reader.choice("kind", {"pose", "view", "exposure", "dark"}));
   step.mounting = mounting_from_name(reader.choice("mounting", {"horizontal", "vertical"}));
-  step.lamp = lamp_from_name(reader.choice("lamp", {"off", "front", "back"}));
+  step.lamp = lamp_from_name(reader.choice("lamp", {"off", "front", "back", "front_left"}));
   step.room_light = reader.flag("room_light");
   step.platform_angle_rad =
       reader.number("platform_angle_deg", -kWidestAngleDeg, kWidestAngleDeg) / kDegreesPerRadian;
@@ -87,7 +87,17 @@ Plan plan_from_json(const json& document, const std::string& source) {
 }
 
 std::string lamp_name(rig::Lamp lamp) {
-  return lamp == rig::Lamp::off ? "off" : lamp == rig::Lamp::front ? "front" : "back";
+  switch (lamp) {
+    case rig::Lamp::front:
+      return "front";
+    case rig::Lamp::back:
+      return "back";
+    case rig::Lamp::front_left:
+      return "front_left";
+    case rig::Lamp::off:
+      break;
+  }
+  return "off";
 }
 
 std::string mounting_name(rig::Mounting mounting) {
@@ -109,12 +119,12 @@ std::string kind_name(StepKind kind) {
 }
 
 rig::Lamp lamp_from_name(const std::string& name) {
-  for (const rig::Lamp lamp : {rig::Lamp::off, rig::Lamp::front, rig::Lamp::back}) {
+  for (const rig::Lamp lamp : {rig::Lamp::off, rig::Lamp::front, rig::Lamp::back, rig::Lamp::front_left}) {
     if (name == lamp_name(lamp)) {
       return lamp;
     }
   }
-  throw std::runtime_error("the lamp is said to be '" + name + "'; it is off, front or back");
+  throw std::runtime_error("the lamp is said to be '" + name + "'; it is off, front, back or front_left");
 }
 
 rig::Mounting mounting_from_name(const std::string& name) {

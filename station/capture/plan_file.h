@@ -18,7 +18,7 @@ nlohmann::json plan_to_json(const Plan& plan);
 // Errors: std::runtime_error for an unknown or missing key, a wrong value, and what check_plan finds.
 Plan plan_from_json(const nlohmann::json& document, const std::string& source);
 
-std::string lamp_name(rig::Lamp lamp);              // "off" "front" "back"
+std::string lamp_name(rig::Lamp lamp);              // "off" "front" "back" "front_left"
 std::string mounting_name(rig::Mounting mounting);  // "horizontal" "vertical"
 std::string kind_name(StepKind kind);               // "pose" "view" "exposure" "dark"
 rig::Lamp lamp_from_name(const std::string& name);  // throws std::runtime_error for any other word

@@ -217,7 +217,7 @@ class CaptureRun {
   }
 
   void arrange(const PlanStep& step) {
-    const rig::Arrangement wanted{.object = rig::BenchObject::holder,
+    const rig::Arrangement wanted{.object = options_.object,
                                   .mounting = step.mounting,
                                   .on_platform = true,
                                   .pose = options_.nominal_holder_pose(step.mounting),

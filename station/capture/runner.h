@@ -45,7 +45,8 @@ struct RunOptions {
   int most_attempts = 3;           // for one picture that may pass when it is taken again
   // Looks at a picture before it is kept; may be empty. Throws std::runtime_error when it cannot be read at all.
   std::function<Verdict(const PlanStep&, const rig::Picture&, double platform_reading_rad)> inspect;
-  std::function<Eigen::Isometry3d(rig::Mounting)> nominal_holder_pose;  // platform_from_holder, required
+  rig::BenchObject object = rig::BenchObject::holder;                   // what is photographed
+  std::function<Eigen::Isometry3d(rig::Mounting)> nominal_holder_pose;  // platform_from_object, required
   std::function<void(const Progress&)> progress;                        // may be empty
   std::function<void(const PlanStep&, const Verdict&)> judged;          // of each picture; may be empty
   std::function<StopWish()> stop_wish;                        // asked between and within steps; may be empty

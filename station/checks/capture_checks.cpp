@@ -21,6 +21,7 @@
 #include "station/checks/picture_measures.h"
 #include "station/develop/mounted_holder.h"
 #include "station/exposure.h"
+#include "station/fabric/cloth_on_cylinder.h"
 #include "station/report/html.h"
 #include "station/views.h"
 
@@ -117,9 +118,7 @@ class CaptureChecks::Work {
                                  .may_pass_again = may_pass_again});
   }
 
-  cv::Mat1b window(const PlanStep& step) const {
-    return window_region(asked_.rig, asked_.spool.wrapping, calibration_, step.mounting, step.platform_angle_rad);
-  }
+  cv::Mat1b window(const PlanStep& step) const { return metered_region(asked_, calibration_, step); }
 
   // What the file itself says; the camera's own answers were compared by the runner.
   void check_file(const PlanStep& step, const rig::Picture& picture, const calibration::SensorPicture& raw) {
@@ -333,12 +332,21 @@ Eigen::Isometry3d nominal_holder_pose(const RigFile& rig, const inversion::Wrapp
   return pose;
 }
 
-cv::Mat1b window_region(const RigFile& rig, const inversion::WrappedSpool& spool, const RigCalibration& calibration,
-                        rig::Mounting mounting, double platform_angle_rad) {
-  const Eigen::Isometry3d world_from_holder =
-      Eigen::AngleAxisd(platform_angle_rad, Eigen::Vector3d::UnitZ()) * nominal_holder_pose(rig, spool, mounting);
+Eigen::Isometry3d nominal_pose(const RigFile& rig, const Spool& spool, rig::Mounting mounting) {
+  if (!spool.fabric) return nominal_holder_pose(rig, spool.wrapping, mounting);
+  return Eigen::Isometry3d(Eigen::Translation3d(0, 0, rig.platform_height_mm));
+}
+
+cv::Mat1b metered_region(const SessionFile& asked, const RigCalibration& calibration, const PlanStep& step) {
+  const Eigen::Isometry3d world_from_object = Eigen::AngleAxisd(step.platform_angle_rad, Eigen::Vector3d::UnitZ()) *
+                                              nominal_pose(asked.rig, asked.spool, step.mounting);
+  const Eigen::Isometry3d object_from_world = world_from_object.inverse();
   const renderer::Camera camera =
-      camera_of(calibration.lens.lens, world_from_holder.inverse() * calibration.platform.world_from_camera, false);
+      camera_of(calibration.lens.lens, object_from_world * calibration.platform.world_from_camera, false);
+  if (asked.spool.fabric)
+    return lit_side(asked.spool.fabric->cylinder, camera,
+                    lamp_in_holder(calibration, asked.rig, step.lamp, object_from_world).position);
+  const inversion::WrappedSpool& spool = asked.spool.wrapping;
   const double half_width = spool.window_width_mm / 2, half_height = spool.window_height_mm / 2;
   const std::array<Eigen::Vector3d, 4> corners{{{0, -half_width, -half_height},
                                                 {0, half_width, -half_height},

@@ -47,12 +47,13 @@ class CaptureChecks {
   std::shared_ptr<Work> work_;  // shared: the runner's options copy what they call
 };
 
-// 255 over the holder's window (where it should stand), where threads are metered; raw pixels.
-cv::Mat1b window_region(const RigFile& rig, const inversion::WrappedSpool& spool, const RigCalibration& calibration,
-                        rig::Mounting mounting, double platform_angle_rad);
+// 255 over the holder's window, or the lit side of a cylinder with cloth (where it should stand): what is metered; raw pixels.
+cv::Mat1b metered_region(const SessionFile& asked, const RigCalibration& calibration, const PlanStep& step);
 
 // Where the holder should stand: upright on the platform, its front over the axis; turned a quarter for vertical threads.
 Eigen::Isometry3d nominal_holder_pose(const RigFile& rig, const inversion::WrappedSpool& spool,
                                       rig::Mounting mounting);
+// The same of whatever is photographed: a cylinder stands upright in the middle of the platform.
+Eigen::Isometry3d nominal_pose(const RigFile& rig, const Spool& spool, rig::Mounting mounting);
 
 }  // namespace station

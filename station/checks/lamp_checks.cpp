@@ -52,6 +52,7 @@ LampChecks::LampChecks(const SessionFile& asked, const RigCalibration& calibrati
 
 std::vector<Finding> LampChecks::judge(const PlanStep& step, const calibration::Developed& developed,
                                        const renderer::Camera& camera, const Eigen::Isometry3d& holder_from_world) {
+  if (asked_.spool.fabric) return {};  // nothing on the cylinder says anything of the lamp
   const std::optional<Finding> on_side = side(step, developed, camera, holder_from_world);
   const std::optional<double> part = strength(step, developed, camera, holder_from_world);
   // The calibrated lamp is the one on the right side; a lamp that is off is on no side.
@@ -70,7 +71,7 @@ std::vector<Finding> LampChecks::judge(const PlanStep& step, const calibration::
 }
 
 inversion::NearLight LampChecks::lamp(rig::Lamp side, const Eigen::Isometry3d& holder_from_world) const {
-  return lamp_in_holder(calibration_, asked_.rig.lamp_radius_mm, side == rig::Lamp::back, holder_from_world);
+  return lamp_in_holder(calibration_, asked_.rig, side, holder_from_world);
 }
 
 // Measured / expected at the reference patch; nothing where it cannot be read.
@@ -124,7 +125,7 @@ std::optional<Finding> LampChecks::side(const PlanStep& step, const calibration:
   }
   if (parts.empty()) return std::nullopt;
   const double part = calibration::median(parts);
-  const bool from_front = part > kLitFromTheFront, wanted = step.lamp == rig::Lamp::front;
+  const bool from_front = part > kLitFromTheFront, wanted = step.lamp != rig::Lamp::back;
   if (!from_front && saturated > 0) return std::nullopt;
   Finding finding{.check = "lamp_side", .grade = Grade::good, .value = 100 * part, .reason = {}};
   if (from_front != wanted) {

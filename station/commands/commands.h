@@ -16,6 +16,7 @@ void add_develop_command(CLI::App& app);
 void add_devices_command(CLI::App& app);
 void add_library_command(CLI::App& app);
 void add_plan_command(CLI::App& app);
+void add_predict_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 void add_import_command(CLI::App& app);
 void add_invert_command(CLI::App& app);

@@ -11,7 +11,7 @@ namespace station {
 namespace {
 
 struct Arguments {
-  std::string rig, plan, out;
+  std::string rig, spool, plan, out;
   bool json = false;
 };
 
@@ -27,7 +27,8 @@ void print(const Plan& plan) {
 }
 
 void run(const Arguments& arguments) {
-  const Plan plan = arguments.plan.empty() ? plan_of(read_rig(arguments.rig))
+  const Plan plan = arguments.plan.empty() ? plan_of(read_rig(arguments.rig),
+                                                     arguments.spool.empty() ? Spool{} : read_spool(arguments.spool))
                                            : plan_from_json(read_json_file(arguments.plan), arguments.plan);
   if (!arguments.out.empty()) write_json_file(arguments.out, plan_to_json(plan));
   if (arguments.json)
@@ -45,6 +46,10 @@ void add_plan_command(CLI::App& app) {
   CLI::Option* rig = command->add_option("--rig", arguments->rig, "the plan that this rig file asks for");
   CLI::Option* plan = command->add_option("--plan", arguments->plan, "an edited plan to check");
   rig->excludes(plan);
+  command
+      ->add_option("--spool", arguments->spool,
+                   "of what is photographed; a cloth on the cylinder has a plan of its own")
+      ->needs(rig);
   command->add_option("--out", arguments->out, "write it as JSON, to be edited and given to capture --plan");
   command->add_flag("--json", arguments->json, "as JSON, for machines");
   command->callback([=] {

@@ -35,17 +35,19 @@ void check(const cv::Mat3f& photograph, const cv::Mat3f& rendering, const cv::Ma
   if (cv::countNonZero(mask) == 0) throw std::runtime_error("the mask is empty; give one that shows the cloth");
 }
 
+// Least squares over pixels would divide by the mean square of the rendering, which noise of few samples, and yarns that lie
+// elsewhere, make several times that of what is rendered: a cloth of 16 samples a pixel came out at a fifth of its brightness,
+// and 16 CIEDE2000 off.
 double fitted_scale(const cv::Mat3f& photograph, const cv::Mat3f& rendering, const cv::Mat1b& mask) {
-  double product = 0, square = 0;
+  double photographed = 0, rendered = 0;
   for (int row = 0; row < mask.rows; ++row)
     for (int column = 0; column < mask.cols; ++column)
       for (int c = 0; mask(row, column) != 0 && c < 3; ++c) {
-        const double r = rendering(row, column)[c];
-        product += photograph(row, column)[c] * r, square += r * r;
+        photographed += photograph(row, column)[c], rendered += rendering(row, column)[c];
       }
-  if (!(square > 0) || !(product > 0))
+  if (!(photographed > 0) || !(rendered > 0))
     throw std::runtime_error("one of the pictures has no light inside the mask; check that they show the same view");
-  return product / square;
+  return photographed / rendered;
 }
 
 std::vector<BlockPair> block_pairs(const cv::Mat3f& photograph, const cv::Mat3f& rendering, const cv::Mat1b& mask,

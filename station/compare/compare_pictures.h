@@ -16,7 +16,7 @@ struct HighlightProfile {
 };
 
 struct Comparison {
-  double scale = 1;  // the rendering was multiplied by it: least squares over the mask's pixels
+  double scale = 1;  // the rendering was multiplied by it: equal means inside the mask
   double mean_delta_e = 0, median_delta_e = 0, delta_e_95 = 0;  // CIEDE2000 of block averages
   double relative_rmse = 0;                                     // of the same averages, all channels
   HighlightProfile photograph, rendering;

@@ -28,6 +28,7 @@
 #include "station/documents/calibration_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
+#include "station/fabric/cloth_on_cylinder.h"
 #include "station/report/display.h"
 #include "station/report/html.h"
 #include "station/views.h"
@@ -60,7 +61,7 @@ calibration::SensorPicture read_picture(const std::filesystem::path& session, co
 // Where things stand in one view, holder frame. The platform's angle is the ring's where its tags can be read in the
 // lamp's light, else the turntable's.
 DevelopedView place_view(const PlanStep& step, const PictureRecord& picture, const BenchReading& bench,
-                         const MountedHolder& mounted, const RigCalibration& calibration, double lamp_radius_mm) {
+                         const MountedHolder& mounted, const RigCalibration& calibration, const RigFile& rig) {
   DevelopedView developed;
   developed.angle_measured = bench.angle.has_value();
   developed.platform_angle_rad =
@@ -76,7 +77,7 @@ DevelopedView place_view(const PlanStep& step, const PictureRecord& picture, con
   view.id = step.id;
   view.transmission = is_transmission(step);
   view.camera = camera_of(calibration.lens.lens, holder_from_world * calibration.platform.world_from_camera, true);
-  view.light = lamp_in_holder(calibration, lamp_radius_mm, view.transmission, holder_from_world);
+  view.light = lamp_in_holder(calibration, rig, step.lamp, holder_from_world);
   return developed;
 }
 
@@ -198,7 +199,7 @@ DevelopedPicture develop_view(const std::filesystem::path& session, const Sessio
     const calibration::SensorPicture raw = read_picture(session, record);
     const BenchReading bench = read_bench(calibration, asked.rig, tags_in(raw));
     require_calibrated_bench(calibration, bench, record.read_angle_rad, "view " + step.id);
-    developed = place_view(step, record, bench, mounted, calibration, asked.rig.lamp_radius_mm);
+    developed = place_view(step, record, bench, mounted, calibration, asked.rig);
     developed.exposure_s = raw.exposure_s;
     const auto bracket = read_bracket(session, asked.plan, pictures, step.id, raw, calibration);
     std::optional<calibration::SensorPicture> dark;
@@ -208,12 +209,13 @@ DevelopedPicture develop_view(const std::filesystem::path& session, const Sessio
     picture = calibration::develop(bracket, develop_options(calibration, dark, step.id));
   }
   DevelopedPicture result;
-  result.patch = read_lamp(asked.rig, spool, picture, 86400 * days_between(asked.utc, record.utc),
+  if (!asked.spool.fabric) result.patch = read_lamp(asked.rig, spool, picture, 86400 * days_between(asked.utc, record.utc),
                            calibration.light.droop, developed);
   inversion::View& view = developed.view;
   view.image = picture.radiance;
-  view.mask =
-      eroded(inversion::thread_mask(spool, view.camera, view.light, kMaskSamples), edge_px(calibration, mounted));
+  view.mask = eroded(asked.spool.fabric ? lit_side(asked.spool.fabric->cylinder, view.camera, view.light.position)
+                                        : inversion::thread_mask(spool, view.camera, view.light, kMaskSamples),
+                     edge_px(calibration, mounted));
   developed.masked_pixels = cv::countNonZero(view.mask);
   if (developed.masked_pixels == 0)
     throw std::runtime_error("view " + view.id +
@@ -222,7 +224,7 @@ DevelopedPicture develop_view(const std::filesystem::path& session, const Sessio
   picture.variance.release();
   developed.saturated_fraction =
       static_cast<double>(cv::countNonZero(picture.saturated & view.mask)) / developed.masked_pixels;
-  if (!view.transmission) result.sheet_width_mm = sheet_width_mm(view.image, view.camera, spool);
+  if (!view.transmission && !asked.spool.fabric) result.sheet_width_mm = sheet_width_mm(view.image, view.camera, spool);
   write_view(session, developed);
   renderer::write_png(session / "masks" / (view.id + "-overlay.png"),
                       overlay(view, calibration.linear_srgb_from_camera));
@@ -285,7 +287,7 @@ DevelopedViews develop_session(const std::filesystem::path& session, ProgressSty
   for (const auto& [mounting, seen] : posed) mounted[mounting] = measure_holder(seen, calibration, asked.rig);
   if (posed.empty())
     for (const rig::Mounting mounting : {rig::Mounting::horizontal, rig::Mounting::vertical})
-      mounted[mounting] = {.platform_from_holder = nominal_holder_pose(asked.rig, asked.spool.wrapping, mounting)};
+      mounted[mounting] = {.platform_from_holder = nominal_pose(asked.rig, asked.spool, mounting)};
 
   std::vector<PlanStep> views;
   for (const PlanStep& step : asked.plan.steps)
@@ -309,7 +311,7 @@ DevelopedViews develop_session(const std::filesystem::path& session, ProgressSty
     patches.push_back(picture.patch);
     if (picture.sheet_width_mm) widths_mm.push_back(*picture.sheet_width_mm);
   }
-  if (asked.rig.reference_patch) note_lamp_changes(patches, developed.views);
+  if (asked.rig.reference_patch && !asked.spool.fabric) note_lamp_changes(patches, developed.views);
   if (!widths_mm.empty()) developed.sheet_width_mm = calibration::median(widths_mm);
   if (developed.sheet_width_mm) require_expected_width(*developed.sheet_width_mm, asked.spool);
   write_json_file(session / "linear" / "views.json", to_json(developed));

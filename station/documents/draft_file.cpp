@@ -149,4 +149,15 @@ json to_json(const renderer::Draft& draft) {
             {"radius_mm", draft.plies.radius_mm}}}};
 }
 
+void replace_threads(ObjectReader& cloth, const std::string& key, renderer::YarnSystem& system) {
+  if (!cloth.has(key)) return;
+  system.threads.clear();
+  for (const double thread : cloth.numbers(key)) {
+    if (!(thread >= 0 && thread < renderer::kMostThreads && thread == std::floor(thread)))
+      cloth.refuse(key, "found " + nlohmann::json(thread).dump() + ", expected numbers of threads, counted from 0");
+    system.threads.push_back(static_cast<int>(thread));
+  }
+  if (system.threads.empty()) cloth.refuse(key, "the list is empty; name the thread of at least one yarn");
+}
+
 }  // namespace station

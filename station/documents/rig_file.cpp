@@ -142,6 +142,11 @@ void parse_lens(ObjectReader lens, rig::TrueLens& truth) {
   lens.finish();
 }
 
+// In the plane of the camera and the platform's axis.
+Eigen::Vector3d mirrored(const Eigen::Vector3d& point) {
+  return {point.x(), -point.y(), point.z()};
+}
+
 SimulatedRig parse_simulation(ObjectReader simulation) {
   SimulatedRig result;
   rig::BenchTruth& truth = result.truth;
@@ -164,6 +169,10 @@ SimulatedRig parse_simulation(ObjectReader simulation) {
   truth.back.aim = lamp.vector3("back_aim_mm");
   truth.front.beam_exponent = truth.back.beam_exponent = lamp.number("beam_exponent", 0, 100);
   if (truth.front.intensity.minCoeff() < 0) lamp.refuse("intensity_mm2", "cannot be negative");
+  truth.front_left = truth.front;
+  truth.front_left.position = mirrored(truth.front.position);
+  truth.front_left.aim = mirrored(truth.front.aim);
+  if (lamp.has("front_left_position_mm")) truth.front_left.position = lamp.vector3("front_left_position_mm");
   truth.lamp_changes = parse_lamp_changes(lamp.object("changes"));
   lamp.finish();
   ObjectReader prints = simulation.object("prints");
@@ -315,6 +324,8 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
   ObjectReader lamps = reader.object("lamp_by_tape");
   rig.front_lamp_mm = lamps.vector3("front_position_mm");
   rig.back_lamp_mm = lamps.vector3("back_position_mm");
+  rig.front_left_lamp_mm =
+      lamps.has("front_left_position_mm") ? lamps.vector3("front_left_position_mm") : mirrored(rig.front_lamp_mm);
   rig.lamp_aim_mm = lamps.vector3("aim_mm");
   rig.lamp_radius_mm = lamps.number("radius_mm", 0.1, 100);
   lamps.finish();

@@ -85,6 +85,7 @@ struct RigFile {
   SpectralonPanel spectralon;
   std::optional<ColourChart> colour_chart;
   Eigen::Vector3d front_lamp_mm, back_lamp_mm;  // by tape, world frame
+  Eigen::Vector3d front_left_lamp_mm;           // for cloth on the cylinder; known by tape only
   Eigen::Vector3d lamp_aim_mm;                  // what both are pointed at
   double lamp_radius_mm = 0;                    // of its bright face
   std::vector<double> reflection_angles_deg, transmission_angles_deg;

@@ -99,17 +99,6 @@ ClothShape parse_shape(ObjectReader& reader, std::initializer_list<const char*> 
   return shape;
 }
 
-void replace_threads(ObjectReader& cloth, const std::string& key, renderer::YarnSystem& system) {
-  if (!cloth.has(key)) return;
-  system.threads.clear();
-  for (const double thread : cloth.numbers(key)) {
-    if (!(thread >= 0 && thread < renderer::kMostThreads && thread == std::floor(thread)))
-      cloth.refuse(key, "found " + json(thread).dump() + ", expected numbers of threads, counted from 0");
-    system.threads.push_back(static_cast<int>(thread));
-  }
-  if (system.threads.empty()) cloth.refuse(key, "the list is empty; name the thread of at least one yarn");
-}
-
 renderer::YarnPatch parse_weave(ObjectReader& cloth, const std::filesystem::path& folder) {
   if (cloth.has("patch") == cloth.has("draft"))
     cloth.refuse("draft", "give either a draft or a patch, not both and not none");

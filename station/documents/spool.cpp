@@ -1,7 +1,9 @@
 #include "station/documents/spool.h"
 
+#include "station/documents/draft_file.h"
 #include "station/documents/parameter_ranges.h"
 #include "station/documents/reader.h"
+#include "station/documents/thread_file.h"
 
 namespace station {
 namespace {
@@ -38,9 +40,60 @@ SimulatedFibers parse_fibers(ObjectReader fibers) {
   return result;
 }
 
+Weave parse_weave(ObjectReader reader) {
+  Weave weave{.draft = parse_draft(reader.raw("draft"), reader.source() + " (draft)"), .threads = {}};
+  const nlohmann::json& threads = reader.raw("threads");
+  if (!threads.is_array()) reader.refuse("threads", "expected a list of threads");
+  for (const nlohmann::json& thread : threads)
+    weave.threads.push_back(parse_thread(thread, reader.source() + " (threads)").parameters);
+  replace_threads(reader, "warp_threads", weave.draft.warp);
+  replace_threads(reader, "weft_threads", weave.draft.weft);
+  if (const auto problem = renderer::check_draft(weave.draft)) reader.refuse("draft", *problem);
+  for (const renderer::YarnSystem* system : {&weave.draft.warp, &weave.draft.weft})
+    for (const int thread : system->threads)
+      if (static_cast<std::size_t>(thread) >= weave.threads.size())
+        reader.refuse("threads", std::to_string(weave.threads.size()) +
+                                     " are listed and the draft has a yarn of thread " + std::to_string(thread) +
+                                     " (counted from 0); list one more");
+  reader.finish();
+  return weave;
+}
+
+Spool parse_fabric(const nlohmann::json& document, const std::string& source) {
+  ObjectReader reader(document, source, "fabric", 1);
+  Spool spool;
+  spool.name = reader.text("name");
+  spool.material = reader.text("material");
+  Fabric& fabric = spool.fabric.emplace();
+  ObjectReader cylinder = reader.object("cylinder");
+  fabric.cylinder.radius_mm = cylinder.number("radius_mm", 5, 500);
+  fabric.cylinder.height_mm = cylinder.number("height_mm", 5, 1000);
+  cylinder.finish();
+  if (reader.has("weave")) fabric.weave = parse_weave(reader.object("weave"));
+  reader.finish();
+  return spool;
+}
+
+bool is_fabric(const nlohmann::json& document) {
+  return document.is_object() && document.value("format", nlohmann::json()) == "threadstation/fabric";
+}
+
 }  // namespace
 
+nlohmann::json read_spool_document(const std::filesystem::path& file) {
+  nlohmann::json document = read_json_file(file);
+  if (!is_fabric(document) || !document.contains("weave") || !document["weave"].is_object()) return document;
+  nlohmann::json& weave = document["weave"];
+  if (weave.contains("draft") && weave["draft"].is_string())
+    weave["draft"] = to_json(read_draft(file.parent_path() / weave["draft"].get<std::string>()));
+  if (weave.contains("threads") && weave["threads"].is_array())
+    for (nlohmann::json& thread : weave["threads"])
+      if (thread.is_string()) thread = read_json_file(file.parent_path() / thread.get<std::string>());
+  return document;
+}
+
 Spool parse_spool(const nlohmann::json& document, const std::string& source) {
+  if (is_fabric(document)) return parse_fabric(document, source);
   ObjectReader reader(document, source, "spool", 1);
   Spool spool;
   spool.name = reader.text("name");
@@ -52,7 +105,7 @@ Spool parse_spool(const nlohmann::json& document, const std::string& source) {
 }
 
 Spool read_spool(const std::filesystem::path& file) {
-  return parse_spool(read_json_file(file), file.string());
+  return parse_spool(read_spool_document(file), file.string());
 }
 
 }  // namespace station

@@ -273,7 +273,7 @@ RigCalibration calibration_by_tape(const RigFile& rig, const ImportFile& import,
 
 RunState import_session(const ImportRequest& request) {
   const ImportFile import = read_import_file(request.list);
-  const nlohmann::json rig_document = read_json_file(import.rig), spool_document = read_json_file(import.spool);
+  const nlohmann::json rig_document = read_json_file(import.rig), spool_document = read_spool_document(import.spool);
   const RigFile rig = parse_rig(rig_document, import.rig.string());
   parse_spool(spool_document, import.spool.string());
   const std::vector<ListedPicture> listed = read_listed(import);

@@ -105,6 +105,9 @@ std::filesystem::path fitted_file_of(const std::filesystem::path& session, const
 InvertResult invert_session(const InvertRequest& request) {
   watch_interrupts();
   const SessionFile asked = read_session_file(request.session);
+  if (asked.spool.fabric)
+    throw std::runtime_error(request.session.string() + " shows a cloth on the cylinder (" + asked.spool.name +
+                             "), and threads are fitted to wrapped ones; use predict, or give a spool's session");
   DevelopedViews developed = read_views(request.session);
   read_view_pictures(request.session, developed);
   std::vector<inversion::View> views;

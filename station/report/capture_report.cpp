@@ -127,8 +127,13 @@ std::string capture_facts(const std::filesystem::path& session, const SessionFil
   std::vector<std::pair<std::string, std::string>> facts = {
       {"state", state_name(state_of(records, folder_in_use(session)))},
       {"spool", asked.spool.name + " (" + asked.spool.material + ")"},
-      {"wrapping", std::to_string(asked.spool.wrapping.turns) + " turns of " +
-                       number_text(asked.spool.wrapping.thread_diameter_mm, 3) + " mm"}};
+      asked.spool.fabric
+          ? std::pair<std::string, std::string>{"cloth", "round a cylinder of radius " +
+                                                             number_text(asked.spool.fabric->cylinder.radius_mm, 1) +
+                                                             " mm"}
+          : std::pair<std::string, std::string>{"wrapping",
+                                                std::to_string(asked.spool.wrapping.turns) + " turns of " +
+                                                    number_text(asked.spool.wrapping.thread_diameter_mm, 3) + " mm"}};
   if (asked.sample)
     for (const auto& [name, text] : {std::pair{"barcode", asked.sample->barcode},
                                      {"lot", asked.sample->lot},

@@ -61,7 +61,7 @@ std::vector<inversion::View> synthetic_views(const RigFile& rig, const inversion
     if (calibrated) {
       view.camera = pooled_camera(truth.lens, calibrated->lens.lens,
                                   holder_from_world * calibrated->platform.world_from_camera, width_px, height_px);
-      view.light = lamp_in_holder(*calibrated, rig.lamp_radius_mm, view.transmission, holder_from_world);
+      view.light = lamp_in_holder(*calibrated, rig, step.lamp, holder_from_world);
     } else {
       view.camera = pooled_camera(truth.lens, lens_of(truth.lens), holder_from_world * truth.lens.world_from_camera,
                                   width_px, height_px);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <opencv2/core.hpp>
 
 #include "station/compare/compare_pictures.h"
 #include "tests/station/capture/fakes.h"
@@ -35,6 +36,17 @@ TEST(Compare, APictureAgreesWithItselfAtAnyBrightness) {
   const Comparison same_unit = compare_pictures(photograph, darker, {}, {.fit_scale = false});
   EXPECT_EQ(same_unit.scale, 1);
   EXPECT_NEAR(same_unit.relative_rmse, 0.75, 1e-6);
+}
+
+// A path tracer's few samples: most pixels are dark, some are many times too bright, and their mean is right.
+TEST(Compare, NoiseOfTheRenderingDoesNotMakeItDarker) {
+  const cv::Mat3f photograph = cylinder(60, kBlue);
+  cv::Mat3f noisy = photograph.clone();
+  cv::RNG random(7);
+  for (cv::Vec3f& pixel : noisy) pixel = random.uniform(0, 8) == 0 ? pixel * 8 : cv::Vec3f(0, 0, 0);
+  const Comparison found = compare_pictures(photograph, noisy, {}, {.block_px = 32});
+  EXPECT_NEAR(found.scale, 1, 0.1);  // 15360 pixels, each with a standard deviation of 2.6: 0.02 and its share of the bright ones
+  EXPECT_LT(found.mean_delta_e, 4);
 }
 
 TEST(Compare, AHighlightElsewhereAndAnotherColourAreMeasured) {

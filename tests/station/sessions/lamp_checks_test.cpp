@@ -23,7 +23,7 @@ std::optional<Finding> lamp_side(const std::string& step_id, double part, bool s
   const renderer::Camera camera =
       camera_of(calibration.lens.lens, world_from_holder.inverse() * calibration.platform.world_from_camera, true);
   const inversion::NearLight front =
-      lamp_in_holder(calibration, asked.rig.lamp_radius_mm, false, world_from_holder.inverse());
+      lamp_in_holder(calibration, asked.rig, rig::Lamp::front, world_from_holder.inverse());
   const double white = front.intensity.mean() / front.position.squaredNorm() / M_PI;
   calibration::Developed developed;
   developed.radiance = cv::Mat3f(camera.height, camera.width, cv::Vec3f::all(static_cast<float>(part * white)));

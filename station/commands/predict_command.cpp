@@ -1,0 +1,71 @@
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "station/commands/commands.h"
+#include "station/commands/output_options.h"
+#include "station/fabric/predict_fabric.h"
+
+namespace station {
+namespace {
+
+nlohmann::json to_json(const PredictedView& view) {
+  const Comparison& found = view.comparison;
+  return {{"view", view.view},
+          {"prediction", view.prediction.string()},
+          {"block_px", view.block_px},
+          {"blocks", found.blocks},
+          {"mean_delta_e_2000", found.mean_delta_e},
+          {"delta_e_2000_95", found.delta_e_95},
+          {"scale", found.scale},
+          {"relative_rmse", found.relative_rmse},
+          {"profile_correlation", found.profile_correlation},
+          {"photograph_peak_px", found.photograph.peak_px},
+          {"rendering_peak_px", found.rendering.peak_px}};
+}
+
+void print(const PredictedView& view) {
+  const Comparison& found = view.comparison;
+  std::printf(
+      "%s: colour difference (CIEDE2000) mean %.2f, 95 %% below %.2f, over %d blocks of %d px; relative RMSE %.1f "
+      "%%; "
+      "photograph %.3f times as bright as predicted; highlight photographed at column %.0f, predicted at %.0f\n  "
+      "%s\n",
+      view.view.c_str(), found.mean_delta_e, found.delta_e_95, found.blocks, view.block_px, 100 * found.relative_rmse,
+      found.scale, found.photograph.peak_px, found.rendering.peak_px, view.beside.c_str());
+}
+
+}  // namespace
+
+void add_predict_command(CLI::App& app) {
+  struct Arguments {
+    PredictRequest request;
+    OutputOptions output;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  PredictRequest& request = arguments->request;
+  CLI::App* command =
+      app.add_subcommand("predict", "what a cloth on the cylinder should look like, beside its photographs");
+  command->add_option("session", request.session, "developed session of a cloth (capture --spool FABRIC)")
+      ->required();
+  command->add_option("--fabric", request.fabric,
+                      "fabric file whose weave is predicted instead of the session's own");
+  command->add_option("--spp", request.samples_per_pixel, "samples per pixel")
+      ->check(CLI::Range(1, 1 << 20))
+      ->capture_default_str();
+  command->add_option("--seed", request.seed, "of the paths")->capture_default_str();
+  arguments->output.add_to(*command);
+  command->callback([=] {
+    arguments->request.progress_style = arguments->output.progress_style();
+    nlohmann::json views = nlohmann::json::array();
+    for (const PredictedView& view : predict_fabric(arguments->request)) {
+      if (arguments->output.json)
+        views.push_back(to_json(view));
+      else if (!arguments->output.quiet)
+        print(view);
+    }
+    if (arguments->output.json) std::cout << views.dump() << "\n";
+  });
+}
+
+}  // namespace station

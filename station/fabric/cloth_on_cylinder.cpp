@@ -1,0 +1,50 @@
+#include "station/fabric/cloth_on_cylinder.h"
+
+#include <cmath>
+
+#include "renderer/cloth_shape.h"
+#include "renderer/weave/patch_measures.h"
+
+namespace station {
+namespace {
+
+constexpr float kBlackPaintAlbedo = 0.03F;
+constexpr double kRim_mm = 3;
+const double kLeastCosine = std::cos(75 * M_PI / 180);
+
+// Where a ray first meets the endless cylinder's side from outside.
+std::optional<Eigen::Vector3d> side_point(const renderer::CameraRay& ray, double radius_mm) {
+  const Eigen::Vector2d o = ray.origin.head<2>(), d = ray.direction.head<2>();
+  const double a = d.squaredNorm(), b = o.dot(d), c = o.squaredNorm() - radius_mm * radius_mm;
+  const double root = b * b - a * c;
+  if (a == 0 || root < 0 || c <= 0 || b >= 0) return std::nullopt;
+  return ray.origin + (-b - std::sqrt(root)) / a * ray.direction;
+}
+
+}  // namespace
+
+void add_cloth_on_cylinder(renderer::Scene& scene, const renderer::CylinderShape& cylinder,
+                           const renderer::YarnPatch& patch, const std::vector<renderer::ThreadParameters>& threads) {
+  const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
+  renderer::CylinderShape cloth = cylinder;
+  cloth.radius_mm -= renderer::surface_range(patch).low_mm;
+  scene.cloths.push_back({renderer::surface_of(cloth, patch, here), patch, {threads.begin(), threads.end()}});
+  scene.meshes.push_back(renderer::body_of(cylinder, here, cv::Vec3f::all(kBlackPaintAlbedo)));
+}
+
+cv::Mat1b lit_side(const renderer::CylinderShape& cylinder, const renderer::Camera& camera,
+                   const Eigen::Vector3d& light_mm) {
+  cv::Mat1b mask(camera.height, camera.width, static_cast<unsigned char>(0));
+  for (int row = 0; row < mask.rows; ++row)
+    for (int column = 0; column < mask.cols; ++column) {
+      const renderer::CameraRay ray = renderer::ray_through(camera, column, row);
+      const auto point = side_point(ray, cylinder.radius_mm);
+      if (!point || point->z() < kRim_mm || point->z() > cylinder.height_mm - kRim_mm) continue;
+      const Eigen::Vector3d normal = Eigen::Vector3d(point->x(), point->y(), 0).normalized();
+      if (normal.dot((light_mm - *point).normalized()) > kLeastCosine && -normal.dot(ray.direction) > kLeastCosine)
+        mask(row, column) = 255;
+    }
+  return mask;
+}
+
+}  // namespace station

@@ -1,0 +1,87 @@
+#include "station/fabric/predict_fabric.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "renderer/image_file.h"
+#include "renderer/path_tracer.h"
+#include "renderer/weave/woven_patch.h"
+#include "station/documents/session_file.h"
+#include "station/documents/views_file.h"
+#include "station/fabric/cloth_on_cylinder.h"
+
+namespace station {
+namespace {
+
+constexpr double kRepeatsPerBlock = 2;
+
+Weave weave_of(const PredictRequest& request, const Spool& photographed) {
+  if (!photographed.fabric)
+    throw std::runtime_error(request.session.string() + " is a session of a wrapped thread (" + photographed.name +
+                             "); give one of a cloth on the cylinder, or use invert");
+  const Spool asked = request.fabric.empty() ? photographed : read_spool(request.fabric);
+  if (asked.fabric && asked.fabric->weave) return *asked.fabric->weave;
+  throw std::runtime_error((request.fabric.empty() ? request.session.string() : request.fabric.string()) +
+                           " does not say what the cloth is woven of; give --fabric with a \"weave\"");
+}
+
+renderer::SphereLight sphere(const inversion::NearLight& light) {
+  return {.center = light.position,
+          .radius_mm = light.radius_mm,
+          .radiance = light.intensity / (M_PI * light.radius_mm * light.radius_mm),
+          .visible = false,
+          .beam_axis = light.beam_axis,
+          .beam_exponent = light.beam_exponent};
+}
+
+// Of an average that does not see which yarn of the repeat lies where: the hand turned the cylinder, and its yarns begin
+// anywhere.
+int block_px_for(const renderer::YarnPatch& patch, const renderer::Camera& camera) {
+  const double distance_mm = camera.world_from_camera.translation().norm();
+  const double repeat_mm = std::max(patch.period_x_mm, patch.period_y_mm);
+  return std::max(8, static_cast<int>(std::ceil(kRepeatsPerBlock * repeat_mm * camera.fx / distance_mm)));
+}
+
+}  // namespace
+
+std::vector<PredictedView> predict_fabric(const PredictRequest& request) {
+  const SessionFile asked = read_session_file(request.session);
+  const Weave weave = weave_of(request, asked.spool);
+  DevelopedViews developed = read_views(request.session);
+  read_view_pictures(request.session, developed);
+  const renderer::YarnPatch patch = renderer::woven_patch(weave.draft).patch;
+  const std::filesystem::path folder = request.session / "result" / "fabric";
+  std::filesystem::create_directories(folder);
+  ProgressDisplay progress("predict", request.progress_style);
+  std::vector<PredictedView> predicted;
+  for (const DevelopedView& photographed : developed.views) {
+    const inversion::View& view = photographed.view;
+    progress.show(static_cast<int>(predicted.size()), static_cast<int>(developed.views.size()), view.id);
+    renderer::Scene scene;
+    add_cloth_on_cylinder(scene, asked.spool.fabric->cylinder, patch, weave.threads);
+    scene.lights.push_back(sphere(view.light));
+    const renderer::PathTracer tracer(scene);
+    const cv::Mat3f picture = tracer.render(
+        view.camera,
+        {.samples_per_pixel = request.samples_per_pixel, .seed = request.seed + predicted.size(), .only = view.mask});
+    PredictedView next{.view = view.id,
+                       .prediction = folder / (view.id + ".exr"),
+                       .beside = folder / (view.id + ".png"),
+                       .block_px = block_px_for(patch, view.camera),
+                       .comparison = {}};
+    const CompareOptions options{
+        .fit_scale = true, .block_px = next.block_px, .linear_srgb_from_camera = developed.linear_srgb_from_camera};
+    next.comparison = compare_pictures(view.image, picture, view.mask, options);
+    renderer::write_exr(next.prediction, picture,
+                        {{"threadstation/content", "linear camera RGB, radiance unit (full scale per second)"},
+                         {"threadstation/view", view.id},
+                         {"threadstation/software", software_version()}});
+    renderer::write_png(next.beside, comparison_picture(view.image, picture, view.mask, options));
+    predicted.push_back(next);
+  }
+  progress.finish(std::to_string(predicted.size()) + " views");
+  return predicted;
+}
+
+}  // namespace station

@@ -1,0 +1,97 @@
+// Cloth on the black cylinder: photographed on the recorded session's bench, developed, predicted and compared.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "renderer/image_file.h"
+#include "station/capture/verify.h"
+#include "station/capture_session.h"
+#include "station/develop/develop_session.h"
+#include "station/documents/reader.h"
+#include "station/fabric/predict_fabric.h"
+#include "station/invert/invert_session.h"
+#include "tests/station/sessions/recorded_bench.h"
+
+namespace station {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+std::filesystem::path fabric_file() {
+  return std::filesystem::path(FIXTURES_DIR) / "fabrics" / "satin_blue_gold.json";
+}
+
+struct FabricSession : testing::Test {
+  static void SetUpTestSuite() {
+    folder = new TemporaryFolder;
+    json rig = read_json_file(recorded_session() / "session.json").at("rig");
+    rig["simulation"]["samples_per_pixel"] = 96;  // the mosaic has a quarter of them in red and in blue
+    write_json_file(*folder / "rig.json", rig);
+    capture_session({.rig = *folder / "rig.json",
+                     .calibration = recorded_session() / "calibration",
+                     .spool = fabric_file(),
+                     .out = session(),
+                     .unattended = true,
+                     .accept_calibration = true,
+                     .progress_style = ProgressStyle::quiet});
+    develop_session(session(), ProgressStyle::quiet);
+    predicted =
+        predict_fabric({.session = session(), .samples_per_pixel = 64, .progress_style = ProgressStyle::quiet});
+  }
+  static void TearDownTestSuite() { delete folder; }
+  static std::filesystem::path session() { return *folder / "cloth"; }
+
+  static inline TemporaryFolder* folder = nullptr;
+  static inline std::vector<PredictedView> predicted;
+};
+
+TEST_F(FabricSession, IsASessionOfTwoViewsLitFromRightAndLeftAndHasAllThatPredictsIt) {
+  const VerifyReport report = verify_session(session());
+  EXPECT_TRUE(report.sound());
+  EXPECT_EQ(report.views, 2U);
+  const auto pictures = pictures_of(session());
+  EXPECT_EQ(pictures.at("fabric-right-1").lamp, rig::Lamp::front);
+  EXPECT_EQ(pictures.at("fabric-left-1").lamp, rig::Lamp::front_left);
+  const json spool = read_json_file(session() / "session.json").at("spool");
+  EXPECT_TRUE(spool.at("weave").at("draft").is_object()) << "no other file is needed";
+  EXPECT_TRUE(spool.at("weave").at("threads").at(1).is_object());
+}
+
+TEST_F(FabricSession, LooksAsItsThreadsAndDraftPredict) {
+  ASSERT_EQ(predicted.size(), 2U);
+  for (const PredictedView& view : predicted) {
+    EXPECT_LT(view.comparison.mean_delta_e, 2) << view.view;
+    EXPECT_GT(view.comparison.profile_correlation, 0.99) << view.view;
+    EXPECT_NEAR(view.comparison.scale, 1, 0.1) << view.view << ": the lamp on the left is placed by tape";
+    EXPECT_EQ(renderer::read_exr(view.prediction).size(), cv::Size(300, 200));
+  }
+  // The lamp's side is where the light is; the picture's left is the bench's -y.
+  EXPECT_GT(predicted[0].comparison.photograph.peak_px, predicted[1].comparison.photograph.peak_px + 20);
+}
+
+TEST_F(FabricSession, AnotherClothThanThePhotographedOneIsSeen) {
+  json other = read_spool_document(fabric_file());
+  std::swap(other["weave"]["threads"][0], other["weave"]["threads"][1]);
+  write_json_file(*folder / "other.json", other);
+  for (const PredictedView& view : predict_fabric({.session = session(),
+                                   .fabric = *folder / "other.json",
+                                   .samples_per_pixel = 4,
+                                   .progress_style = ProgressStyle::quiet}))
+    EXPECT_GT(view.comparison.mean_delta_e, 10) << view.view;
+}
+
+TEST_F(FabricSession, WhatCannotBePredictedOrInvertedIsOneLine) {
+  json bare = read_spool_document(fabric_file());
+  bare.erase("weave");
+  write_json_file(*folder / "bare.json", bare);
+  EXPECT_THAT(message_of([&] { predict_fabric({.session = session(), .fabric = *folder / "bare.json"}); }),
+              HasSubstr("woven of"));
+  EXPECT_THAT(message_of([&] { predict_fabric({.session = recorded_session()}); }), HasSubstr("wrapped thread"));
+  EXPECT_THAT(message_of([&] { invert_session({.session = session()}); }), HasSubstr("cloth on the cylinder"));
+  json few = read_spool_document(fabric_file());
+  few["weave"]["threads"].erase(1);
+  EXPECT_THAT(message_of([&] { parse_spool(few, "few.json"); }), HasSubstr("yarn of thread 1"));
+}
+
+}  // namespace
+}  // namespace station
