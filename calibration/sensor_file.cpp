@@ -82,6 +82,7 @@ SensorPicture unpack(LibRaw& raw, const std::string& name) {
   picture.exposure_s = raw.imgdata.other.shutter;
   picture.f_number = raw.imgdata.other.aperture;
   picture.iso = static_cast<int>(raw.imgdata.other.iso_speed + 0.5F);
+  picture.focal_length_35mm = raw.imgdata.lens.FocalLengthIn35mmFormat;
   picture.make = raw.imgdata.idata.make;
   picture.model = raw.imgdata.idata.model;
   picture.serial = raw.imgdata.shootinginfo.BodySerial;

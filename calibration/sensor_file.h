@@ -15,6 +15,7 @@ struct SensorPicture {
   double black_level_dn = 0.0, white_level_dn = 0.0;
   double exposure_s = 0.0, f_number = 0.0;
   int iso = 0;
+  double focal_length_35mm = 0;  // mm, of the lens that would see as much on 36 x 24 mm; 0: the file does not say
   std::string make, model, serial, date_time;
 };
 

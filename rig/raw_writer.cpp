@@ -142,9 +142,14 @@ void check(const RawFrame& frame) {
 }
 
 Directory exif_directory(const RawFrame& frame) {
-  return {rational(0x829a, frame.settings.exposure_s), rational(0x829d, frame.settings.f_number),
-          short_number(0x8827, static_cast<std::uint16_t>(frame.settings.iso)), text(0x9003, exif_date(frame.utc)),
-          text(0xa431, frame.serial)};
+  Directory exif{rational(0x829a, frame.settings.exposure_s), rational(0x829d, frame.settings.f_number),
+                 short_number(0x8827, static_cast<std::uint16_t>(frame.settings.iso)),
+                 text(0x9003, exif_date(frame.utc)), text(0xa431, frame.serial)};
+  if (frame.focal_length_mm > 0) {
+    exif.push_back(rational(0x920a, frame.focal_length_mm));
+    exif.push_back(short_number(0xa405, static_cast<std::uint16_t>(std::lround(frame.focal_length_mm))));
+  }
+  return exif;
 }
 
 Directory mosaic_directory(const RawFrame& frame, std::uint32_t pixels_at) {

@@ -24,8 +24,9 @@ struct RawFrame {
   cv::Mat1w mosaic;  // rows x columns, DN; RGGB: (0, 0) red, (0, 1) and (1, 0) green, (1, 1) blue
   std::uint16_t black_level_dn = 512;
   ExposureSettings settings;
-  std::string utc;     // as Clock::utc() gives it; EXIF dates have no zone, the file says UTC
-  std::string serial;  // of the body
+  std::string utc;             // as Clock::utc() gives it; EXIF dates have no zone, the file says UTC
+  std::string serial;          // of the body
+  double focal_length_mm = 0;  // of the lens; 0: the file does not say. The sensor is of 35 mm format
 };
 
 // The bytes of the file. Throws std::runtime_error when there are no pixels, `utc` is not ISO 8601, a value

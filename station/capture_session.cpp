@@ -83,6 +83,7 @@ RunState run(SessionFolder& session, RigDevices& devices, const SessionFile& ask
     if (verdict.grade() == Grade::bad && verdict.may_pass_again())
       display.note(step.id + " is refused: " + verdict.reason());
   };
+  run.said = [&](const std::string& line) { display.note(line); };
   watch_interrupts(2);
   const StopOnInterrupt emergency(
       [&] {
@@ -123,10 +124,11 @@ CalibrationFiles calibration_files(const std::filesystem::path& place, const Rig
 }
 
 Plan plan_of(const RigFile& rig, const Spool& spool) {
-  if (spool.fabric) return make_fabric_plan(rig.bracket_stops);
-  return make_capture_plan({.reflection_angles_deg = rig.reflection_angles_deg,
+  const PlanRequest request{.reflection_angles_deg = rig.reflection_angles_deg,
                             .transmission_angles_deg = rig.transmission_angles_deg,
-                            .bracket_stops = rig.bracket_stops});
+                            .bracket_stops = rig.bracket_stops,
+                            .brackets_if_needed = rig.brackets_if_needed};
+  return spool.fabric ? make_fabric_plan(request) : make_capture_plan(request);
 }
 
 RunState capture_session(const CaptureRequest& request) {
@@ -142,8 +144,8 @@ RunState capture_session(const CaptureRequest& request) {
   if (is_session(request.out))
     throw std::runtime_error(request.out.string() +
                              " is a session already; choose another folder, or go on with capture --resume");
-  const Plan plan =
-      request.plan.empty() ? plan_of(rig, spool) : plan_from_json(read_json_file(request.plan), request.plan.string());
+  const Plan plan = request.plan.empty() ? plan_of(rig, spool)
+                                         : plan_from_json(read_json_file(request.plan), request.plan.string());
   require_space(request.out, plan, calibration.lens.lens);
   RigDevices devices = open_rig(rig, spool, request.unattended);
   require_valid(calibration, rig, devices.clock->utc(), request.accept_calibration);

@@ -42,6 +42,11 @@ RunState run_session(SessionFolder& session, const RunDevices& devices, const Se
     return nominal_pose(asked.rig, asked.spool, mounting);
   };
   if (asked.spool.fabric) options.object = rig::BenchObject::cylinder;
+  if (run.in_order) {  // pictures that were taken already cannot be waited for
+    options.read_lamp = [&](const PlanStep& step, const rig::Picture& test) { return checks.read_lamp(step, test); };
+    options.lamp_watch.interval_s = asked.rig.lamp_watch_s;
+  }
+  options.said = run.said;
   options.progress = run.progress;
   options.judged = run.judged;
   options.reshoot = steps_to_reshoot(asked.plan, run.reshoot);
@@ -57,6 +62,11 @@ RunState run_session(SessionFolder& session, const RunDevices& devices, const Se
     log.keep_test(test);
     return checks.choose_exposure(step, test);
   };
+  if (options.read_lamp)
+    options.read_lamp = [&](const PlanStep& step, const rig::Picture& test) {
+      log.keep_test(test);
+      return checks.read_lamp(step, test);
+    };
   return run_plan(asked.plan, {*recorded.camera, *recorded.turntable, *recorded.person, devices.clock}, session,
                   options);
 }

@@ -20,6 +20,7 @@ struct SessionRun {
   std::function<StopWish()> stop_wish{};
   std::function<void(const Progress&)> progress{};
   std::function<void(const PlanStep&, const Verdict&)> judged{};
+  std::function<void(const std::string&)> said{};  // while the run waits
 };
 
 // Errors: those of run_plan; std::runtime_error for a view to be taken again that the plan does not have.

@@ -19,6 +19,10 @@ constexpr std::size_t kReflections = 6, kTransmissions = 5;
 // From two oblique angles the tags give the holder's place ten times better than from the front.
 constexpr std::array kPoseAngles_deg{-35.0, 35.0};
 
+// Without these a picture is of no use; whatever else can be looked at is looked at too.
+const std::vector<std::string> kPoseMustShow{"settings", "tags"};
+const std::vector<std::string> kViewMustShow{"settings", "saturation", "exposure", "focus"};
+
 void add_poses(Plan& plan, const std::string& name, rig::Mounting mounting) {
   for (const double angle_deg : kPoseAngles_deg)
     plan.steps.push_back({.id = name + (angle_deg < 0 ? "-1" : "-2"),
@@ -27,7 +31,8 @@ void add_poses(Plan& plan, const std::string& name, rig::Mounting mounting) {
                           .lamp = rig::Lamp::off,
                           .room_light = true,
                           .platform_angle_rad = angle_deg * kRadiansPerDegree,
-                          .exposure_of = {}});
+                          .exposure_of = {},
+                          .verify = kPoseMustShow});
 }
 
 std::string short_number(double value) {
@@ -44,7 +49,7 @@ std::string exposure_id(const std::string& view, double stops) {
 }
 
 void add_views(Plan& plan, const std::string& name, rig::Mounting mounting, rig::Lamp lamp,
-               const std::vector<double>& angles_deg, const std::vector<double>& bracket_stops) {
+               const std::vector<double>& angles_deg, const PlanRequest& request) {
   for (std::size_t i = 0; i < angles_deg.size(); ++i) {
     plan.steps.push_back({.id = name + "-" + std::to_string(i + 1),
                           .kind = StepKind::view,
@@ -52,14 +57,17 @@ void add_views(Plan& plan, const std::string& name, rig::Mounting mounting, rig:
                           .lamp = lamp,
                           .room_light = false,
                           .platform_angle_rad = angles_deg[i] * kRadiansPerDegree,
-                          .exposure_of = {}});
+                          .exposure_of = {},
+                          .verify = kViewMustShow});
     const PlanStep view = plan.steps.back();
-    for (const double stops : bracket_stops) {
+    for (const double stops : request.bracket_stops) {
       PlanStep exposure = view;
       exposure.id = exposure_id(view.id, stops);
       exposure.kind = StepKind::exposure;
       exposure.exposure_of = view.id;
       exposure.stops = stops;
+      exposure.if_needed = request.brackets_if_needed;
+      exposure.verify = {"settings"};
       plan.steps.push_back(exposure);
     }
   }
@@ -77,7 +85,8 @@ void add_darks(Plan& plan) {
                             .lamp = rig::Lamp::off,
                             .room_light = false,
                             .platform_angle_rad = last.platform_angle_rad,
-                            .exposure_of = view});
+                            .exposure_of = view,
+                            .verify = {"settings"}});
     }
   }
 }
@@ -131,6 +140,9 @@ std::optional<std::string> order_problem(const PlanStep& step, const std::map<st
                                       : step.stops != 0) {
     return "a bracket's exposure, and nothing else, is 0.3 to 10 stops from its view's";
   }
+  if (step.if_needed && step.kind != StepKind::exposure) {
+    return "if_needed is for a bracket's exposure";
+  }
   if (step.exposure_s && (repeats || !(*step.exposure_s > 0 && *step.exposure_s <= 3600))) {
     return "exposure_s is for a pose or a view, above 0 and up to 3600 s";
   }
@@ -141,11 +153,39 @@ std::optional<std::string> order_problem(const PlanStep& step, const std::map<st
   return std::nullopt;
 }
 
+std::optional<std::string> verify_problem(const PlanStep& step) {
+  const std::vector<std::string>& known = verifiable(step.kind);
+  for (const std::string& check : step.verify) {
+    if (std::ranges::find(known, check) != known.end()) continue;
+    std::string names;
+    for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
+    return "verify names '" + check + "'; pictures of this kind can be verified for " + names;
+  }
+  return std::nullopt;
+}
+
 bool needs_a_hand(const PlanStep& before, const PlanStep& step) {
   return before.mounting != step.mounting || before.lamp != step.lamp || before.room_light != step.room_light;
 }
 
 }  // namespace
+
+const std::vector<std::string>& verifiable(StepKind kind) {
+  static const std::vector<std::string> pose{"settings", "focus", "tags", "orientation", "angle", "bench", "motion"},
+      view{"settings", "focus", "saturation", "exposure", "lamp", "lamp_side", "tags", "angle", "bench", "motion"},
+      exposure{"settings"}, dark{"settings", "dark"};
+  switch (kind) {
+    case StepKind::pose:
+      return pose;
+    case StepKind::view:
+      return view;
+    case StepKind::exposure:
+      return exposure;
+    case StepKind::dark:
+      break;
+  }
+  return dark;
+}
 
 bool is_reflection(const PlanStep& step) {
   return step.kind == StepKind::view && (step.lamp == rig::Lamp::front || step.lamp == rig::Lamp::front_left);
@@ -181,24 +221,24 @@ Plan make_capture_plan(const PlanRequest& request) {
   require_count("transmission", request.transmission_angles_deg.size(), kTransmissions);
   Plan plan;
   add_poses(plan, "pose-horizontal", Mounting::horizontal);
-  add_views(plan, "reflection-horizontal", Mounting::horizontal, Lamp::front, request.reflection_angles_deg,
-            request.bracket_stops);
-  add_views(plan, "transmission", Mounting::horizontal, Lamp::back, request.transmission_angles_deg,
-            request.bracket_stops);
+  add_views(plan, "reflection-horizontal", Mounting::horizontal, Lamp::front, request.reflection_angles_deg, request);
+  add_views(plan, "transmission", Mounting::horizontal, Lamp::back, request.transmission_angles_deg, request);
   add_poses(plan, "pose-vertical", Mounting::vertical);
-  add_views(plan, "reflection-vertical", Mounting::vertical, Lamp::front, request.reflection_angles_deg,
-            request.bracket_stops);
+  add_views(plan, "reflection-vertical", Mounting::vertical, Lamp::front, request.reflection_angles_deg, request);
   add_darks(plan);
+  if (request.reference_patch)
+    for (PlanStep& step : plan.steps)
+      if (step.kind == StepKind::view) step.verify.push_back("lamp");
   if (const std::optional<std::string> problem = check_plan(plan)) {
     throw std::runtime_error(*problem);
   }
   return plan;
 }
 
-Plan make_fabric_plan(const std::vector<double>& bracket_stops) {
+Plan make_fabric_plan(const PlanRequest& request) {
   Plan plan;
-  add_views(plan, "fabric-right", rig::Mounting::horizontal, rig::Lamp::front, {0}, bracket_stops);
-  add_views(plan, "fabric-left", rig::Mounting::horizontal, rig::Lamp::front_left, {0}, bracket_stops);
+  add_views(plan, "fabric-right", rig::Mounting::horizontal, rig::Lamp::front, {0}, request);
+  add_views(plan, "fabric-left", rig::Mounting::horizontal, rig::Lamp::front_left, {0}, request);
   add_darks(plan);
   if (const std::optional<std::string> problem = check_plan(plan)) throw std::runtime_error(*problem);
   return plan;
@@ -219,6 +259,9 @@ std::optional<std::string> check_plan(const Plan& plan, double largest_angle_rad
     }
     if (!problem) {
       problem = light_problem(step);
+    }
+    if (!problem) {
+      problem = verify_problem(step);
     }
     if (problem) {
       return "plan step " + std::to_string(earlier.size() + 1) +

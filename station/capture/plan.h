@@ -26,7 +26,10 @@ struct PlanStep {
   double platform_angle_rad = 0.0;
   std::string exposure_of;             // dark and exposure only: the view whose camera settings it repeats
   double stops = 0.0;                  // exposure only: from the view's
+  bool if_needed = false;              // exposure only: left out where the view's range does without (bracket.h)
   std::optional<double> exposure_s{};  // pose and view only: this one, without metering
+  // Checks (verdict.h) without which the picture is refused: those that can look look anyway, these must be able to.
+  std::vector<std::string> verify{};
 
   bool operator==(const PlanStep&) const = default;
 };
@@ -47,6 +50,8 @@ struct PlanRequest {
   std::vector<double> reflection_angles_deg = {-50, -30, -10, 10, 30, 50};  // 6, for each mounting
   std::vector<double> transmission_angles_deg = {-40, -20, 0, 20, 40};      // 5, threads horizontal
   std::vector<double> bracket_stops{};  // of the further exposures of each view; empty: one exposure
+  bool brackets_if_needed = false;      // else always
+  bool reference_patch = false;         // there is one: the lamp must be verified in each view
 };
 
 // Horizontal: 2 poses, 6 reflections, 5 transmissions; vertical: 2 poses, 6 reflections; after each view its further
@@ -56,7 +61,10 @@ Plan make_capture_plan(const PlanRequest& request);
 
 // Cloth on the cylinder, seen from where threads are seen and lit from the right (the lamp in front) and from the left; a
 // dark for each. Nothing on the cylinder shows its pose: it stands in the middle of the platform.
-Plan make_fabric_plan(const std::vector<double>& bracket_stops = {});
+Plan make_fabric_plan(const PlanRequest& request = {});
+
+// What a picture of this kind can be verified for.
+const std::vector<std::string>& verifiable(StepKind kind);
 
 // One clear line about the first thing that makes the plan impossible. A plan has a pose picture before the first view of
 // each mounting, or none at all (pictures taken by hand: the holder is believed to stand where it should).

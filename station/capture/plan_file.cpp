@@ -1,5 +1,6 @@
 #include "station/capture/plan_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -34,9 +35,15 @@ json step_to_json(const PlanStep& step) {
   }
   if (step.kind == StepKind::exposure) {
     document["stops"] = step.stops;
+    if (step.if_needed) {
+      document["if_needed"] = true;
+    }
   }
   if (step.exposure_s) {
     document["exposure_s"] = *step.exposure_s;
+  }
+  if (!step.verify.empty()) {
+    document["verify"] = step.verify;
   }
   return document;
 }
@@ -55,9 +62,21 @@ PlanStep read_step(ObjectReader& reader) {
   }
   if (step.kind == StepKind::exposure) {
     step.stops = reader.number("stops", -10, 10);
+    if (reader.has("if_needed")) {
+      step.if_needed = reader.flag("if_needed");
+    }
   }
   if (reader.has("exposure_s")) {
     step.exposure_s = reader.number("exposure_s", 1e-6, 3600);
+  }
+  if (reader.has("verify")) {
+    const json& checks = reader.raw("verify");
+    const bool texts =
+        checks.is_array() && std::ranges::all_of(checks, [](const json& check) { return check.is_string(); });
+    if (!texts) {
+      reader.refuse("verify", "expected a list of the checks that a picture must pass, such as [\"focus\"]");
+    }
+    step.verify = checks.get<std::vector<std::string>>();
   }
   reader.finish();
   return step;

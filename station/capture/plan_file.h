@@ -10,8 +10,8 @@
 namespace station {
 
 // {"format": "threadstation/plan", "version": 1, "steps": [{"id", "kind": "pose" | "view" | "exposure" | "dark", "mounting",
-//  "lamp", "room_light", "platform_angle_deg", "exposure_of" (dark and exposure), "stops" (exposure), "exposure_s" (pose and
-//  view, may be left out: metered)}, ...]}
+//  "lamp", "room_light", "platform_angle_deg", "exposure_of" (dark and exposure), "stops" and "if_needed" (exposure; the second may be left out: false), "exposure_s" (pose and
+//  view, may be left out: metered), "verify": [checks] (may be left out: none must be)}, ...]}
 nlohmann::json plan_to_json(const Plan& plan);
 
 // `source` is the file that error messages name.

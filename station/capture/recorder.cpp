@@ -104,6 +104,13 @@ void Recorder::arranged(const PlanStep& step) {
   });
 }
 
+void Recorder::lamp_watched(const PlanStep& step, const LampSettling& settling) {
+  nlohmann::json data = {
+      {"step", step.id}, {"test_pictures", settling.test_pictures}, {"waited_s", settling.waited_s}};
+  if (settling.change) data["change"] = three_digits(*settling.change);
+  durably([&] { session_.append("lamp_watch", data); });
+}
+
 void Recorder::metered(const PlanStep& step, const Metering& metering) {
   durably([&] {
     session_.append("metering", {{"step", step.id},

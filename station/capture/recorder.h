@@ -5,6 +5,7 @@
 //   camera  {"make", "model", "serial", "width_px", "height_px"}
 //   arranged {"step", "mounting", "lamp", "room_light"}     the operator has made the arrangement
 //   metering {"step", "exposure_s", "test_pictures", "converged"}; warning {"step", "message"}
+//   lamp_watch {"step", "test_pictures", "waited_s", "change" (absent: nothing to read the lamp by)}
 //   refused  {"step", "file", "sha256", "verdict"}          a picture that does not serve, kept in refused/
 //   picture  the file is on the disk under its final name; with its verdict
 //   discarded {"file", "reason"}                            before the file is moved to refused/
@@ -18,6 +19,7 @@
 #include <string>
 
 #include "rig/camera.h"
+#include "station/capture/lamp_watch.h"
 #include "station/capture/metering.h"
 #include "station/capture/picture_record.h"
 #include "station/capture/plan.h"
@@ -43,6 +45,7 @@ class Recorder {
   void camera(const rig::CameraIdentity& identity);
   void arranged(const PlanStep& step);
   void metered(const PlanStep& step, const Metering& metering);
+  void lamp_watched(const PlanStep& step, const LampSettling& settling);
   void refused(const PlanStep& step, const Verdict& verdict, const rig::Picture& picture);
 
   // Fills in the file's name, size and hash.

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "station/capture/bracket.h"
 #include "station/capture/picture_record.h"
 #include "station/capture/recorder.h"
 #include "station/capture/sha256.h"
@@ -111,6 +112,9 @@ class CaptureRun {
   }
 
   bool is_done(const PlanStep& step) const {
+    if (!is_needed(step, recorder_.taken())) {
+      return true;
+    }
     const auto found = recorder_.taken().find(step.id);
     if (found == recorder_.taken().end() || step.exposure_of.empty()) {
       return found != recorder_.taken().end();
@@ -156,6 +160,7 @@ class CaptureRun {
       PictureRecord record = record_of(step);
       record.read_angle_rad = turn(step.platform_angle_rad);
       record.asked = set_camera(devices_.camera, exposure_for(step));
+      let_lamp_settle(step);
       poll();
       const rig::Picture delivered = devices_.camera.capture();
       record.verdict = judge(step, record, delivered);
@@ -225,12 +230,28 @@ class CaptureRun {
                                   .room_light = step.room_light};
     if (!standing_ || !rig::same_arrangement(*standing_, wanted)) {
       poll();
+      lamp_cold_ = wanted.lamp != rig::Lamp::off && (lamp_cold_ || !standing_ || standing_->lamp == rig::Lamp::off);
       standing_.reset();
       devices_.person.arrange(wanted);
       standing_ = wanted;
       recorder_.arranged(step);
     }
     poll();
+  }
+
+  // A lamp that was on all the time is warm, wherever it was moved to.
+  void let_lamp_settle(const PlanStep& step) {
+    if (!lamp_cold_ || step.kind != StepKind::view || !options_.read_lamp || !(options_.lamp_watch.interval_s > 0)) {
+      return;
+    }
+    const ReadLamp read = [this](const PlanStep& lit, const rig::Picture& test) {
+      delivered_.insert(sha256_hex(test.bytes));
+      return options_.read_lamp(lit, test);
+    };
+    recorder_.lamp_watched(step, watch_lamp(
+                                     devices_.camera, devices_.clock, step, options_.lamp_watch, read,
+                                     [this] { poll(); }, options_.said));
+    lamp_cold_ = false;
   }
 
   double turn(double asked_rad) {
@@ -318,11 +339,27 @@ class CaptureRun {
     if (verdict.grade() != Grade::bad && options_.inspect) {
       try {
         verdict.add(options_.inspect(step, delivered, record.read_angle_rad));
+        require_verified(step, verdict);
       } catch (const std::exception& error) {
         verdict.findings.push_back(bad("file", error.what()));
       }
     }
     return verdict;
+  }
+
+  // What the plan wants to have seen. A picture that is bad already has its reason.
+  static void require_verified(const PlanStep& step, Verdict& verdict) {
+    if (verdict.grade() == Grade::bad) {
+      return;
+    }
+    for (const std::string& check : step.verify) {
+      if (verdict.find(check) == nullptr) {
+        verdict.findings.push_back(
+            bad("verify", "'" + step.id + "' is to be verified for '" + check +
+                              "' by the plan, and nothing in the picture shows it; see that what "
+                              "shows it stands free and lit, or take it out of the plan's verify"));
+      }
+    }
   }
 
   void report(const std::string& step) const {
@@ -345,6 +382,7 @@ class CaptureRun {
   const RunDevices& devices_;
   Recorder& recorder_;
   const RunOptions& options_;
+  bool lamp_cold_ = false;                    // switched on since the last view
   std::optional<rig::Arrangement> standing_;  // unknown at the beginning: somebody may have been there
   std::vector<std::string> order_;            // steps in the order of their pictures
   std::set<std::string> delivered_;           // hashes of all that the camera delivered in this run

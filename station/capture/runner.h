@@ -13,6 +13,7 @@
 #include "rig/clock.h"
 #include "rig/operator.h"
 #include "rig/turntable.h"
+#include "station/capture/lamp_watch.h"
 #include "station/capture/metering.h"
 #include "station/capture/plan.h"
 #include "station/capture/run_state.h"
@@ -42,7 +43,10 @@ struct RunOptions {
   rig::ExposureSettings settings;  // ISO and f-number of every picture; the exposure time where metering begins
   ChooseExposure choose_exposure;  // empty: no metering, every picture at `settings`
   int most_test_pictures = 8;      // for one picture
-  int most_attempts = 3;           // for one picture that may pass when it is taken again
+  ReadLamp read_lamp;              // after the lamp was switched on, before its first view; empty: it is not watched
+  LampWatch lamp_watch;
+  std::function<void(const std::string&)> said;  // a line for the person while the run waits; may be empty
+  int most_attempts = 3;                         // for one picture that may pass when it is taken again
   // Looks at a picture before it is kept; may be empty. Throws std::runtime_error when it cannot be read at all.
   std::function<Verdict(const PlanStep&, const rig::Picture&, double platform_reading_rad)> inspect;
   rig::BenchObject object = rig::BenchObject::holder;                   // what is photographed

@@ -11,14 +11,6 @@ namespace {
 
 using nlohmann::json;
 
-double three_digits(double value) {
-  std::array<char, 32> text{};
-  const auto written = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, 2);
-  double rounded = 0;
-  std::from_chars(text.data(), written.ptr, rounded);
-  return std::isfinite(rounded) && std::abs(rounded) > 1e-6 ? rounded : 0;
-}
-
 Grade grade_from_name(const std::string& name) {
   for (const Grade grade : {Grade::good, Grade::doubtful, Grade::bad}) {
     if (name == grade_name(grade)) {
@@ -29,6 +21,14 @@ Grade grade_from_name(const std::string& name) {
 }
 
 }  // namespace
+
+double three_digits(double value) {
+  std::array<char, 32> text{};
+  const auto written = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, 2);
+  double rounded = 0;
+  std::from_chars(text.data(), written.ptr, rounded);
+  return std::isfinite(rounded) && std::abs(rounded) > 1e-6 ? rounded : 0;
+}
 
 std::string grade_name(Grade grade) {
   return grade == Grade::good ? "good" : grade == Grade::doubtful ? "doubtful" : "bad";

@@ -10,8 +10,8 @@ namespace station {
 
 enum class Grade { good, doubtful, bad };  // doubtful: kept, and said to the person
 
-// Names of checks: "settings" "duplicate" "stale" "file" "saturation" "exposure" "focus" "tags" "angle" "bench" "motion"
-// "orientation" "lamp" "lamp_side" "dark".
+// Names of checks: "settings" "duplicate" "stale" "file" "saturation" "exposure" "shadows" "focus" "tags" "angle" "bench" "motion"
+// "orientation" "lamp" "lamp_side" "dark" "verify".
 struct Finding {
   std::string check;
   Grade grade = Grade::good;
@@ -29,6 +29,9 @@ struct Verdict {
   const Finding* find(const std::string& check) const;
   void add(const Verdict& other);
 };
+
+// A value as journals have it: to three digits, so that another machine's last bits write the same text.
+double three_digits(double value);
 
 // Values to three digits, so that another machine's last bits write the same text.
 nlohmann::json verdict_to_json(const Verdict& verdict);

@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "station/capture/bracket.h"
 #include "station/capture/folder_lock.h"
 #include "station/capture/manifest.h"
 #include "station/capture/picture_record.h"
@@ -140,10 +141,12 @@ class Verification {
       return;
     }
     report_.views_planned = view_count(*plan_);
+    std::size_t needed = 0;
     for (const PlanStep& step : plan_->steps) {
       const bool good = good_steps_.contains(step.id);
       report_.views += good && step.kind == StepKind::view ? 1U : 0U;
-      if (!taken_.contains(step.id)) {
+      needed += is_needed(step, taken_) || taken_.contains(step.id) ? 1U : 0U;
+      if (!taken_.contains(step.id) && is_needed(step, taken_)) {
         problem("step " + step.id + " has no picture; resume the session");
       }
     }
@@ -152,7 +155,7 @@ class Verification {
         problem(picture.file + " belongs to the step " + step + ", which the plan does not have");
       }
     }
-    report_.complete = good_steps_.size() == plan_->steps.size() && !records_.empty() && ends_complete();
+    report_.complete = good_steps_.size() == needed && !records_.empty() && ends_complete();
   }
 
   bool ends_complete() const {

@@ -33,6 +33,7 @@ constexpr double kMostDarkOffset = 1e-3;  // of the range
 constexpr double kMostBlur_px = 3, kMuchBlur_px = 2;
 constexpr double kLeastSharpness = 0.4, kLittleSharpness = 0.6;  // of the median of the views before
 constexpr std::size_t kFewestCompared = 3;
+constexpr double kShadowsPercentile = 10;
 constexpr double kMostMotion_px = 0.2;
 constexpr double kMostTilt_rad = 30 * M_PI / 180;
 
@@ -106,6 +107,14 @@ class CaptureChecks::Work {
     if (step.kind == StepKind::pose) check_pose(seen);
     if (step.kind == StepKind::view) check_view(seen);
     return verdict_;
+  }
+
+  std::optional<double> read_lamp(const PlanStep& step, const rig::Picture& test) {
+    const calibration::SensorPicture raw = calibration::read_sensor_bytes(test.bytes, "test picture of " + step.id);
+    const auto holder_from_world =
+        turned_holder(step.mounting, calibration_.platform.scale * step.platform_angle_rad);
+    if (!holder_from_world) return std::nullopt;
+    return lamp_.read(step, developed_of(raw), camera_in(*holder_from_world), *holder_from_world);
   }
 
  private:
@@ -237,6 +246,7 @@ class CaptureChecks::Work {
           name + " is dark: the brightest threads reach " + percent_text(level) + " of the range at " +
               number_text(seen.raw.exposure_s, 3) +
               " s; see that the lamp is on and shines on the threads, then resume");
+    found("shadows", Grade::good, 100 * bright_level(seen.raw, region, kShadowsPercentile));
     found("tags", Grade::good, static_cast<double>(seen.tags.size()));
   }
 
@@ -267,17 +277,25 @@ class CaptureChecks::Work {
     return calibration::develop(raw, options);
   }
 
+  // holder_from_world; nothing where no pose picture shows the holder.
+  std::optional<Eigen::Isometry3d> turned_holder(rig::Mounting mounting, double angle_rad) {
+    if (!mounted_.contains(mounting)) mounted_[mounting] = holder_of(mounting);
+    const std::optional<Eigen::Isometry3d>& mounted = mounted_.at(mounting);
+    if (!mounted) return std::nullopt;
+    return (Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()) * *mounted).inverse();
+  }
+
+  renderer::Camera camera_in(const Eigen::Isometry3d& holder_from_world) const {
+    return camera_of(calibration_.lens.lens, holder_from_world * calibration_.platform.world_from_camera, false);
+  }
+
   void check_lamp(const Seen& seen, const calibration::Developed& developed) {
-    if (!mounted_.contains(seen.step.mounting)) mounted_[seen.step.mounting] = holder_of(seen.step.mounting);
-    const std::optional<Eigen::Isometry3d>& mounted = mounted_.at(seen.step.mounting);
-    if (!mounted) return;
     const double angle_rad =
         seen.bench.angle ? seen.bench.angle->angle_rad : calibration_.platform.scale * seen.reading_rad;
-    const Eigen::Isometry3d holder_from_world =
-        (Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()) * *mounted).inverse();
-    const renderer::Camera camera =
-        camera_of(calibration_.lens.lens, holder_from_world * calibration_.platform.world_from_camera, false);
-    for (const Finding& finding : lamp_.judge(seen.step, developed, camera, holder_from_world))
+    const auto holder_from_world = turned_holder(seen.step.mounting, angle_rad);
+    if (!holder_from_world) return;
+    for (const Finding& finding :
+         lamp_.judge(seen.step, developed, camera_in(*holder_from_world), *holder_from_world))
       verdict_.findings.push_back(finding);
   }
 
@@ -316,6 +334,10 @@ CaptureChecks::CaptureChecks(const SessionFolder& session, const SessionFile& as
 
 ExposureChoice CaptureChecks::choose_exposure(const PlanStep& step, const rig::Picture& test) {
   return work_->choose(step, test);
+}
+
+std::optional<double> CaptureChecks::read_lamp(const PlanStep& step, const rig::Picture& test) {
+  return work_->read_lamp(step, test);
 }
 
 Verdict CaptureChecks::judge(const PlanStep& step, const rig::Picture& picture, double platform_reading_rad) {

@@ -26,6 +26,7 @@ namespace station {
 //                under the same lamp and mounting
 //   saturation   % of the window; doubtful above 0.5, bad above 5
 //   exposure     % of the range that the brightest threads reach; 2
+//   shadows      % of the range that a tenth of the window stays below; never bad
 //   lamp, lamp_side   lamp_checks.h
 //   dark         % of the range above the calibration's dark level; 0.1
 // What cannot be looked at (no tags in the picture, no patch on the rig, a mounting whose pose picture shows fewer than two
@@ -39,6 +40,9 @@ class CaptureChecks {
   // Errors: std::runtime_error for a test picture that cannot be read, or of another camera; while the holder can still be
   // put right, for a bench that does not stand as it was calibrated.
   ExposureChoice choose_exposure(const PlanStep& step, const rig::Picture& test);
+  // Strength of the lamp at the reference patch, 1 = as calibrated; nothing where there is no patch, it cannot be read or the
+  // lamp is off. Errors: std::runtime_error for a picture that cannot be read.
+  std::optional<double> read_lamp(const PlanStep& step, const rig::Picture& test);
   // Errors: std::runtime_error for a picture that cannot be read, or of another camera.
   Verdict judge(const PlanStep& step, const rig::Picture& picture, double platform_reading_rad);
 

@@ -70,6 +70,14 @@ std::vector<Finding> LampChecks::judge(const PlanStep& step, const calibration::
   return findings;
 }
 
+std::optional<double> LampChecks::read(const PlanStep& step, const calibration::Developed& developed,
+                                       const renderer::Camera& camera,
+                                       const Eigen::Isometry3d& holder_from_world) const {
+  if (asked_.spool.fabric) return std::nullopt;
+  const std::optional<double> part = strength(step, developed, camera, holder_from_world);
+  return part && *part >= kLampOff ? part : std::nullopt;
+}
+
 inversion::NearLight LampChecks::lamp(rig::Lamp side, const Eigen::Isometry3d& holder_from_world) const {
   return lamp_in_holder(calibration_, asked_.rig, side, holder_from_world);
 }

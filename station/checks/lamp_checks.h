@@ -30,6 +30,10 @@ class LampChecks {
   std::vector<Finding> judge(const PlanStep& step, const calibration::Developed& developed,
                              const renderer::Camera& camera, const Eigen::Isometry3d& holder_from_world);
 
+  // Measured / calibrated strength; nothing where there is no patch, it cannot be read or the lamp is off.
+  std::optional<double> read(const PlanStep& step, const calibration::Developed& developed,
+                             const renderer::Camera& camera, const Eigen::Isometry3d& holder_from_world) const;
+
  private:
   struct LastView {
     rig::Lamp lamp;

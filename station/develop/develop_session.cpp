@@ -16,6 +16,7 @@
 #include "calibration/sensor_maps.h"
 #include "renderer/image_file.h"
 #include "station/bench_reading.h"
+#include "station/capture/bracket.h"
 #include "station/calibration_validity.h"
 #include "station/capture/folder_lock.h"
 #include "station/capture/manifest.h"
@@ -113,7 +114,7 @@ std::vector<calibration::SensorPicture> read_bracket(const std::filesystem::path
   std::vector<calibration::SensorPicture> bracket{metered};
   if (!calibration.sensor) return bracket;
   for (const PlanStep& step : plan.steps)
-    if (step.kind == StepKind::exposure && step.exposure_of == view)
+    if (step.kind == StepKind::exposure && step.exposure_of == view && is_needed(step, pictures))
       bracket.push_back(read_picture(session, picture_of(pictures, step.id)));
   return bracket;
 }

@@ -95,6 +95,10 @@ rig::LampChanges parse_lamp_changes(ObjectReader reader) {
   changes.drift_per_s = reader.number("drift_per_s", -0.1, 0.1);
   changes.jump = reader.number("jump", -1, 10);
   changes.jump_at_s = reader.number("jump_at_s", 0, 1e6);
+  if (reader.has("warm_up")) {
+    changes.warm_up = reader.number("warm_up", 0, 1);
+    changes.warm_up_s = reader.number("warm_up_s", 0.1, 1e5);
+  }
   changes.pwm_hz = reader.number("pwm_hz", 0, 1e6);
   changes.pwm_duty = reader.number("pwm_duty", 0.01, 1);
   reader.finish();
@@ -255,6 +259,9 @@ void parse_capture(ObjectReader capture, RigFile& rig) {
   rig.transmission_angles_deg = capture.numbers("transmission_angles_deg");
   rig.target_level = capture.number("target_level", 0.05, 0.9);
   rig.bracket_stops = capture.numbers("bracket_stops");
+  if (capture.has("brackets"))
+    rig.brackets_if_needed = capture.choice("brackets", {"always", "if_needed"}) == "if_needed";
+  if (capture.has("lamp_watch_s")) rig.lamp_watch_s = capture.number("lamp_watch_s", 0, 600);
   if (rig.bracket_stops.size() > 4) capture.refuse("bracket_stops", "at most 4 further exposures");
   for (const double stops : rig.bracket_stops)
     if (!(std::abs(stops) >= 0.3 && std::abs(stops) <= 10))

@@ -89,6 +89,8 @@ struct RigFile {
   Eigen::Vector3d lamp_aim_mm;                  // what both are pointed at
   double lamp_radius_mm = 0;                    // of its bright face
   std::vector<double> reflection_angles_deg, transmission_angles_deg;
+  bool brackets_if_needed = false;    // further exposures only where a view's range needs them
+  double lamp_watch_s = 0;            // between two readings of a lamp that was switched on; 0: it is not watched
   double target_level = 0.6;          // of full scale that the brightest thread pixels should reach
   std::vector<double> bracket_stops;  // of the further exposures of each view, from the metered one
   std::optional<SimulatedRig> simulation;

@@ -24,7 +24,7 @@ struct ImportedPicture {
 struct ImportFile {
   std::filesystem::path rig, spool;
   std::filesystem::path calibration;  // a folder that calibrate made; empty: the rig's tape measures
-  std::filesystem::path lens;  // a lens file, without calibration; empty: the rig's focal length by its engraving
+  std::filesystem::path lens;  // a lens file, without calibration; empty: the focal length by EXIF or engraving
   std::optional<Eigen::Vector3d> lamp_intensity_mm2;  // without calibration, required
   std::string person;
   std::vector<ImportedPicture> pictures;

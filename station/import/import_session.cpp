@@ -18,7 +18,8 @@ namespace station {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kTape_mm = 10;  // standard error
+constexpr double kTape_mm = 10;        // standard error
+constexpr double kFocalLength = 0.02;  // standard error, relative: EXIF is in whole millimetres, engravings are round
 
 struct ListedPicture {
   ImportedPicture shown;
@@ -189,6 +190,19 @@ void add_darks(Plan& plan, const ImportFile& import, const std::vector<double>& 
   plan.steps.insert(plan.steps.end(), darks.begin(), darks.end());
 }
 
+struct KnownFocalLength {
+  double px = 0;
+  std::string from;
+};
+
+// 35 mm format compares diagonals (CIPA DCG-001).
+KnownFocalLength focal_length(const RigFile& rig, const calibration::SensorPicture& picture) {
+  const double millimetres = picture.focal_length_35mm;
+  if (!(millimetres > 0)) return {rig.focal_length_guess_px, "the rig file's focal_length_guess_px"};
+  return {millimetres / std::hypot(36.0, 24.0) * std::hypot(picture.mosaic.cols, picture.mosaic.rows),
+          "EXIF, " + nlohmann::json(millimetres).dump() + " mm in 35 mm format"};
+}
+
 CalibrationFiles calibration_bytes(const RigCalibration& calibration) {
   const std::string text = to_json(calibration).dump(2) + "\n";
   const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
@@ -230,6 +244,7 @@ RigCalibration calibration_by_tape(const RigFile& rig, const ImportFile& import,
                    .focus = rig.focus,
                    .f_number = first.f_number};
   result.linear_srgb_from_camera = rig.linear_srgb_from_camera;
+  std::string lens_from = "the lens file";
   if (!import.lens.empty()) {
     result.lens = parse_lens_file(read_json_file(import.lens), import.lens.string()).fit;
     if (result.lens.lens.width_px != first.mosaic.cols || result.lens.lens.height_px != first.mosaic.rows)
@@ -239,7 +254,8 @@ RigCalibration calibration_by_tape(const RigFile& rig, const ImportFile& import,
                                std::to_string(first.mosaic.cols) + " x " + std::to_string(first.mosaic.rows) +
                                "; give the lens of this camera");
   } else {
-    const double f_px = rig.focal_length_guess_px;
+    const auto [f_px, from] = focal_length(rig, first);
+    lens_from = from;
     result.lens.lens = {.width_px = first.mosaic.cols,
                         .height_px = first.mosaic.rows,
                         .fx_px = f_px,
@@ -248,9 +264,9 @@ RigCalibration calibration_by_tape(const RigFile& rig, const ImportFile& import,
                         .cy_px = (first.mosaic.rows - 1) / 2.0,
                         .distortion = {}};
     result.lens.lattice = {.columns = 2, .rows = 2, .spacing_mm = 1};
-    result.lens.covariance = Eigen::MatrixXd::Identity(9, 9) * std::pow(0.02 * f_px, 2);
+    result.lens.covariance = Eigen::MatrixXd::Identity(9, 9) * std::pow(kFocalLength * f_px, 2);
     result.lens.projection_sigma_px =
-        Eigen::MatrixXd::Constant(calibration::kGridRows, calibration::kGridColumns, 0.02 * f_px);
+        Eigen::MatrixXd::Constant(calibration::kGridRows, calibration::kGridColumns, kFocalLength * f_px);
   }
   result.platform.world_from_camera = rig.world_from_camera_by_tape;
   result.platform.axis_covariance =
@@ -262,12 +278,12 @@ RigCalibration calibration_by_tape(const RigFile& rig, const ImportFile& import,
     result.light.aim_irradiance_sigma.push_back(2 * kTape_mm / (position - rig.lamp_aim_mm).norm());
   }
   result.light.intensity = *import.lamp_intensity_mm2;
-  result.light.gates = {
-      {.name = "measured by tape",
-       .value = kTape_mm,
-       .limit = 0,
-       .passed = false,
-       .reason = "camera and lamps stand where a tape says; calibrate the rig for figures to rely on"}};
+  result.light.gates = {{.name = "measured by tape",
+                         .value = kTape_mm,
+                         .limit = 0,
+                         .passed = false,
+                         .reason = "camera and lamps stand where a tape says, the focal length is by " + lens_from +
+                                   "; calibrate the rig for figures to rely on"}};
   return result;
 }
 

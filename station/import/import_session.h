@@ -26,7 +26,7 @@ RunState import_session(const ImportRequest& request);
 Plan plan_of(const ImportFile& import, const std::vector<double>& exposures_s);
 
 // Where camera and lamps stand by the rig file's tape, with a standard error of 10 mm; the lens from a lens file or, without
-// distortion, from the rig's focal length.
+// distortion, from the focal length that the pictures' EXIF gives in 35 mm format, else from the rig's.
 RigCalibration calibration_by_tape(const RigFile& rig, const ImportFile& import,
                                    const calibration::SensorPicture& first, const std::string& utc);
 

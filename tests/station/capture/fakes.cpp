@@ -200,6 +200,7 @@ Plan small_plan() {
   for (const char* id : {"pose-horizontal-1", "reflection-horizontal-1", "reflection-horizontal-2", "transmission-1",
                          "dark-reflection-horizontal-1", "dark-reflection-horizontal-2", "dark-transmission-1"}) {
     plan.steps.push_back(*find_step(whole, id));
+    plan.steps.back().verify.clear();  // fakes show nothing
   }
   return plan;
 }

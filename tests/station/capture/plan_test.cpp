@@ -62,6 +62,7 @@ TEST(Plan, ABracketsExposuresFollowTheirViewUnderTheSameLight) {
       exposure.kind = view.kind;
       exposure.exposure_of = {};
       exposure.stops = 0;
+      exposure.verify = view.verify;  // its view has been looked at
       EXPECT_EQ(exposure, view);
     }
   }
@@ -144,6 +145,23 @@ TEST(Plan, AnUnknownKeyIsAnErrorThatNamesTheKeyAndTheFile) {
 TEST(Plan, TakesLongerWithMoreSteps) {
   EXPECT_GT(estimated_duration_s(make_capture_plan({})), estimated_duration_s(small_plan()));
   EXPECT_GT(estimated_duration_s(small_plan()), 0);
+}
+
+TEST(Plan, SaysWhatEachPictureMustBeVerifiedForAndOthersAreRefusedWithoutHardware) {
+  const Plan plan = make_capture_plan({.bracket_stops = {-2}, .reference_patch = true});
+  for (const PlanStep& step : plan.steps) EXPECT_FALSE(step.verify.empty()) << step.id;
+  EXPECT_THAT(find_step(plan, "pose-vertical-1")->verify, testing::Contains("tags"));
+  EXPECT_THAT(find_step(plan, "transmission-2")->verify, testing::Contains("lamp"));
+  EXPECT_EQ(plan_from_json(plan_to_json(plan), "plan.json"), plan);
+  const std::string unknown = problem_after("transmission-2", [](PlanStep& step) {
+    step.verify = {"focus", "orientation"};
+  });
+  EXPECT_THAT(unknown, HasSubstr("'transmission-2'"));
+  EXPECT_THAT(unknown, HasSubstr("verify names 'orientation'"));
+  EXPECT_THAT(unknown, HasSubstr("lamp_side")) << "what there is instead";
+  nlohmann::json document = plan_to_json(plan);
+  document["steps"][0]["verify"] = "tags";
+  EXPECT_THAT(message_of([&] { plan_from_json(document, "plan.json"); }), HasSubstr("verify"));
 }
 
 TEST(Plan, TheDocumentedPlanIsReadAndWrittenAlike) {

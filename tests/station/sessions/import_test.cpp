@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "rig/raw_writer.h"
 #include "station/capture/plan_file.h"
 #include "station/develop/develop_session.h"
 #include "station/documents/reader.h"
@@ -85,6 +86,34 @@ TEST_F(Import, WithoutACalibrationTheRigsTapeSaysWhereThingsStand) {
   const RigCalibration calibration = read_calibration(folder / "by_tape/calibration");
   EXPECT_FALSE(calibration::all_passed(all_gates(calibration)));
   EXPECT_TRUE(verify_session(folder / "by_tape").sound());
+}
+
+// The same mosaic in a file that also says how long the lens was.
+fs::path with_focal_length(const fs::path& file, double focal_length_mm, const fs::path& to) {
+  const calibration::SensorPicture picture = calibration::read_sensor_file(file);
+  const std::vector<std::byte> bytes =
+      rig::encode_raw({.mosaic = picture.mosaic,
+                       .settings = {picture.exposure_s, picture.iso, picture.f_number},
+                       .utc = "2026-11-21T10:20:30.000Z",
+                       .serial = picture.serial,
+                       .focal_length_mm = focal_length_mm});
+  write_text(to, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  return to;
+}
+
+TEST_F(Import, WithoutALensFileTheFocalLengthIsThatOfExifElseTheEngravedOne) {
+  const fs::path said = recorded_session() / "raw/reflection-horizontal-1.arw";
+  const RigFile rig = read_rig(folder / "rig.json");
+  const ImportFile import{.lamp_intensity_mm2 = Eigen::Vector3d(1, 1, 1)};
+  const auto by_tape = [&](const fs::path& file) {
+    return calibration_by_tape(rig, import, calibration::read_sensor_file(file), "2026-11-21T10:20:30.000Z");
+  };
+  const RigCalibration engraved = by_tape(said);
+  EXPECT_EQ(engraved.lens.lens.fx_px, rig.focal_length_guess_px);
+  EXPECT_THAT(engraved.light.gates.at(0).reason, HasSubstr("focal_length_guess_px"));
+  const RigCalibration exif = by_tape(with_focal_length(said, 135, folder / "135.arw"));
+  EXPECT_NEAR(exif.lens.lens.fx_px, 135 * std::hypot(300, 200) / std::hypot(36, 24), 1e-9);
+  EXPECT_THAT(exif.light.gates.at(0).reason, HasSubstr("EXIF, 135"));
 }
 
 TEST_F(Import, TheDocumentedListIsRead) {

@@ -1,0 +1,37 @@
+// Waiting until a lamp that was just switched on has warmed up: test pictures of one exposure, some seconds apart, in which
+// the reference patch is read. They are not kept.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "rig/camera.h"
+#include "rig/clock.h"
+#include "station/capture/plan.h"
+
+namespace station {
+
+struct LampWatch {
+  double interval_s = 10;         // from one reading to the next; 0: the lamp is not watched
+  double largest_change = 0.005;  // of the lamp's strength in an interval, when it is steady
+  double limit_s = 600;           // a lamp that is not steady by then is given up
+};
+
+struct LampSettling {
+  int test_pictures = 0;
+  double waited_s = 0;
+  std::optional<double> change;  // relative, in the last interval; nothing: the lamp cannot be read
+};
+
+// Strength of the lamp in a test picture, in any unit; nothing where it cannot be read.
+using ReadLamp = std::function<std::optional<double>(const PlanStep&, const rig::Picture& test)>;
+
+// The camera is set already. `between` is called every second and before each picture, and may throw to end the run;
+// `said` is given a line for the person when the lamp is not steady yet. Errors: those of the camera; std::runtime_error
+// when the limit is reached.
+LampSettling watch_lamp(rig::Camera& camera, rig::Clock& clock, const PlanStep& step, const LampWatch& watch,
+                        const ReadLamp& read, const std::function<void()>& between,
+                        const std::function<void(const std::string&)>& said);
+
+}  // namespace station
