@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "station/capture/verify.h"
-#include "tests/station/capture/fakes.h"
+#include "tests/station/capture/runner_test.h"
 
 namespace station {
 namespace {
@@ -21,27 +21,6 @@ Verdict bad_verdict(const std::string& check, const std::string& reason, bool ma
                         .reason = reason,
                         .may_pass_again = may_pass_again}}};
 }
-
-class RunnerTest : public testing::Test {
- protected:
-  std::string last_outcome() const {
-    const JournalRecord last = records_of(path).back();
-    return last.event == "stop" ? last.data.at("outcome").get<std::string>() : last.event;
-  }
-
-  // Runs on fresh devices, as after a new start of the program.
-  void expect_resume_completes(const Plan& plan) const {
-    FakeStation fresh;
-    EXPECT_EQ(fresh.run(path, plan), RunState::complete);
-    const VerifyReport report = verify_session(path);
-    EXPECT_THAT(report.problems, testing::IsEmpty());
-    EXPECT_TRUE(report.complete);
-  }
-
-  TemporaryFolder folder;
-  fs::path path = folder / "session";
-  FakeStation fake;
-};
 
 TEST_F(RunnerTest, TakesThe17ViewsAndEveryOtherStepOfThePlan) {
   const Plan plan = make_capture_plan({});
@@ -436,67 +415,6 @@ TEST_F(RunnerTest, ViewsStayApprovedOnlyIfTheFaultCouldNotHaveTouchedThem) {
   FakeStation fresh;
   fresh.options.inspect = inspect(false);
   EXPECT_EQ(fresh.run(path, small_plan()), RunState::complete);
-}
-
-// A lamp that has a tenth less light when it is switched on, and gains it with a time constant of half a minute.
-struct ColdLamp : RunnerTest {
-  ColdLamp() {
-    fake.camera.radiance = [this] {
-      const bool on = !fake.person.asked.empty() && fake.person.asked.back().lamp != rig::Lamp::off;
-      if (!on) on_since_s = -1;
-      if (on && on_since_s < 0) on_since_s = fake.clock.monotonic_s();
-      return on ? 1 - missing * std::exp(-(fake.clock.monotonic_s() - on_since_s) / time_constant_s) : 1.0;
-    };
-    fake.options.read_lamp = [](const PlanStep&, const rig::Picture& test) {
-      return std::optional(FakeCamera::level(test) / test.settings.exposure_s);
-    };
-    fake.options.said = [this](const std::string& line) { said.push_back(line); };
-  }
-  std::vector<nlohmann::json> watches() const {
-    std::vector<nlohmann::json> found;
-    for (const JournalRecord& record : records_of(path))
-      if (record.event == "lamp_watch") found.push_back(record.data);
-    return found;
-  }
-  double missing = 0.1, time_constant_s = 30, on_since_s = -1;
-  std::vector<std::string> said;
-};
-
-TEST_F(ColdLamp, IsWaitedForAndThePersonIsToldSo) {
-  EXPECT_EQ(fake.run(path, small_plan()), RunState::complete);
-  ASSERT_EQ(watches().size(), 1U) << "from the front to behind it stays on";
-  // 0.1 exp(-t / 30) (1 - exp(-10 / 30)) of the strength is gained in the ten seconds after t: below half a percent from t = 52.
-  EXPECT_EQ(watches()[0].at("waited_s"), 70);
-  EXPECT_EQ(said.size(), 6U);
-  EXPECT_THAT(said[0], HasSubstr("warming up (3.1 % in 10 s, 0.5 % is steady): waiting, 10 s so far, at most 600 s"));
-}
-
-TEST_F(ColdLamp, ThatIsWarmOrCannotBeReadIsLookedAtOnceAndLeftAlone) {
-  missing = 0;
-  fake.run(path, small_plan());
-  EXPECT_EQ(watches().at(0).at("test_pictures"), 2);
-  EXPECT_TRUE(said.empty());
-  fake.options.read_lamp = [](const PlanStep&, const rig::Picture&) { return std::optional<double>(); };
-  path = folder / "unread";
-  fake.run(path, small_plan());
-  EXPECT_EQ(watches().at(0).at("test_pictures"), 1);
-  EXPECT_FALSE(watches()[0].contains("change"));
-}
-
-TEST_F(ColdLamp, ThatNeverSettlesIsGivenUpInOneLineAndTheSessionResumes) {
-  missing = -5, time_constant_s = 1000;  // fades: 0.7 % in the ten seconds after ten minutes
-  const std::string message = message_of([&] { fake.run(path, small_plan()); });
-  EXPECT_THAT(message, HasSubstr("the lamp still changes after 600 s"));
-  EXPECT_EQ(message.find('\n'), std::string::npos);
-  EXPECT_EQ(last_outcome(), "suspended");
-  EXPECT_EQ(pictures_of(path).size(), 1U) << "no view was kept";
-  expect_resume_completes(small_plan());
-}
-
-TEST_F(ColdLamp, MayBePausedWhileItIsWaitedFor) {
-  fake.options.stop_wish = [this] { return said.empty() ? StopWish::none : StopWish::pause; };
-  EXPECT_EQ(fake.run(path, small_plan()), RunState::paused);
-  EXPECT_EQ(said.size(), 1U);
 }
 
 TEST_F(RunnerTest, TheStateOfASessionIsToldByItsJournal) {
