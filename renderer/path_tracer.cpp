@@ -10,10 +10,10 @@
 #include <stdexcept>
 #include <thread>
 
+#include "renderer/lights.h"
 #include "renderer/path_vertex.h"
 #include "renderer/pixel_rays.h"
 #include "renderer/sampler.h"
-#include "renderer/sphere_lights.h"
 
 namespace renderer {
 namespace {
@@ -38,9 +38,7 @@ float mis_weight(float pdf, float other) {
 
 struct PathTracer::Impl {
   explicit Impl(Scene scene)
-      : rays(std::move(scene)),
-        models(prepare_curve_models(scattering_models(rays.scene()))),
-        lights(rays.scene().lights) {}
+      : rays(std::move(scene)), models(prepare_curve_models(scattering_models(rays.scene()))), lights(rays.scene()) {}
 
   // Both count the rays that they trace.
   Array3f radiance(CameraRay camera_ray, Sampler& sampler, int max_vertices, std::uint64_t& traced) const;
@@ -48,7 +46,7 @@ struct PathTracer::Impl {
 
   RayScene rays;
   std::vector<CurveModel> models;
-  SphereLights lights;
+  Lights lights;
 };
 
 // Light sampling's share of the light that reaches a vertex directly and goes on along the path.

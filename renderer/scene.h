@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <functional>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <variant>
 #include <vector>
 
+#include "renderer/environment_map.h"
 #include "renderer/scattering/fiber.h"
 #include "renderer/scattering/thread.h"
 #include "renderer/scattering/yarn.h"
@@ -80,6 +82,7 @@ struct Scene {
   std::vector<CurveSet> curves{};
   std::vector<TriangleMesh> meshes{};
   std::vector<SphereLight> lights{};
+  std::optional<EnvironmentLight> surroundings{};
   std::vector<Cloth> cloths{};
 };
 

@@ -75,6 +75,12 @@ std::optional<Vector3d> SphereLights::sample(const Vector3d& origin, float u_lig
   return direction_in_cone((chosen->center - origin).normalized(), one_minus_cos_cone(*chosen, origin), u);
 }
 
+double SphereLights::power(const Vector3d& origin) const {
+  double sum = 0;
+  for (const SphereLight& light : lights_) sum += 2 * kPi * luminance(light) * one_minus_cos_cone(light, origin);
+  return sum;
+}
+
 double SphereLights::pdf(const Vector3d& origin, const Vector3d& direction) const {
   double total = 0, met = 0;
   for (const SphereLight& light : lights_) {

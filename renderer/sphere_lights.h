@@ -27,6 +27,8 @@ class SphereLights {
   // Unit direction towards a light, u in [0, 1)^3; none when there is no light.
   std::optional<Eigen::Vector3d> sample(const Eigen::Vector3d& origin, float u_light, const Eigen::Vector2f& u) const;
   std::size_t size() const { return lights_.size(); }
+  // Sum over the lights of R + G + B times the solid angle (sr) that each fills seen from there; beams are left out.
+  double power(const Eigen::Vector3d& origin) const;
   // Density of `sample` per solid angle.
   double pdf(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
 

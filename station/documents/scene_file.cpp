@@ -1,8 +1,10 @@
 #include "station/documents/scene_file.h"
 
 #include <cmath>
+#include <stdexcept>
 
 #include "renderer/garment.h"
+#include "renderer/image_file.h"
 #include "renderer/mesh_file.h"
 #include "renderer/weave/patch_curves.h"
 #include "renderer/weave/woven_patch.h"
@@ -170,6 +172,24 @@ renderer::SphereLight parse_light(ObjectReader reader) {
   return light;
 }
 
+// An environment that has a file is a picture, of which there can be one.
+void parse_surroundings(ObjectReader reader, const std::filesystem::path& folder, SceneFile& scene) {
+  reader.choice("kind", {"environment"});
+  if (scene.surroundings) reader.refuse("file", "there are surroundings already; give one picture of them");
+  const std::filesystem::path file = folder / reader.text("file");
+  renderer::EnvironmentLight light{.radiance = renderer::read_exr(file)};
+  try {
+    renderer::EnvironmentMap checked(light);
+  } catch (const std::runtime_error& problem) {
+    reader.refuse("file", file.string() + ": " + problem.what());
+  }
+  if (reader.has("scale")) light.radiance *= reader.number("scale", 1e-9, 1e9);
+  if (reader.has("turn_deg")) light.turn_rad = reader.number("turn_deg", -360, 360) * renderer::kPi / 180;
+  if (reader.has("visible")) light.visible = reader.flag("visible");
+  reader.finish();
+  scene.surroundings = std::move(light);
+}
+
 renderer::Camera parse_camera(ObjectReader reader) {
   const Vector3d eye = point(reader, "eye_mm"), target = point(reader, "target_mm");
   const Vector3d up = reader.has("up") ? reader.vector3("up") : Vector3d::UnitZ();
@@ -211,8 +231,13 @@ SceneFile parse_scene(const json& document, const std::string& source, const std
   if (reader.has("objects"))
     for (const ObjectReader& object : reader.objects("objects"))
       scene.objects.push_back(parse_object(object, folder));
-  for (const ObjectReader& light : reader.objects("lights")) scene.lights.push_back(parse_light(light));
-  if (scene.lights.empty()) reader.refuse("lights", "the list is empty and the picture would be black; add a light");
+  for (const ObjectReader& light : reader.objects("lights"))
+    if (light.has("file"))
+      parse_surroundings(light, folder, scene);
+    else
+      scene.lights.push_back(parse_light(light));
+  if (scene.lights.empty() && !scene.surroundings)
+    reader.refuse("lights", "the list is empty and the picture would be black; add a light");
   scene.camera = parse_camera(reader.object("camera"));
   if (reader.has("samples_per_pixel")) scene.samples_per_pixel = reader.integer("samples_per_pixel", 1, 1 << 20);
   if (reader.has("exposure")) scene.exposure = reader.number("exposure", 1e-12, 1e12);
@@ -240,6 +265,7 @@ renderer::Scene to_scene(const SceneFile& file) {
   for (const SceneBody& body : file.objects)
     scene.meshes.push_back(renderer::body_of(body.shape, body.world_from_object, body.albedo));
   scene.lights = file.lights;
+  scene.surroundings = file.surroundings;
   return scene;
 }
 

@@ -166,6 +166,8 @@ TEST(SceneFile, EachMistakeIsRefusedInOneLineThatNamesIt) {
       {"/lights", json::array(), "lights"},
       {"/lights/0/radiance", {1, 1, 1}, "either radiance or intensity_mm2"},
       {"/lights/0/intensity_mm2", {1, -1, 1}, "from 0 to"},
+      {"/lights/0", {{"kind", "environment"}, {"file", "none.exr"}}, "none.exr"},
+      {"/lights/0", {{"kind", "sphere"}, {"file", "none.exr"}}, "lights[0].kind"},
       {"/lights/0/radius_mm", -1, "lights[0].radius_mm"},
       {"/camera/eye_mm", {0, 0, 0}, "camera.target_mm"},
       {"/camera/up", {0, 0, 1}, "camera.up"},
