@@ -22,8 +22,7 @@ namespace inversion {
 struct BiasFreeTerms {
   double loss = 0;
   Eigen::VectorXd gradient;
-  Eigen::MatrixXd hessian;                // approximate, symmetric; need not be positive
-  Eigen::MatrixXd gradient_covariance{};  // what other noise of paths and pictures would do to the gradient
+  Eigen::MatrixXd hessian;  // approximate, symmetric; need not be positive
 };
 // Traces anew.
 using BiasFreeLoss = std::function<BiasFreeTerms(int step, const Eigen::VectorXd& unknowns)>;

@@ -168,22 +168,27 @@ Attempt search_by_rounds(ViewObjective& objective, const Search& search, const s
   return best;
 }
 
-BiasFreeTerms data_terms(const ViewObjective& objective, const VectorXd& unknowns) {
-  const ViewObjective::Halves both = objective.halves(unknowns);
+BiasFreeTerms data_terms(const ViewObjective::Halves& both) {
   const auto& [a, b] = both.residuals;
   const auto& [by_a, by_b] = both.jacobians;
   const Eigen::MatrixXd product = by_a.transpose() * by_b;
-  BiasFreeTerms terms{.loss = 0.5 * a.dot(b),
-                      .gradient = VectorXd::Zero(unknowns.size()),
-                      .hessian = 0.5 * (product + product.transpose()),
-                      .gradient_covariance = Eigen::MatrixXd::Zero(unknowns.size(), unknowns.size())};
+  return {.loss = 0.5 * a.dot(b),
+          .gradient = 0.5 * (by_a.transpose() * b + by_b.transpose() * a),
+          .hessian = 0.5 * (product + product.transpose())};
+}
+
+// What other noise of paths and pictures would do to the gradient of data_terms: summed over blocks, whose three colours
+// share their paths.
+Eigen::MatrixXd gradient_covariance(const ViewObjective::Halves& both) {
+  const auto& [a, b] = both.residuals;
+  const auto& [by_a, by_b] = both.jacobians;
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(by_a.cols(), by_a.cols());
   for (Eigen::Index row = 0; row < a.size(); row += 3) {
     const VectorXd of_block = 0.5 * (by_a.middleRows<3>(row).transpose() * b.segment<3>(row) +
                                      by_b.middleRows<3>(row).transpose() * a.segment<3>(row));
-    terms.gradient += of_block;
-    terms.gradient_covariance += of_block * of_block.transpose();
+    covariance += of_block * of_block.transpose();
   }
-  return terms;
+  return covariance;
 }
 
 // From where the search has ended. The last step's paths remain recorded.
@@ -198,7 +203,7 @@ void remove_bias(ViewObjective& objective, const Search& search, Attempt& attemp
       if (options.progress && !options.progress(name, 1)) throw std::runtime_error(kStopped);
     });
     BiasFreeTerms terms = others.at(unknowns);
-    const BiasFreeTerms data = data_terms(objective, unknowns);
+    const BiasFreeTerms data = data_terms(objective.halves(unknowns));
     return BiasFreeTerms{terms.loss + data.loss, terms.gradient + data.gradient, terms.hessian + data.hessian};
   };
   if (options.robust) attempt.view_weights = objective.weigh_robustly(attempt.unknowns);
@@ -260,9 +265,9 @@ Certainty certainty_at(const ViewObjective& objective, const Search& search, dou
   fit.residuals.resize(objective.residual_count());
   objective.residuals(unknowns, fit.residuals.data(), jacobian.data());
   fit.jacobian = jacobian;
-  BiasFreeTerms terms = data_terms(objective, unknowns);
-  fit.hessian = std::move(terms.hessian);
-  fit.gradient_covariance = std::move(terms.gradient_covariance);
+  const ViewObjective::Halves both = objective.halves(unknowns);
+  fit.hessian = data_terms(both).hessian;
+  fit.gradient_covariance = gradient_covariance(both);
   fit.variances = objective.residual_variances(unknowns);
   fit.views = objective.residual_views();
   fit.fixed = fixed_unknowns(search, unknowns);

@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
   station::add_target_command(app);
   station::add_recover_command(app);
   station::add_validate_command(app);
+  station::add_validate_cloth_command(app);
   station::add_weave_command(app);
   station::add_render_command(app);
   try {

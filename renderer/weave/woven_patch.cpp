@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <string>
 
@@ -11,6 +12,7 @@
 namespace renderer {
 namespace {
 
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // How flat each yarn is under the loads of the patch at rest.
@@ -49,8 +51,8 @@ RelaxedPatch flattened(YarnPatch start, const Draft& draft, const RelaxationOpti
   return relaxed;
 }
 
-// Of the yarn's thickness at the plies' knots.
-std::vector<double> thickness_of_plies(const Yarn& yarn, int per_knot) {
+// Of the yarn's thickness at its strands' knots.
+std::vector<double> thickness_of_strands(const Yarn& yarn, int per_knot) {
   std::vector<Vector3d> knots;
   for (std::size_t i = 0; i < yarn.thickness.size() * static_cast<std::size_t>(per_knot); ++i)
     knots.push_back({thickness(yarn, static_cast<double>(i) / per_knot), 0, 0});
@@ -72,6 +74,36 @@ std::vector<double> shares_of_turns(const Yarn& yarn, int knots, int per_knot) {
   return shares;
 }
 
+// A strand inside a yarn, with `per_knot` knots of its own for each of the yarn's; place(i): of its i-th knot in the round
+// section, mm (Strands::places). A flat yarn is the round one with its strands, pressed: they are as flat as it is, so
+// those that touch keep touching.
+Yarn strand_of(const YarnPatch& patch, const Yarn& yarn, double radius_mm, int per_knot,
+               const std::function<Vector2d(int)>& place) {
+  if (radius_mm > yarn.radius_mm)
+    throw std::runtime_error("weave: a strand of radius " + std::to_string(radius_mm) +
+                             " mm is thicker than its yarn of " + std::to_string(yarn.radius_mm) + " mm");
+  const PeriodicSpline line = center_line(patch, yarn);
+  const int knots = static_cast<int>(line.control_points.size()) * per_knot;
+  const double flat = std::sqrt(yarn.flatness);
+  const Vector3d side = yarn.warp ? Vector3d::UnitX() : Vector3d::UnitY();
+  Yarn strand = yarn;
+  strand.radius_mm = radius_mm;
+  strand.thickness = thickness_of_strands(yarn, per_knot);
+  strand.twist.clear();
+  strand.threads.clear();
+  std::vector<Vector3d> points;
+  for (int i = 0; i < knots; ++i) {
+    if (!yarn.threads.empty()) strand.threads.push_back(thread_of_segment(yarn, i / per_knot));
+    const double t = static_cast<double>(i) / per_knot;
+    // Yarns of a cloth never run upright, so a frame with one axis in its plane turns as little as they do.
+    const Vector3d along = spline_value(line, t, 1).normalized(), up = along.cross(side).normalized();
+    const Vector2d at = thickness(yarn, t) * place(i);
+    points.push_back(spline_value(line, t) + flat * at.x() * up.cross(along) + at.y() / flat * up);
+  }
+  strand.control_points = spline_through(points, line.period).control_points;
+  return strand;
+}
+
 }  // namespace
 
 double ply_radius_mm(const Plies& plies, double yarn_radius_mm) {
@@ -85,43 +117,37 @@ YarnPatch with_plies(const YarnPatch& patch, const Plies& plies) {
   YarnPatch twisted = patch;
   twisted.yarns.clear();
   for (const Yarn& yarn : patch.yarns) {
-    const PeriodicSpline line = center_line(patch, yarn);
-    const int knots = static_cast<int>(line.control_points.size());
-    const double turns = std::round(plies.turns_per_mm * spline_length(line));
+    const double length_mm = spline_length(center_line(patch, yarn)), turns = std::round(plies.turns_per_mm * length_mm);
+    const int knots = static_cast<int>(yarn.control_points.size());
     const int per_knot = std::max(1, static_cast<int>(std::ceil(kPointsPerTurn * std::abs(turns) / knots)));
-    Yarn ply = yarn;
-    ply.radius_mm = ply_radius_mm(plies, yarn.radius_mm);
-    if (ply.radius_mm > yarn.radius_mm)
-      throw std::runtime_error("weave: a ply of radius " + std::to_string(ply.radius_mm) +
-                               " mm is thicker than its yarn of " + std::to_string(yarn.radius_mm) + " mm");
-    ply.tex = yarn.tex / plies.count;
-    ply.thickness = thickness_of_plies(yarn, per_knot);
-    ply.twist.clear();
-    ply.threads.clear();
-    for (int i = 0; i < (yarn.threads.empty() ? 0 : knots * per_knot); ++i)
-      ply.threads.push_back(thread_of_segment(yarn, i / per_knot));
+    const double radius_mm = ply_radius_mm(plies, yarn.radius_mm);
     const std::vector<double> turned = shares_of_turns(yarn, knots, per_knot);
-    // A flat yarn is the round one with its plies, pressed: the plies are as flat as it is, so they keep touching.
-    const double room = yarn.radius_mm - ply.radius_mm, flat = std::sqrt(yarn.flatness), wide = room * flat,
-                 high = room / flat;
-    const Vector3d side = yarn.warp ? Vector3d::UnitX() : Vector3d::UnitY();
     for (int k = 0; k < plies.count; ++k) {
-      std::vector<Vector3d> points;
-      for (int i = 0; i < knots * per_knot; ++i) {
-        const double t = static_cast<double>(i) / per_knot, thick = thickness(yarn, t);
+      Yarn ply = strand_of(patch, yarn, radius_mm, per_knot, [&](int i) {
         const double angle =
             2 * M_PI * (turns * turned[static_cast<std::size_t>(i)] + static_cast<double>(k) / plies.count);
-        // Yarns of a cloth never run upright, so a frame with one axis in its plane turns as little as they do.
-        const Vector3d along = spline_value(line, t, 1).normalized(), up = along.cross(side).normalized();
-        const Vector3d across = up.cross(along);
-        points.push_back(spline_value(line, t) +
-                         thick * (wide * std::cos(angle) * across + high * std::sin(angle) * up));
-      }
-      ply.control_points = spline_through(points, line.period).control_points;
-      twisted.yarns.push_back(ply);
+        return Vector2d((yarn.radius_mm - radius_mm) * Vector2d(std::cos(angle), std::sin(angle)));
+      });
+      ply.tex = yarn.tex / plies.count;
+      twisted.yarns.push_back(std::move(ply));
     }
   }
   return twisted;
+}
+
+YarnPatch with_strands(const YarnPatch& patch, const std::vector<Strands>& of_yarns) {
+  if (of_yarns.size() != patch.yarns.size())
+    throw std::invalid_argument("with_strands: " + std::to_string(of_yarns.size()) + " bundles for " +
+                                std::to_string(patch.yarns.size()) + " yarns");
+  YarnPatch divided = patch;
+  divided.yarns.clear();
+  for (std::size_t i = 0; i < of_yarns.size(); ++i)
+    for (const Vector2d& place : of_yarns[i].places) {
+      Yarn strand = strand_of(patch, patch.yarns[i], of_yarns[i].radius_mm, 1, [&](int) { return place; });
+      strand.tex = 0;
+      divided.yarns.push_back(std::move(strand));
+    }
+  return divided;
 }
 
 RelaxedPatch woven_patch(const Draft& draft, const RelaxationOptions& options) {

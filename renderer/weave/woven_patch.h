@@ -8,6 +8,9 @@
 // stretched pieces would show.
 #pragma once
 
+#include <Eigen/Core>
+#include <vector>
+
 #include "renderer/weave/relaxation.h"
 
 namespace renderer {
@@ -17,6 +20,18 @@ RelaxedPatch woven_patch(const Draft& draft, const RelaxationOptions& options = 
 
 // Each yarn of the patch as its plies; what was measured stays that of the yarns.
 YarnPatch with_plies(const YarnPatch& patch, const Plies& plies);
+// Round strands that keep their places in a yarn's section all along it, as untwisted fibers do.
+struct Strands {
+  double radius_mm = 0;
+  // mm, of the round section: across the yarn in the cloth's plane, and by the third axis of a frame that is right-handed
+  // along the yarn (up for the weft, down for the warp).
+  std::vector<Eigen::Vector2d> places{};
+};
+// Each yarn of the patch as its strands, `of_yarns` in the order of its yarns; what was measured stays that of the yarns. A
+// flat yarn's strands are pressed as it is. Errors: std::invalid_argument when the counts differ; std::runtime_error when a
+// strand is thicker than its yarn.
+YarnPatch with_strands(const YarnPatch& patch, const std::vector<Strands>& of_yarns);
+
 double ply_radius_mm(const Plies& plies, double yarn_radius_mm);
 
 }  // namespace renderer

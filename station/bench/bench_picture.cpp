@@ -92,7 +92,8 @@ struct Painter {
               "the simulated bench was asked for a cloth on the cylinder and is not told what it is woven of; give "
               "--spool a fabric file with a \"weave\"");
         if (!patch) patch = renderer::woven_patch(spool->fabric->weave->draft).patch;
-        add_cloth_on_cylinder(scene, spool->fabric->cylinder, *patch, spool->fabric->weave->threads);
+        add_cloth_on_cylinder(scene, spool->fabric->cylinder, *patch,
+                              {spool->fabric->weave->threads.begin(), spool->fabric->weave->threads.end()});
         break;
     }
     const rig::BenchTruth& truth = rig.simulation->truth;
@@ -131,10 +132,19 @@ struct Painter {
   }
 };
 
-// Random sequential placement may end a fiber short of what another order of the same circles would hold: try again.
+}  // namespace
+
+const SimulatedFibers& simulated_fibers(const Spool& spool) {
+  if (!spool.simulation)
+    throw std::runtime_error("spool \"" + spool.name +
+                             "\" has no \"simulation\" part; the simulated bench cannot draw it");
+  return *spool.simulation;
+}
+
 std::vector<Eigen::Vector2d> fiber_centres(const Spool& spool, std::uint64_t seed) {
-  const SimulatedFibers& fibers = *spool.simulation;
+  const SimulatedFibers& fibers = simulated_fibers(spool);
   std::size_t most = 0;
+  // Random sequential placement may end a fiber short of what another order of the same circles would hold: try again.
   for (int attempt = 0; attempt < kPackingTries; ++attempt) {
     const auto centres =
         renderer::pack_fibers(spool.wrapping.thread_diameter_mm / 2, fibers.fiber_radius_mm, fibers.min_gap_mm,
@@ -147,13 +157,8 @@ std::vector<Eigen::Vector2d> fiber_centres(const Spool& spool, std::uint64_t see
                            " fibers fit into a thread at random; make fibers_per_thread or fiber_radius_mm smaller");
 }
 
-}  // namespace
-
 renderer::CurveSet spool_fibers(const Spool& spool) {
-  if (!spool.simulation)
-    throw std::runtime_error("spool \"" + spool.name +
-                             "\" has no \"simulation\" part; the simulated bench cannot draw it");
-  const SimulatedFibers& fibers = *spool.simulation;
+  const SimulatedFibers& fibers = simulated_fibers(spool);
   renderer::CurveSet curves;
   curves.scattering = fibers.scattering;
   std::uint64_t seed = fibers.seed * 1000;  // a stream of its own for every thread of every spool

@@ -1,7 +1,10 @@
 // What the simulated bench looks like: the spool as fibers, printed targets, platform, table and lamps, path-traced.
 #pragma once
 
+#include <Eigen/Core>
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "rig/simulated_bench.h"
 #include "station/documents/rig_file.h"
@@ -12,6 +15,12 @@ namespace station {
 // The function that rig's simulated camera calls. `spool` may be absent as long as no holder is drawn.
 // Throws std::runtime_error when the spool has no "simulation" part or its fibers do not fit into the thread.
 rig::DrawPicture make_bench_picture(const RigFile& rig, const std::optional<Spool>& spool);
+
+// What the spool's threads are simulated of. Errors: std::runtime_error when it has no "simulation" part.
+const SimulatedFibers& simulated_fibers(const Spool& spool);
+
+// Places of a thread's fibers in its section, mm from its axis. Errors: as above, and when they do not fit.
+std::vector<Eigen::Vector2d> fiber_centres(const Spool& spool, std::uint64_t seed);
 
 // Every thread of the spool as its fibers, holder frame (mm).
 renderer::CurveSet spool_fibers(const Spool& spool);

@@ -9,28 +9,12 @@
 namespace station {
 namespace {
 
-nlohmann::json to_json(const PredictedView& view) {
-  const Comparison& found = view.comparison;
-  return {{"view", view.view},
-          {"prediction", view.prediction.string()},
-          {"block_px", view.block_px},
-          {"blocks", found.blocks},
-          {"mean_delta_e_2000", found.mean_delta_e},
-          {"delta_e_2000_95", found.delta_e_95},
-          {"scale", found.scale},
-          {"relative_rmse", found.relative_rmse},
-          {"profile_correlation", found.profile_correlation},
-          {"photograph_peak_px", found.photograph.peak_px},
-          {"rendering_peak_px", found.rendering.peak_px}};
-}
-
 void print(const PredictedView& view) {
   const Comparison& found = view.comparison;
   std::printf(
-      "%s: colour difference (CIEDE2000) mean %.2f, 95 %% below %.2f, over %d blocks of %d px; relative RMSE %.1f "
-      "%%; "
-      "photograph %.3f times as bright as predicted; highlight photographed at column %.0f, predicted at %.0f\n  "
-      "%s\n",
+      "%s: colour difference (CIEDE2000) mean %.2f, 95 %% below %.2f, over %d blocks of %d px; relative RMSE %.1f %%; "
+      "photograph %.3f times as bright as predicted; highlight photographed at column %.0f, predicted at %.0f\n"
+      "  %s\n",
       view.view.c_str(), found.mean_delta_e, found.delta_e_95, found.blocks, view.block_px, 100 * found.relative_rmse,
       found.scale, found.photograph.peak_px, found.rendering.peak_px, view.beside.c_str());
 }

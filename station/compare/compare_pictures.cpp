@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "calibration/colour_chart.h"
@@ -69,28 +70,35 @@ std::vector<BlockPair> block_pairs(const cv::Mat3f& photograph, const cv::Mat3f&
   return pairs;
 }
 
-HighlightProfile profile(const cv::Mat3f& picture, const cv::Mat1b& mask, double scale) {
-  HighlightProfile result;
-  result.brightness.assign(static_cast<std::size_t>(picture.cols), 0);
-  std::vector<int> counts(result.brightness.size(), 0);
-  for (int row = 0; row < picture.rows; ++row)
-    for (int column = 0; column < picture.cols; ++column) {
+// Of each column inside the mask; black where it has no pixel.
+std::vector<Eigen::Array3d> column_means(const cv::Mat3f& picture, const cv::Mat1b& mask, double scale) {
+  std::vector<Eigen::Array3d> means;
+  for (int column = 0; column < picture.cols; ++column) {
+    Eigen::Array3d sum = Eigen::Array3d::Zero();
+    int count = 0;
+    for (int row = 0; row < picture.rows; ++row) {
       if (mask(row, column) == 0) continue;
-      const auto at = static_cast<std::size_t>(column);
       const cv::Vec3f& pixel = picture(row, column);
-      result.brightness[at] += scale * (pixel[0] + pixel[1] + pixel[2]) / 3.0;
-      ++counts[at];
+      sum += scale * Eigen::Array3d(pixel[0], pixel[1], pixel[2]);
+      ++count;
     }
-  for (std::size_t i = 0; i < counts.size(); ++i)
-    if (counts[i] > 0) result.brightness[i] /= counts[i];
-  return result;
+    means.push_back(sum / std::max(1, count));
+  }
+  return means;
 }
 
-void find_highlight(HighlightProfile& profile, double unit) {
-  for (double& value : profile.brightness) value /= unit;
-  const int reach = std::max(1, static_cast<int>(profile.brightness.size()) / 100);
-  const int count = static_cast<int>(profile.brightness.size());
-  std::vector<double> smooth(profile.brightness.size(), 0);
+double brightest(const std::vector<Eigen::Array3d>& columns) {
+  double most = 0;
+  for (const Eigen::Array3d& column : columns) most = std::max(most, column.mean());
+  return most;
+}
+
+// Brightness in units of `unit`.
+HighlightProfile highlight_of(const std::vector<Eigen::Array3d>& columns, double unit, const Matrix& colour) {
+  HighlightProfile profile;
+  for (const Eigen::Array3d& column : columns) profile.brightness.push_back(column.mean() / unit);
+  const int count = static_cast<int>(columns.size()), reach = std::max(1, count / 100);
+  std::vector<double> smooth(columns.size(), 0);
   for (int i = 0; i < count; ++i) {
     const int from = std::max(0, i - reach), to = std::min(count - 1, i + reach);
     for (int j = from; j <= to; ++j)
@@ -98,8 +106,15 @@ void find_highlight(HighlightProfile& profile, double unit) {
   }
   const auto peak = std::ranges::max_element(smooth);
   profile.peak_px = static_cast<double>(peak - smooth.begin());
-  profile.width_px =
-      static_cast<double>(std::ranges::count_if(smooth, [&](double value) { return value > *peak / 2; }));
+  profile.peak = *peak;
+  Eigen::Array3d light = Eigen::Array3d::Zero();
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    if (smooth[i] > profile.peak / 2) light += columns[i], profile.width_px += 1;
+  if (light.maxCoeff() > 0) {
+    const Eigen::Vector3d lab = calibration::lab_of_linear_srgb((colour * (light / light.maxCoeff()).matrix()).cwiseMax(0));
+    profile.hue_deg = std::atan2(lab.z(), lab.y()) * 180 / M_PI;
+  }
+  return profile;
 }
 
 double correlation(const std::vector<double>& a, const std::vector<double>& b) {
@@ -131,13 +146,31 @@ Comparison compare_pictures(const cv::Mat3f& photograph, const cv::Mat3f& render
   result.median_delta_e = delta_e[delta_e.size() / 2];
   result.delta_e_95 = delta_e[delta_e.size() * 95 / 100];
   result.relative_rmse = std::sqrt(error / signal);
-  result.photograph = profile(photograph, mask, 1);
-  result.rendering = profile(rendering, mask, result.scale);
-  const double unit = *std::ranges::max_element(result.photograph.brightness);
-  find_highlight(result.photograph, unit);
-  find_highlight(result.rendering, unit);
+  const Matrix colour = Eigen::Map<const Matrix>(options.linear_srgb_from_camera.data());
+  const auto photographed = column_means(photograph, mask, 1), rendered = column_means(rendering, mask, result.scale);
+  result.photograph = highlight_of(photographed, brightest(photographed), colour);
+  result.rendering = highlight_of(rendered, brightest(photographed), colour);
   result.profile_correlation = correlation(result.photograph.brightness, result.rendering.brightness);
   return result;
+}
+
+nlohmann::json to_json(const Comparison& comparison) {
+  const auto highlight = [](const HighlightProfile& profile) -> nlohmann::json {
+    return {{"peak_px", profile.peak_px},
+            {"peak", profile.peak},
+            {"width_px", profile.width_px},
+            {"hue_deg", profile.hue_deg},
+            {"brightness", profile.brightness}};
+  };
+  return {{"scale", comparison.scale},
+          {"blocks", comparison.blocks},
+          {"mean_delta_e_2000", comparison.mean_delta_e},
+          {"median_delta_e_2000", comparison.median_delta_e},
+          {"delta_e_2000_95", comparison.delta_e_95},
+          {"relative_rmse", comparison.relative_rmse},
+          {"profile_correlation", comparison.profile_correlation},
+          {"photograph", highlight(comparison.photograph)},
+          {"rendering", highlight(comparison.rendering)}};
 }
 
 cv::Mat3b comparison_picture(const cv::Mat3f& photograph, const cv::Mat3f& rendering, const cv::Mat1b& some_mask,

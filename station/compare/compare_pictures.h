@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <nlohmann/json_fwd.hpp>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -11,8 +12,9 @@ namespace station {
 // Of a row-averaged brightness across the picture: where a cylinder's highlight is and how wide.
 struct HighlightProfile {
   std::vector<double> brightness;  // of each column, relative to the photograph's brightest; 0 outside of the mask
-  double peak_px = 0;              // column of its maximum, smoothed over 2 % of the width
+  double peak_px = 0, peak = 0;    // column and value of its maximum, smoothed over 2 % of the width
   double width_px = 0;             // columns above half of that maximum
+  double hue_deg = 0;              // CIELAB's, of those columns' light
 };
 
 struct Comparison {
@@ -34,6 +36,9 @@ struct CompareOptions {
 // percentile inside the mask. Errors: std::runtime_error for other sizes, an empty mask, or pictures without light.
 Comparison compare_pictures(const cv::Mat3f& photograph, const cv::Mat3f& rendering, const cv::Mat1b& mask,
                             const CompareOptions& options);
+
+// Measures with both profiles; colour differences are CIEDE2000.
+nlohmann::json to_json(const Comparison& comparison);
 
 // Photograph, rendering (scaled) and where they differ (black: nothing, white: a CIEDE2000 of 20), beside each other.
 cv::Mat3b comparison_picture(const cv::Mat3f& photograph, const cv::Mat3f& rendering, const cv::Mat1b& mask,

@@ -46,10 +46,22 @@ void read_length(ObjectReader& reader, const char* key, double least, double& va
   if (reader.has(key)) value = reader.number(key, least, kMostSize);
 }
 
-renderer::MeshShape parse_mesh(ObjectReader& reader, const std::filesystem::path& folder) {
+// What the file that "file" names holds; its errors name the scene as well.
+template <class Read>
+auto named_file(ObjectReader& reader, const std::filesystem::path& folder, const Read& read) {
   const std::filesystem::path file = folder / reader.text("file");
-  renderer::MeshShape shape{.mesh = std::make_shared<renderer::UvMesh>(renderer::read_mesh(file)),
-                            .name = file.string()};
+  try {
+    return read(file);
+  } catch (const std::runtime_error& problem) {
+    reader.refuse("file", problem.what());
+  }
+}
+
+renderer::MeshShape parse_mesh(ObjectReader& reader, const std::filesystem::path& folder) {
+  renderer::MeshShape shape = named_file(reader, folder, [](const std::filesystem::path& file) {
+    return renderer::MeshShape{.mesh = std::make_shared<renderer::UvMesh>(renderer::read_mesh(file)),
+                               .name = file.string()};
+  });
   shape.placement.unit_mm = reader.number("unit_mm", 1e-6, 1e6);
   if (reader.has("uv_mm")) shape.placement.uv_mm = reader.number("uv_mm", 1e-3, 1e6);
   return shape;
@@ -176,13 +188,15 @@ renderer::SphereLight parse_light(ObjectReader reader) {
 void parse_surroundings(ObjectReader reader, const std::filesystem::path& folder, SceneFile& scene) {
   reader.choice("kind", {"environment"});
   if (scene.surroundings) reader.refuse("file", "there are surroundings already; give one picture of them");
-  const std::filesystem::path file = folder / reader.text("file");
-  renderer::EnvironmentLight light{.radiance = renderer::read_exr(file)};
-  try {
-    renderer::EnvironmentMap checked(light);
-  } catch (const std::runtime_error& problem) {
-    reader.refuse("file", file.string() + ": " + problem.what());
-  }
+  renderer::EnvironmentLight light = named_file(reader, folder, [](const std::filesystem::path& file) {
+    renderer::EnvironmentLight read{.radiance = renderer::read_exr(file)};
+    try {
+      renderer::EnvironmentMap checked(read);
+    } catch (const std::runtime_error& problem) {
+      throw std::runtime_error(file.string() + ": " + problem.what());
+    }
+    return read;
+  });
   if (reader.has("scale")) light.radiance *= reader.number("scale", 1e-9, 1e9);
   if (reader.has("turn_deg")) light.turn_rad = reader.number("turn_deg", -360, 360) * renderer::kPi / 180;
   if (reader.has("visible")) light.visible = reader.flag("visible");

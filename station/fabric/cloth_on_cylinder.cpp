@@ -1,5 +1,6 @@
 #include "station/fabric/cloth_on_cylinder.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "renderer/cloth_shape.h"
@@ -24,12 +25,20 @@ std::optional<Eigen::Vector3d> side_point(const renderer::CameraRay& ray, double
 }  // namespace
 
 void add_cloth_on_cylinder(renderer::Scene& scene, const renderer::CylinderShape& cylinder,
-                           const renderer::YarnPatch& patch, const std::vector<renderer::ThreadParameters>& threads) {
+                           const renderer::YarnPatch& patch, const std::vector<renderer::ScatteringModel>& threads) {
   const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
   renderer::CylinderShape cloth = cylinder;
   cloth.radius_mm -= renderer::surface_range(patch).low_mm;
-  scene.cloths.push_back({renderer::surface_of(cloth, patch, here), patch, {threads.begin(), threads.end()}});
+  scene.cloths.push_back({renderer::surface_of(cloth, patch, here), patch, threads});
   scene.meshes.push_back(renderer::body_of(cylinder, here, cv::Vec3f::all(kBlackPaintAlbedo)));
+}
+
+int comparable_block_px(const renderer::YarnPatch& patch, const renderer::Camera& camera) {
+  constexpr double kRepeats = 2;
+  constexpr int kLeast_px = 8;
+  const double distance_mm = camera.world_from_camera.translation().norm();
+  const double repeat_mm = std::max(patch.period_x_mm, patch.period_y_mm);
+  return std::max(kLeast_px, static_cast<int>(std::ceil(kRepeats * repeat_mm * camera.fx / distance_mm)));
 }
 
 cv::Mat1b lit_side(const renderer::CylinderShape& cylinder, const renderer::Camera& camera,

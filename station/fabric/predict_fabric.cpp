@@ -1,7 +1,7 @@
 #include "station/fabric/predict_fabric.h"
 
-#include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "renderer/image_file.h"
@@ -13,8 +13,6 @@
 
 namespace station {
 namespace {
-
-constexpr double kRepeatsPerBlock = 2;
 
 Weave weave_of(const PredictRequest& request, const Spool& photographed) {
   if (!photographed.fabric)
@@ -35,15 +33,14 @@ renderer::SphereLight sphere(const inversion::NearLight& light) {
           .beam_exponent = light.beam_exponent};
 }
 
-// Of an average that does not see which yarn of the repeat lies where: the hand turned the cylinder, and its yarns begin
-// anywhere.
-int block_px_for(const renderer::YarnPatch& patch, const renderer::Camera& camera) {
-  const double distance_mm = camera.world_from_camera.translation().norm();
-  const double repeat_mm = std::max(patch.period_x_mm, patch.period_y_mm);
-  return std::max(8, static_cast<int>(std::ceil(kRepeatsPerBlock * repeat_mm * camera.fx / distance_mm)));
-}
-
 }  // namespace
+
+nlohmann::json to_json(const PredictedView& view) {
+  return {{"view", view.view},
+          {"prediction", view.prediction.string()},
+          {"block_px", view.block_px},
+          {"comparison", to_json(view.comparison)}};
+}
 
 std::vector<PredictedView> predict_fabric(const PredictRequest& request) {
   const SessionFile asked = read_session_file(request.session);
@@ -59,7 +56,7 @@ std::vector<PredictedView> predict_fabric(const PredictRequest& request) {
     const inversion::View& view = photographed.view;
     progress.show(static_cast<int>(predicted.size()), static_cast<int>(developed.views.size()), view.id);
     renderer::Scene scene;
-    add_cloth_on_cylinder(scene, asked.spool.fabric->cylinder, patch, weave.threads);
+    add_cloth_on_cylinder(scene, asked.spool.fabric->cylinder, patch, {weave.threads.begin(), weave.threads.end()});
     scene.lights.push_back(sphere(view.light));
     const renderer::PathTracer tracer(scene);
     const cv::Mat3f picture = tracer.render(
@@ -68,7 +65,7 @@ std::vector<PredictedView> predict_fabric(const PredictRequest& request) {
     PredictedView next{.view = view.id,
                        .prediction = folder / (view.id + ".exr"),
                        .beside = folder / (view.id + ".png"),
-                       .block_px = block_px_for(patch, view.camera),
+                       .block_px = comparable_block_px(patch, view.camera),
                        .comparison = {}};
     const CompareOptions options{
         .fit_scale = true, .block_px = next.block_px, .linear_srgb_from_camera = developed.linear_srgb_from_camera};

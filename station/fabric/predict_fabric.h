@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct PredictedView {
   int block_px = 0;                  // of the averages that are compared: two repeats of the weave or more
   Comparison comparison;
 };
+
+nlohmann::json to_json(const PredictedView& view);
 
 // Writes result/fabric/<view>.exr and .png. Errors: std::runtime_error for a session of a wrapped thread, one that is not
 // developed, a fabric without a weave.

@@ -8,6 +8,7 @@
 #include "rig/noise.h"
 #include "station/capture/plan.h"
 #include "station/checks/capture_checks.h"
+#include "station/fabric/cloth_on_cylinder.h"
 #include "station/views.h"
 
 namespace station {
@@ -39,13 +40,17 @@ renderer::Camera pooled_camera(const rig::TrueLens& truth, calibration::Lens len
   return camera;
 }
 
+const rig::BenchTruth& truth_of(const RigFile& rig) {
+  if (!rig.simulation)
+    throw std::runtime_error("rig \"" + rig.name + "\" has no \"simulation\" part; there are no views to make");
+  return rig.simulation->truth;
+}
+
 }  // namespace
 
 std::vector<inversion::View> synthetic_views(const RigFile& rig, const inversion::WrappedSpool& spool, int width_px,
                                              int height_px, const RigCalibration* calibrated) {
-  if (!rig.simulation)
-    throw std::runtime_error("rig \"" + rig.name + "\" has no \"simulation\" part; there are no views to make");
-  const rig::BenchTruth& truth = rig.simulation->truth;
+  const rig::BenchTruth& truth = truth_of(rig);
   const Plan plan = make_capture_plan(
       {.reflection_angles_deg = rig.reflection_angles_deg, .transmission_angles_deg = rig.transmission_angles_deg});
   std::vector<inversion::View> views;
@@ -68,6 +73,22 @@ std::vector<inversion::View> synthetic_views(const RigFile& rig, const inversion
       view.light = near_light(view.transmission ? truth.back : truth.front, holder_from_world);
     }
     view.mask = inversion::thread_mask(spool, view.camera, view.light, kMaskSamples);
+  }
+  return views;
+}
+
+std::vector<inversion::View> cylinder_views(const RigFile& rig, const renderer::CylinderShape& cylinder, int width_px,
+                                            int height_px) {
+  const rig::BenchTruth& truth = truth_of(rig);
+  const Eigen::Isometry3d cylinder_from_world(Eigen::Translation3d(0, 0, -rig.platform_height_mm));
+  std::vector<inversion::View> views;
+  for (const auto& [id, lamp] : {std::pair("right", truth.front), std::pair("left", truth.front_left)}) {
+    inversion::View& view = views.emplace_back();
+    view.id = id;
+    view.camera = pooled_camera(truth.lens, lens_of(truth.lens), cylinder_from_world * truth.lens.world_from_camera,
+                                width_px, height_px);
+    view.light = near_light(lamp, cylinder_from_world);
+    view.mask = lit_side(cylinder, view.camera, view.light.position);
   }
   return views;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "inversion/view.h"
+#include "renderer/cloth_shape.h"
 #include "renderer/scene.h"
 #include "rig/simulated_bench.h"
 #include "station/documents/calibration_file.h"
@@ -24,6 +25,11 @@ inline constexpr double kPhotographLevel = 0.5;  // of full scale, of one in a t
 // Errors: std::runtime_error when the rig has no simulation.
 std::vector<inversion::View> synthetic_views(const RigFile& rig, const inversion::WrappedSpool& spool, int width_px,
                                              int height_px, const RigCalibration* calibrated = nullptr);
+
+// Of a cloth on the black cylinder in the middle of the platform: "right" and "left", by where the lamp stands; camera and
+// lamp in the cylinder's frame (cloth_on_cylinder.h), the mask its lit side. Errors: as above.
+std::vector<inversion::View> cylinder_views(const RigFile& rig, const renderer::CylinderShape& cylinder, int width_px,
+                                            int height_px);
 
 struct PhotographOptions {
   int samples_per_pixel = 256;

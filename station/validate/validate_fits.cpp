@@ -9,74 +9,22 @@
 
 #include "inversion/agreement.h"
 #include "renderer/image_file.h"
-#include "station/bench/bench_picture.h"
 #include "station/documents/reader.h"
 #include "station/interrupt.h"
 #include "station/invert/fit_document.h"
 #include "station/report/html.h"
+#include "station/validate/photographed_spool.h"
 #include "station/validate/synthetic_views.h"
 
 namespace station {
 namespace {
 
 using inversion::View;
-using Pictures = std::array<cv::Mat3f, 2>;  // with noise of their own
+using Pictures = PictureHalves;
 
 constexpr int kBlock_px = 8;
-constexpr const char* kStopped =
-    "the validation was interrupted; the same command goes on with the photographs it has";
 // Left out, among the reflections and among the transmissions: middle and oblique, both mountings.
 constexpr std::array<std::pair<std::size_t, std::size_t>, 3> kFolds{{{2, 2}, {7, 1}, {10, 3}}};
-
-struct Photographed {
-  std::vector<View> views;  // images: the mean of both photographs
-  std::vector<Pictures> pictures;
-};
-
-void check_running() {
-  if (interrupted()) throw std::runtime_error(kStopped);
-}
-
-// What the pictures depend on, in words.
-std::string made_from(const std::filesystem::path& rig, const std::filesystem::path& spool, int samples,
-                      std::uint64_t seed) {
-  return read_json_file(rig).dump() + read_json_file(spool).dump() + std::to_string(samples) + "/" +
-         std::to_string(seed);
-}
-
-Photographed photograph_spool(const ValidateRequest& request, const RigFile& rig, const Spool& spool,
-                              const std::string& origin, const std::filesystem::path& folder,
-                              const std::function<void(const std::string&, double)>& step) {
-  Photographed made{.views = synthetic_views(rig, spool.wrapping, kPooledWidth_px, kPooledHeight_px), .pictures = {}};
-  std::filesystem::create_directories(folder);
-  const renderer::CurveSet fibers = spool_fibers(spool);
-  for (std::size_t i = 0; i < made.views.size(); ++i) {
-    View& view = made.views[i];
-    Pictures pictures;
-    for (std::size_t half = 0; half < 2; ++half) {
-      check_running();
-      step("photograph " + view.id,
-           (static_cast<double>(2 * i + half)) / (2.0 * static_cast<double>(made.views.size())));
-      const std::uint64_t seed = request.seed * 1000 + 2 * i + half;
-      const std::filesystem::path file = folder / (view.id + (half ? "-b.exr" : "-a.exr"));
-      renderer::ImageHeader header;
-      cv::Mat3f radiance;
-      if (std::filesystem::exists(file)) radiance = renderer::read_exr(file, &header);
-      if (header["threadstation/made_from"] != origin) {
-        radiance = photograph(view, spool.wrapping, fibers,
-                              {.samples_per_pixel = request.samples_per_pixel, .seed = seed, .progress = [](double) {
-                                 return !interrupted();
-                               }});
-        renderer::write_exr(file, radiance, {{"threadstation/made_from", origin}});
-      }
-      pictures[half] =
-          with_sensor_noise(radiance, view.mask, rig.simulation->truth.sensor, kPhotographLevel, seed).radiance;
-    }
-    view.image = 0.5 * (pictures[0] + pictures[1]);
-    made.pictures.push_back(std::move(pictures));
-  }
-  return made;
-}
 
 struct Gathered {
   std::vector<inversion::ViewAgreement> all, reflection, transmission, fitted;
@@ -159,7 +107,7 @@ struct Variant {
 };
 
 std::vector<Variant> variants_of(const ValidateRequest& request, const RigFile& rig, const Spool& spool,
-                                 const Photographed& made) {
+                                 const PhotographedSpool& made) {
   std::vector<Variant> variants;
   for (inversion::ModelKind model : request.models) variants.push_back({.model = model, .views = made.views});
   if (!request.calibration) return variants;
@@ -183,21 +131,24 @@ ValidatedSpool validate_spool(const ValidateRequest& request, const RigFile& rig
                               const std::filesystem::path& spool_file,
                               const std::function<void(const std::string&, double)>& step) {
   const Spool spool = read_spool(spool_file);
-  if (!spool.simulation)
-    throw std::runtime_error("spool \"" + spool.name +
-                             "\" has no \"simulation\" part; there are no fibers to photograph");
   const std::filesystem::path folder = request.out / spool_file.stem();
   constexpr double kPhotographShare = 0.2;  // of each draw
-  const std::string origin = made_from(request.rig, spool_file, request.samples_per_pixel, request.seed);
-  const Photographed made =
-      photograph_spool(request, rig, spool, origin, folder / "photographs",
+  const SpoolPhotographs as_asked{.rig_file = request.rig,
+                                  .spool_file = spool_file,
+                                  .folder = folder / "photographs",
+                                  .samples_per_pixel = request.samples_per_pixel,
+                                  .seed = request.seed};
+  const PhotographedSpool made =
+      photograph_spool(rig, spool, as_asked,
                        [&](const std::string& what, double share) { step(what, kPhotographShare * share); });
   SimulatedFibers placed_anew = *spool.simulation;
   placed_anew.seed += 1000;
   Spool drawn_anew = spool;
   drawn_anew.simulation = placed_anew;
-  const Photographed other =
-      photograph_spool(request, rig, drawn_anew, origin + "/another draw", folder / "another_draw",
+  SpoolPhotographs of_other = as_asked;
+  of_other.folder = folder / "another_draw";
+  const PhotographedSpool other =
+      photograph_spool(rig, drawn_anew, of_other,
                        [&](const std::string& what, double share) { step(what, kPhotographShare * (1 + share)); });
   Gathered draws;
   for (std::size_t i = 0; i < made.views.size(); ++i)

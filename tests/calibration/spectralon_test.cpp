@@ -1,4 +1,5 @@
 #include "calibration/spectralon.h"
+#include "tests/places.h"
 
 #include <gtest/gtest.h>
 

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "renderer/path_tracer.h"
+#include "tests/places.h"
 
 namespace renderer {
 namespace {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scattering_statistics.h"
+#include "tests/places.h"
 
 namespace renderer {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "station/documents/lens_file.h"
 #include "tests/calibration/synthetic_views.h"
+#include "tests/places.h"
 #include "tests/station/program.h"
 
 namespace station_test {

@@ -1,3 +1,4 @@
+#include "tests/places.h"
 #include "tests/station/program.h"
 
 #include <fcntl.h>

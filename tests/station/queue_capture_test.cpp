@@ -10,6 +10,7 @@
 
 #include "rig/clock.h"
 #include "station/documents/reader.h"
+#include "tests/places.h"
 #include "tests/station/hasty_bench.h"
 #include "tests/station/program.h"
 

@@ -11,6 +11,7 @@
 #include "station/documents/calibration_file.h"
 #include "station/documents/rig_file.h"
 #include "station/documents/spool.h"
+#include "tests/places.h"
 #include "tests/station/refusal.h"
 
 namespace station {

@@ -11,6 +11,7 @@
 #include "station/documents/rig_file.h"
 #include "station/documents/spool.h"
 #include "station/views.h"
+#include "tests/places.h"
 
 namespace station {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "renderer/image_file.h"
 #include "station/documents/reader.h"
+#include "tests/places.h"
 #include "tests/station/program.h"
 
 namespace station_test {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "station/documents/reader.h"
+#include "tests/places.h"
 #include "tests/station/program.h"
 
 namespace {

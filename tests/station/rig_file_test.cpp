@@ -6,6 +6,7 @@
 
 #include "station/documents/reader.h"
 #include "station/rig_devices.h"
+#include "tests/places.h"
 #include "tests/station/refusal.h"
 
 namespace station {

@@ -12,6 +12,7 @@
 #include "station/documents/number_table.h"
 #include "station/documents/thread_file.h"
 #include "station/documents/yarn_file.h"
+#include "tests/places.h"
 #include "tests/station/program.h"
 
 namespace station_test {

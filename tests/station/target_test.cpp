@@ -7,6 +7,7 @@
 
 #include "station/documents/board_file.h"
 #include "station/targets/print_targets.h"
+#include "tests/places.h"
 #include "tests/station/program.h"
 
 namespace station_test {

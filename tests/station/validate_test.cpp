@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "station/documents/reader.h"
+#include "tests/places.h"
 #include "tests/station/program.h"
 
 namespace station_test {
@@ -97,6 +98,58 @@ TEST_F(Validate, ASpoolWithoutFibersIsRefusedInOneLine) {
   station::write_json_file(folder_ / "real.json", spool);
   expect_one_line(validate(folder_ / "real.json"), "simulat");
   expect_one_line(validate(folder_ / "none.json"), "no such file");
+}
+
+class ValidateCloth : public ::testing::Test {
+ protected:
+  ProgramResult validate_cloth(const std::string& warp, const std::string& draft) {
+    return run_threadstation({"validate-cloth", "--rig", kRig, "--warp", warp, "--weft",
+                              kFixtures + "/spools/packed_silk_gold_40.json", "--draft", draft, "--out",
+                              folder_ / "out", "--model", "fiber", "--spp", "4", "--photograph-spp", "4", "--width",
+                              "96", "--json"});
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(ValidateCloth, SamplesAreLitFromBothSidesAndPicturesAreMadeOnce) {
+  const std::string warp = kFixtures + "/spools/packed_silk_red_20.json", draft = kFixtures + "/drafts/plain.json";
+  const ProgramResult first = validate_cloth(warp, draft);
+  ASSERT_EQ(first.status, 0) << first.error;
+  const json found = json::parse(first.out);
+  ASSERT_EQ(found.at("samples").size(), 2U);
+  const auto peak_px = [&](std::size_t i, const char* of) {
+    return found["samples"][i]["models"]["fiber"][of]["peak_px"].get<double>();
+  };
+  for (const char* of : {"photograph", "rendering"}) EXPECT_GT(peak_px(0, of), peak_px(1, of) + 5) << of;
+  for (const json& sample : found.at("samples")) {
+    const double difference = sample.at("models").at("fiber").at("mean_delta_e_2000").get<double>();
+    EXPECT_GT(difference, 0);
+    EXPECT_LT(difference, 40);
+    EXPECT_EQ(sample.at("models").at("fiber").at("scale"), 1.0) << "nothing is scaled to fit";
+  }
+  EXPECT_EQ(station::read_json_file(folder_ / "out/validation.json"), found);
+  EXPECT_TRUE(fs::exists(folder_ / "out/samples.png"));
+  std::map<fs::path, fs::file_time_type> written;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "out"))
+    if (entry.path().extension() == ".exr") written[entry.path()] = entry.last_write_time();
+  EXPECT_EQ(written.size(), 2U * 34U + 2U * 2U * 2U);  // two spools' views; two sides, reference and model, two halves
+  const ProgramResult second = validate_cloth(warp, draft);
+  ASSERT_EQ(second.status, 0) << second.error;
+  EXPECT_EQ(json::parse(second.out), found);
+  for (const auto& [path, time] : written) EXPECT_EQ(fs::last_write_time(path), time) << path;
+}
+
+TEST_F(ValidateCloth, AThreadThatIsNotTheDraftsIsRefusedInOneLine) {
+  const std::string draft = kFixtures + "/drafts/plain.json";
+  json spool = station::read_json_file(kFixtures + "/spools/packed_silk_red_20.json");
+  spool["thread_diameter_mm"] = 0.6;
+  station::write_json_file(folder_ / "thick.json", spool);
+  expect_one_line(validate_cloth(folder_ / "thick.json", draft), "0.6");
+  spool["thread_diameter_mm"] = 0.5;
+  spool.erase("simulation");
+  station::write_json_file(folder_ / "real.json", spool);
+  expect_one_line(validate_cloth(folder_ / "real.json", draft), "simulat");
+  expect_one_line(validate_cloth(folder_ / "none.json", draft), "no such file");
 }
 
 }  // namespace

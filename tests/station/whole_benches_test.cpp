@@ -9,6 +9,7 @@
 #include "station/calibrate/calibration_pictures.h"
 #include "station/calibration_validity.h"
 #include "station/documents/reader.h"
+#include "tests/places.h"
 #include "tests/station/calibration_errors.h"
 #include "tests/station/workflow.h"
 

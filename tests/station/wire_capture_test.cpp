@@ -14,6 +14,7 @@
 #include "rig/clock.h"
 #include "station/documents/reader.h"
 #include "station/documents/rig_file.h"
+#include "tests/places.h"
 #include "tests/station/hasty_bench.h"
 #include "tests/station/program.h"
 

@@ -1,3 +1,4 @@
+#include "tests/places.h"
 #include "tests/station/workflow.h"
 
 #include <filesystem>

@@ -1,6 +1,7 @@
 // The commands one after the other on the simulated bench, as a person types them: calibrate, capture, develop, report,
 // each alone from the files that the one before it left; pulled plugs, full disks and wrong files on the way.
 
+#include "tests/places.h"
 #include "tests/station/workflow.h"
 
 #include <gtest/gtest.h>

@@ -11,6 +11,7 @@
 #include "station/documents/patch_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/wif_file.h"
+#include "tests/places.h"
 #include "tests/station/refusal.h"
 
 namespace station {

@@ -98,6 +98,35 @@ TEST(WovenPatchTest, YarnsFlattenTheMoreTheSofterTheyAreAndKeepTheirArea) {
   }
 }
 
+TEST(WovenPatchTest, StrandsKeepTheirPlacesInTheYarn) {
+  const YarnPatch yarns = relax(plain_cloth(1.25, 1.25, 0.5)).patch;
+  const std::vector<Eigen::Vector2d> places{{0, 0}, {0.15, 0}, {0, -0.18}, {-0.1, 0.12}};
+  const std::vector<Strands> bundles(yarns.yarns.size(), {.radius_mm = 0.05, .places = places});
+  const YarnPatch divided = with_strands(yarns, bundles);
+  ASSERT_EQ(divided.yarns.size(), yarns.yarns.size() * places.size());
+  for (std::size_t y = 0; y < yarns.yarns.size(); ++y) {
+    const Yarn& yarn = yarns.yarns[y];
+    const PeriodicSpline center = center_line(yarns, yarn);
+    const Vector3d side = yarn.warp ? Vector3d::UnitX() : Vector3d::UnitY();
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const Yarn& strand = divided.yarns[y * places.size() + k];
+      EXPECT_EQ(strand.thread, yarn.thread);
+      EXPECT_EQ(strand.radius_mm, 0.05);
+      const PeriodicSpline line = center_line(divided, strand);
+      for (int i = 0; i < 200; ++i) {
+        const double t = i / 200.0 * static_cast<double>(center.control_points.size());
+        const Vector3d offset = spline_value(line, t) - spline_value(center, t);
+        const Vector3d third = spline_value(center, t, 1).cross(side).normalized();
+        EXPECT_NEAR(offset.dot(side), places[k].x(), 2e-3);
+        EXPECT_NEAR(offset.dot(third), places[k].y(), 4e-3);  // between knots the strand follows a spline of its own
+      }
+    }
+  }
+  EXPECT_THROW(with_strands(yarns, {}), std::invalid_argument);
+  EXPECT_THROW(with_strands(yarns, std::vector<Strands>(yarns.yarns.size(), {.radius_mm = 0.3, .places = places})),
+               std::runtime_error);
+}
+
 TEST(WovenPatchTest, PliesTouchEachOtherInsideTheirYarnAndRepeatWithThePatch) {
   const YarnPatch yarns = relax(plain_cloth(1.25, 1.25, 0.5)).patch;
   for (const int count : {2, 3, 5}) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "station/capture/plan_file.h"
+#include "tests/places.h"
 #include "tests/station/capture/fakes.h"
 
 namespace station {

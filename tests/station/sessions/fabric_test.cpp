@@ -11,6 +11,7 @@
 #include "station/documents/views_file.h"
 #include "station/fabric/predict_fabric.h"
 #include "station/invert/invert_session.h"
+#include "tests/places.h"
 #include "tests/station/sessions/recorded_bench.h"
 
 namespace station {

@@ -9,6 +9,7 @@
 #include "station/develop/develop_session.h"
 #include "station/documents/reader.h"
 #include "station/import/import_session.h"
+#include "tests/places.h"
 #include "tests/station/sessions/recorded_bench.h"
 
 namespace station {

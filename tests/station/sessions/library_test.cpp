@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "station/capture/manifest.h"
+#include "tests/places.h"
 #include "tests/station/capture/fakes.h"
 
 namespace station {

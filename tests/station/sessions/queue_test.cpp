@@ -5,6 +5,7 @@
 #include "station/capture/file_name.h"
 #include "station/documents/text_table.h"
 #include "station/queue/spool_queue.h"
+#include "tests/places.h"
 #include "tests/station/capture/fakes.h"
 
 namespace station {

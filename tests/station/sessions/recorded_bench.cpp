@@ -1,3 +1,4 @@
+#include "tests/places.h"
 #include "tests/station/sessions/recorded_bench.h"
 
 #include "station/bench/bench_picture.h"
