@@ -117,7 +117,8 @@ YarnPatch with_plies(const YarnPatch& patch, const Plies& plies) {
   YarnPatch twisted = patch;
   twisted.yarns.clear();
   for (const Yarn& yarn : patch.yarns) {
-    const double length_mm = spline_length(center_line(patch, yarn)), turns = std::round(plies.turns_per_mm * length_mm);
+    const double length_mm = spline_length(center_line(patch, yarn)),
+                 turns = std::round(plies.turns_per_mm * length_mm);
     const int knots = static_cast<int>(yarn.control_points.size());
     const int per_knot = std::max(1, static_cast<int>(std::ceil(kPointsPerTurn * std::abs(turns) / knots)));
     const double radius_mm = ply_radius_mm(plies, yarn.radius_mm);

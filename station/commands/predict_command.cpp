@@ -12,7 +12,8 @@ namespace {
 void print(const PredictedView& view) {
   const Comparison& found = view.comparison;
   std::printf(
-      "%s: colour difference (CIEDE2000) mean %.2f, 95 %% below %.2f, over %d blocks of %d px; relative RMSE %.1f %%; "
+      "%s: colour difference (CIEDE2000) mean %.2f, 95 %% below %.2f, over %d blocks of %d px; relative RMSE %.1f "
+      "%%; "
       "photograph %.3f times as bright as predicted; highlight photographed at column %.0f, predicted at %.0f\n"
       "  %s\n",
       view.view.c_str(), found.mean_delta_e, found.delta_e_95, found.blocks, view.block_px, 100 * found.relative_rmse,

@@ -25,7 +25,8 @@ void add_validate_cloth_command(CLI::App& app) {
   command->add_option("--out", request.out, "folder of photographs, pictures and results")->required();
   command->add_option("--model", request.models, "models to fit: thread, fiber, yarn; all without this")
       ->transform(CLI::CheckedTransformer(names_of_models()));
-  command->add_option("--spp", request.samples_per_pixel, "samples per pixel of each of the two renderings of a picture")
+  command
+      ->add_option("--spp", request.samples_per_pixel, "samples per pixel of each of the two renderings of a picture")
       ->check(CLI::Range(1, 65536))
       ->capture_default_str();
   command

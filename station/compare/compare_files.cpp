@@ -6,7 +6,8 @@
 namespace station {
 
 Comparison compare_files(const CompareRequest& request) {
-  const cv::Mat3f photograph = renderer::read_exr(request.photograph), rendering = renderer::read_exr(request.rendering);
+  const cv::Mat3f photograph = renderer::read_exr(request.photograph),
+                  rendering = renderer::read_exr(request.rendering);
   const cv::Mat1b mask = request.mask.empty() ? cv::Mat1b() : renderer::read_png_grey(request.mask);
   CompareOptions options = request.options;
   if (!request.calibration.empty())

@@ -111,7 +111,8 @@ HighlightProfile highlight_of(const std::vector<Eigen::Array3d>& columns, double
   for (std::size_t i = 0; i < columns.size(); ++i)
     if (smooth[i] > profile.peak / 2) light += columns[i], profile.width_px += 1;
   if (light.maxCoeff() > 0) {
-    const Eigen::Vector3d lab = calibration::lab_of_linear_srgb((colour * (light / light.maxCoeff()).matrix()).cwiseMax(0));
+    const Eigen::Vector3d lab =
+        calibration::lab_of_linear_srgb((colour * (light / light.maxCoeff()).matrix()).cwiseMax(0));
     profile.hue_deg = std::atan2(lab.z(), lab.y()) * 180 / M_PI;
   }
   return profile;

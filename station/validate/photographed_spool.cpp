@@ -32,7 +32,8 @@ PhotographedSpool photograph_spool(const RigFile& rig, const Spool& spool, const
     PictureHalves pictures;
     for (std::size_t half = 0; half < 2; ++half) {
       if (interrupted())
-        throw std::runtime_error("the validation was interrupted; the same command goes on with the photographs it has");
+        throw std::runtime_error(
+            "the validation was interrupted; the same command goes on with the photographs it has");
       step("photograph " + view.id,
            (static_cast<double>(2 * i + half)) / (2.0 * static_cast<double>(made.views.size())));
       const std::uint64_t seed = request.seed * 1000 + 2 * i + half;

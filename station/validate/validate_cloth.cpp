@@ -161,7 +161,8 @@ class Study {
     for (const fs::path& file : {request_.rig, warp.file, weft_.file}) words += read_json_file(file).dump();
     for (const fs::path& file : request_.drafts)
       if (sample.starts_with(file.stem().string() + "-")) words += read_json_file(file).dump();
-    for (int number : {request_.samples_per_pixel, request_.photograph_samples, request_.width_px, request_.height_px})
+    for (int number :
+         {request_.samples_per_pixel, request_.photograph_samples, request_.width_px, request_.height_px})
       words += "/" + std::to_string(number);
     return words + "/" + std::to_string(request_.seed);
   }
@@ -182,7 +183,7 @@ class Study {
                                              .samples_per_pixel = request_.photograph_samples,
                                              .seed = request_.seed},
                                             step)
-                                .views;
+                               .views;
     inversion::FitOptions options{.model = model, .seed = request_.seed};
     if (model == ModelKind::yarn) options.paths_per_block = {128, 512};
     options.progress = [&](const std::string& what, double share) {
@@ -226,7 +227,8 @@ std::vector<PredictedSample> validate_cloth(const ValidateClothRequest& request)
 
 std::string describe(const std::vector<PredictedSample>& samples) {
   std::string text =
-      "CIEDE2000 of block averages and the highlight's column, width (px), height (of the reference's) and hue (deg)\n"
+      "CIEDE2000 of block averages and the highlight's column, width (px), height (of the reference's) and hue "
+      "(deg)\n"
       "weave            warp                       lamp   model      mean  95 % below  column  width  height   hue\n";
   std::map<std::string, std::pair<double, int>> sums;
   const auto add_line = [&](const PredictedSample& of, const std::string& what, double mean, double most,

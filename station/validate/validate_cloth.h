@@ -22,7 +22,7 @@
 namespace station {
 
 struct ValidateClothRequest {
-  std::filesystem::path rig, weft, out;       // weft: a spool file with simulated fibers, as the warps
+  std::filesystem::path rig, weft, out;  // weft: a spool file with simulated fibers, as the warps
   std::vector<std::filesystem::path> warps, drafts;
   std::vector<inversion::ModelKind> models{inversion::ModelKind::thread, inversion::ModelKind::fiber,
                                            inversion::ModelKind::yarn};

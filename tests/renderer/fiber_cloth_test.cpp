@@ -30,11 +30,12 @@ TEST(FiberClothTest, InTwoScalesItIsThatOfTheExplicitFibersOfTenMillimetres) {
     for (const bool two_scale : {false, true}) {
       Scene scene = two_scale ? two_scale_scene(SwatchShape{10, 10}, fibers, models)
                               : brute_force_scene(SwatchShape{10, 10}, fibers, models);
-      scene.lights = {{.center = {-120, 90, side * 300}, .radius_mm = 30, .radiance = {100, 100, 100}, .visible = false}};
+      scene.lights = {
+          {.center = {-120, 90, side * 300}, .radius_mm = 30, .radiance = {100, 100, 100}, .visible = false}};
       const PathTracer tracer(std::move(scene));
       for (int i = 0; i < kPictures; ++i) {
-        const cv::Scalar mean = cv::mean(
-            tracer.render(camera, {.samples_per_pixel = 128, .seed = static_cast<std::uint64_t>(100 * two_scale + i)}));
+        const cv::Scalar mean = cv::mean(tracer.render(
+            camera, {.samples_per_pixel = 128, .seed = static_cast<std::uint64_t>(100 * two_scale + i)}));
         means[two_scale] += mean / kPictures, squares[two_scale] += mean.mul(mean) / kPictures;
       }
     }

@@ -103,10 +103,26 @@ TEST_F(Validate, ASpoolWithoutFibersIsRefusedInOneLine) {
 class ValidateCloth : public ::testing::Test {
  protected:
   ProgramResult validate_cloth(const std::string& warp, const std::string& draft) {
-    return run_threadstation({"validate-cloth", "--rig", kRig, "--warp", warp, "--weft",
-                              kFixtures + "/spools/packed_silk_gold_40.json", "--draft", draft, "--out",
-                              folder_ / "out", "--model", "fiber", "--spp", "4", "--photograph-spp", "4", "--width",
-                              "96", "--json"});
+    return run_threadstation({"validate-cloth",
+                              "--rig",
+                              kRig,
+                              "--warp",
+                              warp,
+                              "--weft",
+                              kFixtures + "/spools/packed_silk_gold_40.json",
+                              "--draft",
+                              draft,
+                              "--out",
+                              folder_ / "out",
+                              "--model",
+                              "fiber",
+                              "--spp",
+                              "4",
+                              "--photograph-spp",
+                              "4",
+                              "--width",
+                              "96",
+                              "--json"});
   }
   TemporaryFolder folder_;
 };
@@ -132,7 +148,8 @@ TEST_F(ValidateCloth, SamplesAreLitFromBothSidesAndPicturesAreMadeOnce) {
   std::map<fs::path, fs::file_time_type> written;
   for (const auto& entry : fs::recursive_directory_iterator(folder_ / "out"))
     if (entry.path().extension() == ".exr") written[entry.path()] = entry.last_write_time();
-  EXPECT_EQ(written.size(), 2U * 34U + 2U * 2U * 2U);  // two spools' views; two sides, reference and model, two halves
+  EXPECT_EQ(written.size(),
+            2U * 34U + 2U * 2U * 2U);  // two spools' views; two sides, reference and model, two halves
   const ProgramResult second = validate_cloth(warp, draft);
   ASSERT_EQ(second.status, 0) << second.error;
   EXPECT_EQ(json::parse(second.out), found);
