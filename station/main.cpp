@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
   station::add_scatter_command(app);
   station::add_target_command(app);
   station::add_recover_command(app);
+  station::add_embroider_command(app);
   station::add_validate_command(app);
   station::add_validate_cloth_command(app);
   station::add_weave_command(app);

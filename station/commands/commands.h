@@ -26,6 +26,7 @@ void add_scatter_command(CLI::App& app);
 void add_simulate_hardware_command(CLI::App& app);
 void add_target_command(CLI::App& app);
 void add_recover_command(CLI::App& app);
+void add_embroider_command(CLI::App& app);
 void add_validate_cloth_command(CLI::App& app);
 void add_validate_command(CLI::App& app);
 void add_verify_command(CLI::App& app);

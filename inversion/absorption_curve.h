@@ -1,0 +1,36 @@
+// What absorption gives a cloth or an embroidery a wanted colour, everything else of its threads kept [Xia 2025, section 6].
+//
+// Under light that is the same from all sides a cloth's reflectance in a channel depends on that channel's absorption alone:
+// measured once, at a few absorptions, and inverted.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <vector>
+
+namespace inversion {
+
+class AbsorptionCurve {
+ public:
+  // Reflectances (0 ... 1) at rising absorptions sigma_a, two or more, the first 0. Noise may make them rise: they are made to
+  // fall first (pool adjacent violators). Errors: std::invalid_argument when the sizes differ or absorptions do not rise.
+  AbsorptionCurve(std::vector<double> sigma_a, std::vector<double> reflectance);
+
+  double reflectance(double sigma_a) const;
+  // The absorption that has it; for reflectances outside of the gamut that of its nearest end.
+  double sigma_a(double reflectance) const;
+  bool in_gamut(double reflectance) const;
+  double darkest() const { return reflectance_.back(); }
+  double brightest() const { return reflectance_.front(); }
+
+ private:
+  std::vector<double> sigma_a_, reflectance_;
+};
+
+// One for each channel (what lies below may be coloured), from `count` absorptions, 0 to `most`, evenly in
+// log(1 + 20 sigma_a). `reflectance_of` returns the channels' reflectances when all three have one absorption.
+std::array<AbsorptionCurve, 3> measure_absorption_curves(const std::function<Eigen::Array3d(double)>& reflectance_of,
+                                                         int count = 14, double most = 12);
+
+}  // namespace inversion

@@ -1,0 +1,228 @@
+#include "station/embroider/embroider_motif.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "calibration/colour_chart.h"
+#include "inversion/absorption_curve.h"
+#include "renderer/embroidery/stitch_curves.h"
+#include "renderer/image_file.h"
+#include "renderer/path_tracer.h"
+#include "station/documents/motif_file.h"
+#include "station/documents/session_file.h"
+#include "station/documents/thread_file.h"
+#include "station/interrupt.h"
+#include "station/report/display.h"
+
+namespace station {
+namespace {
+
+using Eigen::Array3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+constexpr double kEye_mm = 1000;       // above the cloth
+constexpr double kCurveShare = 30;     // of the work, %
+constexpr double kSatinPitch = 0.875;  // of the diameter: stitches side by side
+
+Vector3d linear_of(const Srgb8& colour) {
+  Vector3d linear;
+  for (int c = 0; c < 3; ++c) {
+    const double v = colour[static_cast<std::size_t>(c)] / 255.0;
+    linear[c] = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+  }
+  return linear;
+}
+
+renderer::Camera camera_above(const Vector2d& low, const Vector2d& high, double pixels_per_mm) {
+  constexpr double kMostPixels = 1e8;
+  const Vector2d middle = (low + high) / 2, size = (high - low) * pixels_per_mm;
+  if (!(size.prod() < kMostPixels))
+    throw std::runtime_error(
+        "the picture would have " + std::to_string(size.prod() / 1e6) +
+        " million pixels, at most 100 million are rendered; ask for fewer pixels per millimetre");
+  renderer::Camera camera =
+      renderer::look_at({middle.x(), middle.y(), kEye_mm}, {middle.x(), middle.y(), 0}, {0, 1, 0});
+  camera.width = std::max(1, static_cast<int>(std::ceil(size.x())));
+  camera.height = std::max(1, static_cast<int>(std::ceil(size.y())));
+  camera.fx = camera.fy = pixels_per_mm * kEye_mm;
+  camera.cx = (camera.width - 1) / 2.0, camera.cy = (camera.height - 1) / 2.0;
+  return camera;
+}
+
+// The motif on its cloth, in a light of 1 from everywhere: radiance is reflectance.
+renderer::Scene scene_of(const renderer::Motif& motif, const std::vector<renderer::ThreadParameters>& threads,
+                         double diameter_mm, const Array3d& ground) {
+  constexpr float kGround_mm = 5000;
+  renderer::Scene scene;
+  renderer::StitchCurves stitches = renderer::stitch_curves(motif, diameter_mm);
+  for (std::size_t i = 0; i < threads.size(); ++i) {
+    if (stitches.threads[i].segments.empty()) continue;
+    stitches.threads[i].scattering = threads[i];
+    scene.curves.push_back(std::move(stitches.threads[i]));
+  }
+  renderer::TriangleMesh cloth;
+  for (const auto& [x, y] : {std::pair(-1.F, -1.F), std::pair(1.F, -1.F), std::pair(1.F, 1.F), std::pair(-1.F, 1.F)})
+    cloth.vertices.push_back({x * kGround_mm, y * kGround_mm, 0});
+  cloth.triangles = {{0, 1, 2}, {0, 2, 3}};
+  cloth.albedo = cv::Mat3f(
+      1, 1, cv::Vec3f(static_cast<float>(ground[0]), static_cast<float>(ground[1]), static_cast<float>(ground[2])));
+  scene.meshes.push_back(std::move(cloth));
+  scene.surroundings = renderer::EnvironmentLight{.radiance = cv::Mat3f(8, 16, cv::Vec3f(1, 1, 1))};
+  return scene;
+}
+
+// Satin stitches side by side, all in one thread.
+renderer::Motif satin_block(double diameter_mm) {
+  constexpr int kStitches = 40;
+  const double length_mm = 15 * diameter_mm;
+  renderer::Motif satin{.name = "satin", .threads = {{}}, .runs = {{.thread = 0, .needle_points = {}}}};
+  for (int i = 0; i <= kStitches; ++i)
+    satin.runs[0].needle_points.push_back({i % 2 == 0 ? 0 : length_mm, i * kSatinPitch * diameter_mm});
+  return satin;
+}
+
+// Of satin stitches of the thread on the cloth, seen from above.
+std::array<inversion::AbsorptionCurve, 3> curves_of(const renderer::ThreadParameters& thread, double diameter_mm,
+                                                    const Array3d& ground, std::uint64_t seed,
+                                                    const std::function<void(double)>& done) {
+  constexpr int kCount = 14, kSamples = 64;
+  const renderer::Motif satin = satin_block(diameter_mm);
+  const renderer::MotifMeasures extents = renderer::measure(satin);
+  const Vector2d middle = (extents.low + extents.high) / 2, half = 0.2 * (extents.high - extents.low);
+  const renderer::Camera camera = camera_above(middle - half, middle + half, 6 / diameter_mm);
+  int calls = 0;
+  return inversion::measure_absorption_curves(
+      [&](double sigma_a) {
+        done(static_cast<double>(calls++) / kCount);
+        renderer::ThreadParameters coloured = thread;
+        for (int c = 0; c < 3; ++c) coloured.sigma_a[c] = sigma_a;
+        const renderer::PathTracer tracer(scene_of(satin, {coloured}, diameter_mm, ground));
+        const cv::Scalar mean = cv::mean(tracer.render(camera, {.samples_per_pixel = kSamples, .seed = seed}));
+        if (interrupted()) throw std::runtime_error("the embroidery was interrupted");
+        return Array3d(mean[0], mean[1], mean[2]);
+      },
+      kCount);
+}
+
+void check_destination(const std::filesystem::path& out) {
+  const std::string ending = out.extension().string();
+  if (ending != ".exr" && ending != ".png")
+    throw std::runtime_error("cannot write " + out.string() + ": found the ending \"" + ending +
+                             "\", expected .exr (linear) or .png (display)");
+}
+
+}  // namespace
+
+Srgb8 parse_colour(const std::string& text) {
+  unsigned int r = 0, g = 0, b = 0;
+  int used = 0;
+  if (text.size() != 7 || std::sscanf(text.c_str(), "#%2x%2x%2x%n", &r, &g, &b, &used) != 3 || used != 7)
+    throw std::runtime_error("found the colour \"" + text + "\", expected one like \"#c01830\"");
+  return {static_cast<unsigned char>(r), static_cast<unsigned char>(g), static_cast<unsigned char>(b)};
+}
+
+Embroidery embroider(const EmbroiderRequest& request) {
+  watch_interrupts();
+  check_destination(request.out);
+  const renderer::Motif motif = read_motif(request.motif);
+  const ThreadFile digitized = read_thread(request.thread);
+  const renderer::MotifMeasures measures = renderer::measure(motif);
+  const Vector2d margin = Vector2d::Constant(3 * request.diameter_mm);
+  const renderer::Camera camera = camera_above(measures.low - margin, measures.high + margin, request.pixels_per_mm);
+  ProgressDisplay progress("embroider", request.progress_style);
+  const Matrix to_srgb = Eigen::Map<const Matrix>(digitized.linear_srgb_from_camera.data());
+  const Eigen::Matrix3d to_camera = to_srgb.inverse();
+  const Array3d ground = (to_camera * linear_of(request.ground)).cwiseMax(0).cwiseMin(1).array();
+  int shown = -1;
+  const auto show = [&](double percent, const char* what) {
+    if (static_cast<int>(percent) != shown) progress.show(shown = static_cast<int>(percent), 100, what);
+  };
+  const auto curves = curves_of(digitized.parameters, request.diameter_mm, ground, request.seed, [&](double share) {
+    show(kCurveShare * share, "what absorption makes of the thread");
+  });
+  Embroidery embroidery{.name = motif.name,
+                        .width_mm = measures.high.x() - measures.low.x(),
+                        .height_mm = measures.high.y() - measures.low.y(),
+                        .threads = {},
+                        .image = request.out.string()};
+  std::vector<renderer::ThreadParameters> threads;
+  for (std::size_t i = 0; i < motif.threads.size(); ++i) {
+    renderer::ThreadParameters thread = digitized.parameters;
+    EmbroideredThread made{.name = motif.threads[i].name,
+                           .stitches = measures.stitches_of_threads[i],
+                           .length_mm = measures.lengths_mm[i]};
+    std::optional<Srgb8> wanted = motif.threads[i].srgb;
+    if (!request.colours.empty()) wanted = request.colours[i % request.colours.size()];
+    if (wanted) {
+      const Vector3d linear = linear_of(*wanted), camera_rgb = to_camera * linear;
+      Vector3d reached;
+      for (int c = 0; c < 3; ++c) {
+        const inversion::AbsorptionCurve& curve = curves[static_cast<std::size_t>(c)];
+        thread.sigma_a[c] = curve.sigma_a(camera_rgb[c]);
+        reached[c] = curve.reflectance(thread.sigma_a[c]);
+      }
+      made.wanted = *wanted;
+      made.delta_e_2000 = calibration::delta_e_2000(calibration::lab_of_linear_srgb(linear),
+                                                    calibration::lab_of_linear_srgb((to_srgb * reached).cwiseMax(0)));
+    }
+    for (int c = 0; c < 3; ++c) made.sigma_a[static_cast<std::size_t>(c)] = thread.sigma_a[c];
+    threads.push_back(thread);
+    embroidery.threads.push_back(made);
+  }
+  const renderer::PathTracer tracer(scene_of(motif, threads, request.diameter_mm, ground));
+  const cv::Mat3f image = tracer.render(
+      camera, {.samples_per_pixel = request.samples_per_pixel, .seed = request.seed, .progress = [&](double share) {
+                 show(kCurveShare + (100 - kCurveShare) * share, "rendering");
+                 return !interrupted();
+               }});
+  if (request.out.extension() == ".exr")
+    renderer::write_exr(request.out, image,
+                        {{"threadstation/content", "linear camera RGB, reflectance under even light"},
+                         {"threadstation/motif", motif.name},
+                         {"threadstation/software", software_version()}});
+  else
+    renderer::write_png(request.out, display(image, 1, digitized.linear_srgb_from_camera));
+  progress.finish(request.out.string());
+  return embroidery;
+}
+
+std::string describe(const Embroidery& embroidery) {
+  char line[200];
+  std::snprintf(line, sizeof line,
+                "\"%s\", %.1f x %.1f mm\nthread                 colour   stitches   length m   sigma_a"
+                "                 CIEDE2000\n",
+                embroidery.name.c_str(), embroidery.width_mm, embroidery.height_mm);
+  std::string text = line;
+  for (const EmbroideredThread& of : embroidery.threads) {
+    std::snprintf(line, sizeof line, "%-22s #%02x%02x%02x  %8d   %8.2f   %6.3f %6.3f %6.3f   %9.2f%s\n",
+                  of.name.c_str(), of.wanted[0], of.wanted[1], of.wanted[2], of.stitches, of.length_mm / 1000,
+                  of.sigma_a[0], of.sigma_a[1], of.sigma_a[2], of.delta_e_2000,
+                  of.delta_e_2000 > 0.1 ? "  (out of gamut)" : "");
+    text += line;
+  }
+  return text;
+}
+
+nlohmann::json to_json(const Embroidery& embroidery) {
+  nlohmann::json threads = nlohmann::json::array();
+  for (const EmbroideredThread& of : embroidery.threads)
+    threads.push_back({{"name", of.name},
+                       {"srgb", of.wanted},
+                       {"sigma_a", of.sigma_a},
+                       {"delta_e_2000", of.delta_e_2000},
+                       {"stitches", of.stitches},
+                       {"length_mm", of.length_mm}});
+  return {{"motif", embroidery.name},
+          {"width_mm", embroidery.width_mm},
+          {"height_mm", embroidery.height_mm},
+          {"threads", threads},
+          {"image", embroidery.image}};
+}
+
+}  // namespace station

@@ -1,0 +1,55 @@
+// A motif embroidered in a digitized thread: each colour keeps all of the thread but its absorption [Xia 2025, section 6,
+// figure 13], and is rendered on plain cloth under even light.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "station/progress.h"
+
+namespace station {
+
+using Srgb8 = std::array<unsigned char, 3>;
+// "#rrggbb". Errors: std::runtime_error, one line.
+Srgb8 parse_colour(const std::string& text);
+
+struct EmbroiderRequest {
+  std::filesystem::path motif, thread, out;  // out: EXR (linear camera RGB) or PNG (display)
+  std::vector<Srgb8> colours{};              // of the motif's threads, instead of the file's; fewer are repeated
+  Srgb8 ground{236, 234, 228};               // the cloth's
+  double diameter_mm = 0.4;                  // of the thread as it is sewn: 40 weight
+  double pixels_per_mm = 12;
+  int samples_per_pixel = 64;
+  std::uint64_t seed = 1;
+  ProgressStyle progress_style = ProgressStyle::automatic;
+};
+
+struct EmbroideredThread {
+  std::string name;
+  Srgb8 wanted{};
+  std::array<double, 3> sigma_a{};  // per thread radius, camera RGB
+  double delta_e_2000 = 0;          // of what that absorption should look like: above 0 out of gamut
+  int stitches = 0;
+  double length_mm = 0;
+};
+
+struct Embroidery {
+  std::string name;
+  double width_mm = 0, height_mm = 0;
+  std::vector<EmbroideredThread> threads;
+  std::string image;
+};
+
+// Threads whose colour neither file nor request says keep the digitized thread's own. Ctrl-C stops it. Errors:
+// std::runtime_error with one line: those of motif_file.h, thread_file.h and stitch_curves.h, an ending that is neither, a
+// picture of more than 100 million pixels.
+Embroidery embroider(const EmbroiderRequest& request);
+
+std::string describe(const Embroidery& embroidery);
+nlohmann::json to_json(const Embroidery& embroidery);
+
+}  // namespace station
