@@ -1,10 +1,12 @@
 #include "calibration/develop.h"
 
+#include <algorithm>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <string>
 
+#include "calibration/demosaic.h"
 #include "calibration/picture_stack.h"
 
 namespace calibration {
@@ -14,12 +16,7 @@ std::string size_text(const cv::Size& size) {
   return std::to_string(size.width) + " x " + std::to_string(size.height);
 }
 
-void check(const SensorPicture& raw, const DevelopOptions& options) {
-  for (const int channel : raw.channel) {
-    if (channel < 0 || channel > 2)
-      throw std::runtime_error("develop: colour " + std::to_string(channel) +
-                               " in the mosaic, only red, green and blue are known");
-  }
+void require_same_size(const SensorPicture& raw, const DevelopOptions& options) {
   const cv::Size size = raw.mosaic.size();
   if (options.lens && cv::Size(options.lens->width_px, options.lens->height_px) != size) {
     throw std::runtime_error("develop: the lens was calibrated at " +
@@ -28,78 +25,61 @@ void check(const SensorPicture& raw, const DevelopOptions& options) {
   }
 }
 
+constexpr int kBand = 64;  // rows: large enough to be worth a call, small enough to stay in the processor's memory
+
+// `work` on bands of rows, several at once.
+template <typename Work>
+void for_each_band(int rows, const Work& work) {
+  cv::parallel_for_({0, (rows + kBand - 1) / kBand}, [&](const cv::Range& bands) {
+    for (int band = bands.start; band < bands.end; ++band)
+      work(cv::Range(band * kBand, std::min(rows, (band + 1) * kBand)));
+  });
+}
+
 void take_out(const Vignetting& vignetting, LinearMosaic& mosaic) {
-  for (int row = 0; row < mosaic.radiance.rows; ++row) {
-    for (int column = 0; column < mosaic.radiance.cols; ++column) {
-      const auto gain = static_cast<float>(vignetting.gain(column, row, mosaic.radiance.size()));
-      mosaic.radiance(row, column) /= gain;
-      if (!mosaic.variance.empty()) mosaic.variance(row, column) /= gain * gain;
+  for_each_band(mosaic.radiance.rows, [&](const cv::Range& rows) {
+    for (int row = rows.start; row < rows.end; ++row) {
+      for (int column = 0; column < mosaic.radiance.cols; ++column) {
+        const auto gain = static_cast<float>(vignetting.gain(column, row, mosaic.radiance.size()));
+        mosaic.radiance(row, column) /= gain;
+        if (!mosaic.variance.empty()) mosaic.variance(row, column) /= gain * gain;
+      }
     }
-  }
+  });
 }
 
-cv::Mat1f sites_of(const LinearMosaic& raw, int channel) {
-  cv::Mat1f sites(raw.radiance.size(), 0.0F);
-  for (int row = 0; row < sites.rows; ++row) {
-    for (int column = 0; column < sites.cols; ++column) {
-      const auto cell = static_cast<std::size_t>(2 * (row % 2) + column % 2);
-      if (raw.channel[cell] == channel) sites(row, column) = 1.0F;
-    }
-  }
-  return sites;
-}
-
-cv::Mat1f spread(const cv::Mat1f& image, const cv::Mat1f& kernel) {
-  cv::Mat1f out;
-  cv::filter2D(image, out, CV_32F, kernel, {-1, -1}, 0.0, cv::BORDER_CONSTANT);
-  return out;
-}
-
-// Bilinear demosaicing as a normalised convolution: weights of the sites that a channel has, over their sum. Inside
-// the picture a linear ramp comes back exactly; at the border the sites that exist are averaged. A site of the
-// channel itself has no other one in reach and keeps its own value.
-Developed demosaic(const LinearMosaic& raw) {
-  const cv::Mat1f& mosaic = raw.radiance;
-  // Green sites are a quincunx, its neighbours share an edge; red and blue sites are a coarser square grid.
-  const cv::Mat1f dense = (cv::Mat1f(3, 3) << 0, 1, 0, 1, 4, 1, 0, 1, 0);
-  const cv::Mat1f coarse = (cv::Mat1f(3, 3) << 1, 2, 1, 2, 4, 2, 1, 2, 1);
-  cv::Mat1f too_bright;
-  raw.saturated.convertTo(too_bright, CV_32F, 1.0 / 255.0);
-  std::array<cv::Mat1f, 3> channels, variances;
-  Developed out{.radiance = {}, .variance = {}, .saturated = cv::Mat1b(mosaic.size(), uchar{0})};
-  for (int c = 0; c < 3; ++c) {
-    const cv::Mat1f sites = sites_of(raw, c);
-    const bool is_dense = cv::countNonZero(sites) > mosaic.rows * mosaic.cols * 3 / 8;
-    const cv::Mat1f& kernel = is_dense ? dense : coarse;
-    // Where no site is in reach (a colour that the mosaic lacks) the sum of weights is 0, and so is the radiance.
-    const cv::Mat1f weights(cv::max(spread(sites, kernel), 1e-6));
-    channels[static_cast<std::size_t>(c)] = spread(cv::Mat1f(mosaic.mul(sites)), kernel) / weights;
-    if (!raw.variance.empty()) {
-      variances[static_cast<std::size_t>(c)] =
-          spread(cv::Mat1f(raw.variance.mul(sites)), cv::Mat1f(kernel.mul(kernel))) / weights.mul(weights);
-    }
-    out.saturated |= spread(cv::Mat1f(too_bright.mul(sites)), kernel) > 0.5;
-  }
-  cv::merge(channels.data(), 3, out.radiance);
-  if (!raw.variance.empty()) cv::merge(variances.data(), 3, out.variance);
-  return out;
+Developed pictures_like(const LinearMosaic& raw) {
+  const cv::Size size = raw.radiance.size();
+  return {.radiance = cv::Mat3f(size),
+          .variance = raw.variance.empty() ? cv::Mat3f() : cv::Mat3f(size),
+          .saturated = cv::Mat1b(size)};
 }
 
 // Straightens the picture and keeps the intrinsic matrix; pixels that the sensor did not see become 0.
 Developed undistorted(const Developed& seen, const Lens& lens) {
-  const cv::Matx33d matrix(lens.fx_px, 0, lens.cx_px, 0, lens.fy_px, lens.cy_px, 0, 0, 1);
-  cv::Mat1f column, row;
-  cv::initUndistortRectifyMap(matrix, std::vector<double>(lens.distortion.begin(), lens.distortion.end()),
-                              cv::noArray(), matrix, seen.radiance.size(), CV_32FC1, column, row);
-  Developed out;
-  // Linear, because cubic weights overshoot beside highlights and would make negative radiance.
-  cv::remap(seen.radiance, out.radiance, column, row, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
-  if (!seen.variance.empty())
-    cv::remap(seen.variance, out.variance, column, row, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+  const cv::Size size = seen.radiance.size();
   cv::Mat1f flags;
   seen.saturated.convertTo(flags, CV_32F);
-  cv::remap(flags, flags, column, row, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
-  out.saturated = flags > 0.0F;
+  Developed out{.radiance = cv::Mat3f(size),
+                .variance = seen.variance.empty() ? cv::Mat3f() : cv::Mat3f(size),
+                .saturated = cv::Mat1b(size)};
+  const cv::Matx33d matrix(lens.fx_px, 0, lens.cx_px, 0, lens.fy_px, lens.cy_px, 0, 0, 1);
+  for_each_band(size.height, [&](const cv::Range& rows) {
+    cv::Matx33d of_band = matrix;
+    of_band(1, 2) -= rows.start;
+    cv::Mat1f column, row, flag;
+    cv::initUndistortRectifyMap(matrix, std::vector<double>(lens.distortion.begin(), lens.distortion.end()),
+                                cv::noArray(), of_band, {size.width, rows.size()}, CV_32FC1, column, row);
+    // Linear, because cubic weights overshoot beside highlights and would make negative radiance.
+    const auto straighten = [&](const cv::Mat& from, cv::Mat to) {
+      cv::remap(from, to, column, row, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+    };
+    straighten(seen.radiance, out.radiance.rowRange(rows));
+    if (!seen.variance.empty()) straighten(seen.variance, out.variance.rowRange(rows));
+    cv::remap(flags, flag, column, row, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+    out.saturated.rowRange(rows).setTo(0);
+    out.saturated.rowRange(rows).setTo(255, flag > 0.0F);
+  });
   return out;
 }
 
@@ -122,9 +102,11 @@ Developed develop(const std::vector<SensorPicture>& bracket, const DevelopOption
     response.maps.dark_dn_per_s = {};
   }
   LinearMosaic mosaic = merge_exposures(bracket, response, options.dark_offset_dn);
-  check(bracket.front(), options);
+  require_same_size(bracket.front(), options);
   if (options.vignetting) take_out(*options.vignetting, mosaic);
-  const Developed seen = demosaic(mosaic);
+  Developed seen = pictures_like(mosaic);
+  for_each_band(mosaic.radiance.rows, [&](const cv::Range& rows) { demosaic_rows(mosaic, rows, seen); });
+  mosaic = {};
   return options.lens ? undistorted(seen, *options.lens) : seen;
 }
 

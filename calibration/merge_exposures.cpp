@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "calibration/developable.h"
+
 namespace calibration {
 namespace {
 
@@ -19,15 +21,8 @@ std::string size_text(const cv::Size& size) {
 void check(const std::vector<SensorPicture>& bracket, const SensorResponse& response) {
   if (bracket.empty()) throw std::runtime_error("develop: no picture was given");
   const SensorPicture& first = bracket.front();
-  if (first.mosaic.rows < 2 || first.mosaic.cols < 2)
-    throw std::runtime_error("develop: the raw picture has no pixels");
   for (const SensorPicture& raw : bracket) {
-    if (!(raw.white_level_dn > raw.black_level_dn) || !(raw.exposure_s > 0.0)) {
-      throw std::runtime_error(
-          "develop: needs a white level above the black level and an exposure time, found black " +
-          std::to_string(raw.black_level_dn) + ", white " + std::to_string(raw.white_level_dn) + ", exposure " +
-          std::to_string(raw.exposure_s) + " s: check the raw file");
-    }
+    require_developable(raw);
     if (raw.mosaic.size() != first.mosaic.size() || raw.iso != first.iso || raw.channel != first.channel ||
         raw.black_level_dn != first.black_level_dn || raw.white_level_dn != first.white_level_dn) {
       throw std::runtime_error(
@@ -66,6 +61,18 @@ std::vector<Exposure> by_time(const std::vector<SensorPicture>& bracket, const S
 
 }  // namespace
 
+void require_developable(const SensorPicture& raw) {
+  if (raw.mosaic.rows < 2 || raw.mosaic.cols < 2) throw std::runtime_error("develop: the raw picture has no pixels");
+  if (!(raw.white_level_dn > raw.black_level_dn) || !(raw.exposure_s > 0.0))
+    throw std::runtime_error("develop: needs a white level above the black level and an exposure time, found black " +
+                             std::to_string(raw.black_level_dn) + ", white " + std::to_string(raw.white_level_dn) +
+                             ", exposure " + std::to_string(raw.exposure_s) + " s: check the raw file");
+  for (const int channel : raw.channel)
+    if (channel < 0 || channel > 2)
+      throw std::runtime_error("develop: colour " + std::to_string(channel) +
+                               " in the mosaic, only red, green and blue are known");
+}
+
 LinearMosaic merge_exposures(const std::vector<SensorPicture>& bracket, const SensorResponse& response,
                              double dark_offset_dn) {
   check(bracket, response);
@@ -79,7 +86,7 @@ LinearMosaic merge_exposures(const std::vector<SensorPicture>& bracket, const Se
                    .saturated = cv::Mat1b(first.mosaic.size(), uchar{0}),
                    .channel = first.channel};
   const SensorMaps& maps = response.maps;
-  for (int row = 0; row < out.radiance.rows; ++row) {
+  const auto merge_row = [&](int row) {
     for (int column = 0; column < out.radiance.cols; ++column) {
       const double bias =
           (maps.bias_dn.empty() ? first.black_level_dn : static_cast<double>(maps.bias_dn(row, column))) +
@@ -121,7 +128,10 @@ LinearMosaic merge_exposures(const std::vector<SensorPicture>& bracket, const Se
       out.radiance(row, column) = static_cast<float>(radiance / flat);
       if (gain > 0) out.variance(row, column) = static_cast<float>(1 / (information * flat * flat));
     }
-  }
+  };
+  cv::parallel_for_({0, out.radiance.rows}, [&](const cv::Range& rows) {
+    for (int row = rows.start; row < rows.end; ++row) merge_row(row);
+  });
   if (!maps.bad.empty()) repair_bad_pixels(maps.bad, out);
   return out;
 }

@@ -1,6 +1,7 @@
 #include "calibration/tags.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <map>
 #include <memory>
@@ -58,23 +59,31 @@ class Detector {
   apriltag_detector_t* detector_;
 };
 
+// In large pictures, of every few pixels: it is a level of brightness, not a place.
 float percentile(const cv::Mat1f& grey, double fraction) {
-  std::vector<float> values(grey.begin(), grey.end());
+  constexpr int kMost = 1 << 20;
+  const int step = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(grey.total()) / kMost)));
+  std::vector<float> values;
+  values.reserve(grey.total() / static_cast<std::size_t>(step * step) + 1);
+  for (int row = 0; row < grey.rows; row += step)
+    for (int column = 0; column < grey.cols; column += step) values.push_back(grey(row, column));
   const auto nth = values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), nth, values.end());
   return *nth;
 }
 
-// The brightest value within a sixteenth of the picture (31 px at least), smoothed: wider than a code cell, so that every
-// neighbourhood holds some paper. Large pictures are looked at in blocks.
-cv::Mat1f white_of_surroundings(const cv::Mat1f& grey) {
+// The brightest value within a sixteenth of the picture (31 px at least), smoothed: wider than a code cell, so that
+// every neighbourhood holds some paper. Large pictures are looked at in blocks. Nothing counts as brighter than
+// `limit`.
+cv::Mat1f white_of_surroundings(const cv::Mat1f& grey, float limit) {
   constexpr int kReach = 31;
   const int block = std::max(1, std::min(grey.rows, grey.cols) / (16 * kReach));
-  cv::Mat1f white = grey.clone();
-  if (block > 1) {
-    cv::dilate(grey, white, cv::Mat1b::ones(block, block));
-    cv::resize(white, white, {}, 1.0 / block, 1.0 / block, cv::INTER_NEAREST);
-  }
+  cv::Mat1f white((grey.rows + block - 1) / block, (grey.cols + block - 1) / block, 0.F);
+  for (int row = 0; row < grey.rows; ++row)
+    for (int column = 0; column < grey.cols; ++column) {
+      float& brightest = white(row / block, column / block);
+      brightest = std::max(brightest, std::min(grey(row, column), limit));
+    }
   cv::dilate(white, white, cv::Mat1b::ones(2 * kReach + 1, 2 * kReach + 1));
   cv::blur(white, white, {2 * kReach + 1, 2 * kReach + 1});
   if (block > 1) cv::resize(white, white, grey.size(), 0, 0, cv::INTER_LINEAR);
@@ -86,15 +95,17 @@ cv::Mat1f white_of_surroundings(const cv::Mat1f& grey) {
 // refused: it is steeper in the dark, so blurred edges move into the black square, by 0.2 px for pixel-sharp pictures
 // and 0.45 px at a blur of 0.7 px, where proportional values leave 0.01 px.
 cv::Mat1b encode(const cv::Mat1f& grey) {
-  cv::Mat1f bounded;
   const float white = percentile(grey, 0.995);
-  cv::min(grey, white, bounded);
   if (!(white > 0.0F)) return cv::Mat1b(grey.size(), uchar{0});
   constexpr float kDarkestPaper = 0.04F;  // of the picture's white; paper below that is not worth finding
-  cv::Mat1f local_white = white_of_surroundings(bounded);
-  cv::max(local_white, kDarkestPaper * white, local_white);
-  cv::Mat1b encoded;
-  cv::Mat1f(bounded / local_white).convertTo(encoded, CV_8U, 230.0);
+  const cv::Mat1f local_white = white_of_surroundings(grey, white);
+  cv::Mat1b encoded(grey.size());
+  cv::parallel_for_({0, grey.rows}, [&](const cv::Range& rows) {
+    for (int row = rows.start; row < rows.end; ++row)
+      for (int column = 0; column < grey.cols; ++column)
+        encoded(row, column) = cv::saturate_cast<uchar>(
+            230.F * std::min(grey(row, column), white) / std::max(local_white(row, column), kDarkestPaper * white));
+  });
   return encoded;
 }
 

@@ -6,15 +6,16 @@
 namespace station {
 
 double bright_level(const calibration::SensorPicture& picture, const cv::Mat1b& region, double percentile) {
-  std::vector<std::uint16_t> values;
-  values.reserve(picture.mosaic.total());
+  std::vector<int> counts(1 << 16, 0);
+  int all = 0;
   for (int row = 0; row < picture.mosaic.rows; ++row)
     for (int column = 0; column < picture.mosaic.cols; ++column)
-      if (region.empty() || region(row, column)) values.push_back(picture.mosaic(row, column));
-  if (values.empty()) return 0.0;
-  const auto rank = static_cast<std::ptrdiff_t>(percentile / 100.0 * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  const double level = (values[static_cast<std::size_t>(rank)] - picture.black_level_dn) /
+      if (region.empty() || region(row, column)) ++counts[picture.mosaic(row, column)], ++all;
+  if (all == 0) return 0.0;
+  const auto rank = static_cast<int>(percentile / 100.0 * (all - 1));
+  std::size_t value = 0;
+  for (int below = counts[0]; below <= rank; below += counts[value]) ++value;
+  const double level = (static_cast<double>(value) - picture.black_level_dn) /
                        (picture.white_level_dn - picture.black_level_dn);
   return std::clamp(level, 0.0, 1.0);
 }

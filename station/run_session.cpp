@@ -32,6 +32,7 @@ RunState run_session(SessionFolder& session, const RunDevices& devices, const Se
   RunOptions options;
   options.settings = run.settings;
   options.most_attempts = run.most_attempts;
+  options.turn_ahead = run.in_order && asked.rig.turntable_driver != "manual";  // who turns it by hand is asked in time
   options.choose_exposure = [&](const PlanStep& step, const rig::Picture& test) {
     return checks.choose_exposure(step, test);
   };

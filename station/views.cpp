@@ -1,6 +1,6 @@
 #include "station/views.h"
 
-#include "calibration/develop.h"
+#include "calibration/linear_grey.h"
 
 namespace station {
 
@@ -38,18 +38,11 @@ inversion::NearLight lamp_in_holder(const RigCalibration& calibration, const Rig
 }
 
 cv::Mat1f linear_grey(const calibration::SensorPicture& picture) {
-  const cv::Mat3f radiance = calibration::develop(picture, {}).radiance;
-  cv::Mat1f grey(radiance.size());
-  for (int row = 0; row < grey.rows; ++row)
-    for (int column = 0; column < grey.cols; ++column) {
-      const cv::Vec3f& pixel = radiance(row, column);
-      grey(row, column) = std::max(0.F, (pixel[0] + pixel[1] + pixel[2]) / 3.F);
-    }
-  return grey;
+  return calibration::linear_grey(picture);
 }
 
 calibration::TagObservation tags_in(const calibration::SensorPicture& picture) {
-  return calibration::detect_tags(linear_grey(picture));
+  return calibration::detect_tags(calibration::linear_grey(picture));
 }
 
 }  // namespace station

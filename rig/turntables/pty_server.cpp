@@ -65,7 +65,7 @@ class Server final : public PtyServer {
         continue;
       }
       if (!std::exchange(open, true)) {
-        port_->power_on();
+        port_->opened();
       }
       std::array<char, 4096> bytes{};
       if (const ssize_t got = ::read(master_, bytes.data(), bytes.size()); got > 0) {

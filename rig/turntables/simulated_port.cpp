@@ -23,11 +23,14 @@ class FaultyPort final : public SimulatedPort {
   void power_on() override {
     const std::lock_guard hold(mutex_);
     plugged_ = true;
-    silent_ = echoing_ = false;
-    outbox_.clear();
-    held_back_.clear();
-    firmware_->transmit();
-    firmware_->power_on();
+    start();
+  }
+
+  void opened() override {
+    const std::lock_guard hold(mutex_);
+    if (plugged_) {
+      start();
+    }
   }
 
   void receive(std::string_view bytes) override {
@@ -70,6 +73,14 @@ class FaultyPort final : public SimulatedPort {
   }
 
  private:
+  void start() {
+    silent_ = echoing_ = false;
+    outbox_.clear();
+    held_back_.clear();
+    firmware_->transmit();
+    firmware_->power_on();
+  }
+
   void take(std::string_view bytes, bool operation) {
     if (echoing_) {
       outbox_ += bytes;
@@ -155,8 +166,8 @@ class FaultyPort final : public SimulatedPort {
 class SimulatedLine final : public ByteLine {
  public:
   SimulatedLine(std::shared_ptr<SimulatedPort> port, Clock& clock) : port_(std::move(port)), clock_(clock) {
+    port_->opened();
     require_plug();
-    port_->power_on();
   }
 
   std::string read(double timeout_s) override {

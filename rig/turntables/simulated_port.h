@@ -32,12 +32,13 @@ struct PlannedLineFault {
 };
 using LineFaultPlan = std::vector<PlannedLineFault>;
 
-// A simulated controller with its plug: what a line, in process or on a pseudo-terminal, is connected to. Calls may come
-// from several threads.
+// A simulated controller with its plug: what a line, in process or on a pseudo-terminal, is connected to. Calls may
+// come from several threads.
 class SimulatedPort {
  public:
   virtual ~SimulatedPort() = default;
   virtual void power_on() = 0;  // plugged in (again): the firmware starts, faults that last are over
+  virtual void opened() = 0;    // by a program: the same for a board that is plugged in; another one stays dead
   virtual void receive(std::string_view bytes) = 0;
   virtual std::string transmit() = 0;
   virtual void unplug() = 0;

@@ -34,10 +34,12 @@ LampSettling watch_lamp(rig::Camera& camera, rig::Clock& clock, const PlanStep& 
     return read(step, camera.capture());
   };
   std::optional<double> before = reading();
+  settling.readable = before.has_value();
   while (before) {
     sleep_and_poll(clock, watch.interval_s, between);
     settling.waited_s += watch.interval_s;
     const std::optional<double> now = reading();
+    settling.readable = now.has_value();
     if (!now) break;
     settling.change = *now / *before - 1;
     if (std::abs(*settling.change) <= watch.largest_change) break;
@@ -52,6 +54,7 @@ LampSettling watch_lamp(rig::Camera& camera, rig::Clock& clock, const PlanStep& 
            " s so far, at most " + std::to_string(std::lround(watch.limit_s)) + " s");
     before = now;
   }
+  if (!settling.readable && said) said("'" + step.id + "': " + kLampNotWatched);
   return settling;
 }
 

@@ -1,5 +1,5 @@
-// Waiting until a lamp that was just switched on has warmed up: test pictures of one exposure, some seconds apart, in which
-// the reference patch is read. They are not kept.
+// Waiting until a lamp that was just switched on has warmed up: test pictures of one exposure, some seconds apart, in
+// which the reference patch is read. They are not kept.
 #pragma once
 
 #include <functional>
@@ -21,15 +21,21 @@ struct LampWatch {
 struct LampSettling {
   int test_pictures = 0;
   double waited_s = 0;
-  std::optional<double> change;  // relative, in the last interval; nothing: the lamp cannot be read
+  std::optional<double> change;  // relative, in the last interval that was read
+  bool readable = true;          // false: the last test picture did not show the lamp's strength
 };
+
+// What is said, and kept in the journal, of a lamp that cannot be read.
+inline constexpr const char* kLampNotWatched =
+    "the lamp is not watched while it warms up: its reference patch cannot be read; see that it stands free and lit, "
+    "or wait until the lamp is warm before the next session";
 
 // Strength of the lamp in a test picture, in any unit; nothing where it cannot be read.
 using ReadLamp = std::function<std::optional<double>(const PlanStep&, const rig::Picture& test)>;
 
 // The camera is set already. `between` is called every second and before each picture, and may throw to end the run;
-// `said` is given a line for the person when the lamp is not steady yet. Errors: those of the camera; std::runtime_error
-// when the limit is reached.
+// `said` is given a line for the person when the lamp is not steady yet or cannot be read. Errors: those of the camera;
+// std::runtime_error when the limit is reached.
 LampSettling watch_lamp(rig::Camera& camera, rig::Clock& clock, const PlanStep& step, const LampWatch& watch,
                         const ReadLamp& read, const std::function<void()>& between,
                         const std::function<void(const std::string&)>& said);

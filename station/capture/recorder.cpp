@@ -108,7 +108,10 @@ void Recorder::lamp_watched(const PlanStep& step, const LampSettling& settling) 
   nlohmann::json data = {
       {"step", step.id}, {"test_pictures", settling.test_pictures}, {"waited_s", settling.waited_s}};
   if (settling.change) data["change"] = three_digits(*settling.change);
-  durably([&] { session_.append("lamp_watch", data); });
+  durably([&] {
+    session_.append("lamp_watch", data);
+    if (!settling.readable) session_.append("warning", {{"step", step.id}, {"message", kLampNotWatched}});
+  });
 }
 
 void Recorder::metered(const PlanStep& step, const Metering& metering) {

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <vector>
 
 #include "station/capture/bracket.h"
+#include "station/capture/delivered_pictures.h"
 #include "station/capture/picture_record.h"
 #include "station/capture/recorder.h"
-#include "station/capture/sha256.h"
+#include "station/capture/turn_ahead.h"
 
 namespace station {
 namespace {
@@ -42,7 +42,7 @@ Finding bad(const std::string& check, const std::string& reason, bool may_pass_a
 class CaptureRun {
  public:
   CaptureRun(const Plan& plan, const RunDevices& devices, Recorder& recorder, const RunOptions& options)
-      : plan_(plan), devices_(devices), recorder_(recorder), options_(options) {}
+      : plan_(plan), devices_(devices), recorder_(recorder), options_(options), ahead_(devices.turntable) {}
 
   void go() {
     require_known_steps();
@@ -163,7 +163,9 @@ class CaptureRun {
       let_lamp_settle(step);
       poll();
       const rig::Picture delivered = devices_.camera.capture();
+      turn_ahead(step);
       record.verdict = judge(step, record, delivered);
+      ahead_.wait();
       if (options_.judged) {
         options_.judged(step, record.verdict);
       }
@@ -221,13 +223,17 @@ class CaptureRun {
     }
   }
 
+  rig::Arrangement arrangement_of(const PlanStep& step) const {
+    return {.object = options_.object,
+            .mounting = step.mounting,
+            .on_platform = true,
+            .pose = options_.nominal_holder_pose(step.mounting),
+            .lamp = step.lamp,
+            .room_light = step.room_light};
+  }
+
   void arrange(const PlanStep& step) {
-    const rig::Arrangement wanted{.object = options_.object,
-                                  .mounting = step.mounting,
-                                  .on_platform = true,
-                                  .pose = options_.nominal_holder_pose(step.mounting),
-                                  .lamp = step.lamp,
-                                  .room_light = step.room_light};
+    const rig::Arrangement wanted = arrangement_of(step);
     if (!standing_ || !rig::same_arrangement(*standing_, wanted)) {
       poll();
       lamp_cold_ = wanted.lamp != rig::Lamp::off && (lamp_cold_ || !standing_ || standing_->lamp == rig::Lamp::off);
@@ -245,7 +251,7 @@ class CaptureRun {
       return;
     }
     const ReadLamp read = [this](const PlanStep& lit, const rig::Picture& test) {
-      delivered_.insert(sha256_hex(test.bytes));
+      delivered_.add_test(test);
       return options_.read_lamp(lit, test);
     };
     recorder_.lamp_watched(step, watch_lamp(
@@ -254,8 +260,18 @@ class CaptureRun {
     lamp_cold_ = false;
   }
 
+  // To the step after this one, where nobody has to be asked for anything: the picture of this one is taken.
+  void turn_ahead(const PlanStep& step) {
+    const auto next = std::ranges::find_if(
+        plan_.steps, [&](const PlanStep& other) { return other.id != step.id && !is_done(other); });
+    if (options_.turn_ahead && next != plan_.steps.end() && next->platform_angle_rad != step.platform_angle_rad &&
+        standing_ && rig::same_arrangement(*standing_, arrangement_of(*next)) && wish() == StopWish::none) {
+      ahead_.begin(next->platform_angle_rad);
+    }
+  }
+
   double turn(double asked_rad) {
-    devices_.turntable.move_to(asked_rad);
+    ahead_.move_to(asked_rad);
     poll();
     const double read_rad = devices_.turntable.angle_rad();
     if (!(std::abs(read_rad - asked_rad) <= options_.angle_tolerance_rad)) {
@@ -305,7 +321,7 @@ class CaptureRun {
   // What the camera delivered for a test counts too: a camera that answers one picture late is found out.
   ChooseExposure watch_tests() {
     return [this](const PlanStep& step, const rig::Picture& test) {
-      delivered_.insert(sha256_hex(test.bytes));
+      delivered_.add_test(test);
       return options_.choose_exposure(step, test);
     };
   }
@@ -325,15 +341,10 @@ class CaptureRun {
                                                      settings_text(delivered.settings) +
                                                      "; set the camera's dial to M (manual), then resume"));
     }
-    const std::string hash = sha256_hex(delivered.bytes);
-    const auto same = std::find_if(recorder_.taken().begin(), recorder_.taken().end(),
-                                   [&](const auto& entry) { return entry.second.sha256 == hash; });
-    if (same != recorder_.taken().end() || !delivered_.insert(hash).second) {
-      const std::string of = same != recorder_.taken().end() ? "picture of '" + same->first
-                                                             : "test or refused picture before '" + step.id;
+    if (const auto same = delivered_.add(delivered, step.id, recorder_.taken())) {
       verdict.findings.push_back(
           bad("duplicate",
-              "the camera delivered the " + of + "' again for '" + step.id + "'; switch it off and on, then resume",
+              "the camera delivered the " + *same + " again for '" + step.id + "'; switch it off and on, then resume",
               true));
     }
     if (verdict.grade() != Grade::bad && options_.inspect) {
@@ -385,8 +396,9 @@ class CaptureRun {
   bool lamp_cold_ = false;                    // switched on since the last view
   std::optional<rig::Arrangement> standing_;  // unknown at the beginning: somebody may have been there
   std::vector<std::string> order_;            // steps in the order of their pictures
-  std::set<std::string> delivered_;           // hashes of all that the camera delivered in this run
+  DeliveredPictures delivered_;               // in this run
   std::vector<double> durations_s_;           // of this run's steps
+  TurnAhead ahead_;                           // last: its way ends before what it is reported to
 };
 
 // Stopping must not hide why: what fails here is left to the error that is under way.

@@ -47,6 +47,8 @@ struct RunOptions {
   LampWatch lamp_watch;
   std::function<void(const std::string&)> said;  // a line for the person while the run waits; may be empty
   int most_attempts = 3;                         // for one picture that may pass when it is taken again
+  // To the next view while a picture is looked at, in a thread of its own; never where the person has to act first.
+  bool turn_ahead = false;
   // Looks at a picture before it is kept; may be empty. Throws std::runtime_error when it cannot be read at all.
   std::function<Verdict(const PlanStep&, const rig::Picture&, double platform_reading_rad)> inspect;
   rig::BenchObject object = rig::BenchObject::holder;                   // what is photographed
@@ -59,13 +61,13 @@ struct RunOptions {
   StepDurations durations;
 };
 
-// Takes every picture of the plan that the session does not have yet, or that is to be taken again, and returns complete,
-// paused or aborted. When nothing is missing no device is touched. The stop record is on the disk before the platform is
-// stopped and devices are left.
+// Takes every picture of the plan that the session does not have yet, or that is to be taken again, and returns
+// complete, paused or aborted. When nothing is missing no device is touched. The stop record is on the disk before the
+// platform is stopped and devices are left.
 //
 // A picture that does not serve goes to refused/; where the next one may, it is taken again. When what was found (the
-// platform slipped, camera or table were moved, the lamp changed, the focus is lost) may have happened earlier, the views
-// since the last one that showed the contrary are withdrawn and taken again by the next run.
+// platform slipped, camera or table were moved, the lamp changed, the focus is lost) may have happened earlier, the
+// views since the last one that showed the contrary are withdrawn and taken again by the next run.
 //
 // Errors: those of devices and operator, and of pictures that do not serve: the session is suspended and says so
 // (as far as the disk lets it); RecordingFailed of the disk: failed. std::runtime_error for a plan or camera other than

@@ -22,6 +22,32 @@ namespace {
 
 using nlohmann::json;
 
+// "dark-transmission-" and 3; no number: 0.
+std::pair<std::string, unsigned long> numbered(const std::string& name) {
+  const std::size_t digits = name.find_last_not_of("0123456789") + 1;
+  const bool has_number = digits < name.size() && name.size() - digits < 9;
+  return {name.substr(0, digits), has_number ? std::stoul(name.substr(digits)) : 0};
+}
+
+// "pose-1, view-1 to 4": names whose numbers follow each other are told by the first and the last.
+std::string enumerated(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t begin = 0, end = 0; begin < names.size(); begin = end) {
+    const auto [stem, first] = numbered(names[begin]);
+    for (end = begin + 1; first > 0 && end < names.size(); ++end) {
+      if (numbered(names[end]) != std::pair(stem, first + (end - begin))) {
+        break;
+      }
+    }
+    end = std::max(end, begin + 1);
+    text += (text.empty() ? "" : ", ") + names[begin];
+    if (end - begin > 1) {
+      text += " to " + std::to_string(first + end - begin - 1);
+    }
+  }
+  return text;
+}
+
 class Verification {
  public:
   explicit Verification(const fs::path& folder) : folder_(folder) {}
@@ -142,13 +168,18 @@ class Verification {
     }
     report_.views_planned = view_count(*plan_);
     std::size_t needed = 0;
+    std::vector<std::string> missing;
     for (const PlanStep& step : plan_->steps) {
       const bool good = good_steps_.contains(step.id);
       report_.views += good && step.kind == StepKind::view ? 1U : 0U;
       needed += is_needed(step, taken_) || taken_.contains(step.id) ? 1U : 0U;
       if (!taken_.contains(step.id) && is_needed(step, taken_)) {
-        problem("step " + step.id + " has no picture; resume the session");
+        missing.push_back(step.id);
       }
+    }
+    if (!missing.empty()) {
+      problem((missing.size() == 1 ? "step " : std::to_string(missing.size()) + " steps have no picture: ") +
+              enumerated(missing) + (missing.size() == 1 ? " has no picture" : "") + "; resume the session");
     }
     for (const auto& [step, picture] : taken_) {
       if (find_step(*plan_, step) == nullptr) {

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <future>
 #include <map>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "calibration/develop.h"
+#include "calibration/linear_grey.h"
 #include "calibration/median.h"
 #include "calibration/polygon_mask.h"
 #include "calibration/sensor_maps.h"
@@ -47,6 +50,19 @@ double nearest_measured_s(const calibration::SensorResponse& response, double wa
   return nearest_s;
 }
 
+// A picture by which an exposure was chosen. Its tags are found while the camera takes the next one.
+struct TestPicture {
+  std::string step;
+  calibration::SensorPicture picture;
+  std::shared_future<calibration::TagObservation> tags;
+
+  const std::shared_future<calibration::TagObservation>& look() {
+    if (!tags.valid())
+      tags = std::async(std::launch::async, [seen = std::exchange(picture, {})] { return tags_in(seen); }).share();
+    return tags;
+  }
+};
+
 // One picture as all checks see it.
 struct Seen {
   const PlanStep& step;
@@ -81,10 +97,12 @@ class CaptureChecks::Work {
       choice.exposure_s = nearest_measured_s(calibration_.sensor->response, choice.exposure_s);
       choice.done = std::abs(std::log2(choice.exposure_s / picture.exposure_s)) < 0.1;
     }
-    test_tags_ = {step.id, tags_in(picture)};
+    // Further test pictures may follow this one: its tags are looked for where they are needed.
+    test_ = {.step = step.id, .picture = picture, .tags = {}};
+    if (choice.done) test_.look();
     // While the holder can still be put right; the reading was checked by the runner.
     if (!next && step.kind == StepKind::pose)
-      require_calibrated_bench(calibration_, read_bench(calibration_, asked_.rig, test_tags_.second),
+      require_calibrated_bench(calibration_, read_bench(calibration_, asked_.rig, test_.look().get()),
                                step.platform_angle_rad, "step " + step.id);
     return choice;
   }
@@ -98,8 +116,12 @@ class CaptureChecks::Work {
       return verdict_;
     }
     if (step.kind == StepKind::exposure) return verdict_;  // its view has been looked at
-    Seen seen{
-        .step = step, .raw = raw, .reading_rad = reading_rad, .grey = linear_grey(raw), .tags = {}, .bench = {}};
+    Seen seen{.step = step,
+              .raw = raw,
+              .reading_rad = reading_rad,
+              .grey = calibration::linear_grey(raw),
+              .tags = {},
+              .bench = {}};
     seen.tags = calibration::detect_tags(seen.grey);
     seen.bench = read_bench(calibration_, asked_.rig, seen.tags);
     check_bench(seen);
@@ -176,8 +198,8 @@ class CaptureChecks::Work {
   }
 
   void check_motion(const Seen& seen) {
-    if (test_tags_.first != seen.step.id) return;
-    const auto moved = motion_px(test_tags_.second, seen.tags);
+    if (test_.step != seen.step.id) return;
+    const auto moved = motion_px(test_.look().get(), seen.tags);
     if (!moved) return;
     found("motion", *moved > kMostMotion_px ? Grade::bad : Grade::good, moved,
           "'" + seen.step.id + "' moved by " + number_text(*moved, 2) + " px since the picture before it (limit " +
@@ -225,7 +247,7 @@ class CaptureChecks::Work {
     return Eigen::AngleAxisd(Eigen::Matrix3d(wanted.linear().transpose() * mounted.linear())).angle();
   }
 
-  void check_view(const Seen& seen) {
+  void check_view(Seen& seen) {
     const std::string name = "'" + seen.step.id + "'";
     const cv::Mat1b region = window(seen.step);
     const double saturated = saturated_fraction(seen.raw, region);
@@ -239,6 +261,7 @@ class CaptureChecks::Work {
                     " s: more than 5 % of the threads' window is saturated; move the lamp away, then resume"
               : name + " has " + percent_text(saturated) + " of the threads' window saturated; look at its bracket");
     check_focus(seen, region);
+    seen.grey.release();  // a large picture's lamp takes as much
     // A soft picture of the small patch says nothing of the lamp.
     if (verdict_.findings.back().grade != Grade::bad) check_lamp(seen, developed_of(seen.raw));
     const double level = bright_level(seen.raw, region, ExposureAim{}.percentile);
@@ -320,7 +343,7 @@ class CaptureChecks::Work {
   RigCalibration calibration_;
   bool in_order_;
   Verdict verdict_;
-  std::pair<std::string, calibration::TagObservation> test_tags_;      // of a step's last test picture
+  TestPicture test_;                                                   // the last one
   std::string date_time_;                                              // of the picture before
   std::map<rig::Mounting, std::vector<PosePicture>> posed_;            // this run's
   std::map<rig::Mounting, std::optional<Eigen::Isometry3d>> mounted_;  // platform_from_holder

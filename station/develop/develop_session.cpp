@@ -82,8 +82,8 @@ DevelopedView place_view(const PlanStep& step, const PictureRecord& picture, con
   return developed;
 }
 
-// The session's dark frame says how far the bias has drifted since the calibration; the maps say the rest, with the noise
-// of many frames. Without a calibrated sensor it is the dark level itself.
+// The session's dark frame says how far the bias has drifted since the calibration; the maps say the rest, with the
+// noise of many frames. Without a calibrated sensor it is the dark level itself.
 // Without a dark frame (pictures taken by hand) it is the file's black level.
 calibration::DevelopOptions develop_options(const RigCalibration& calibration,
                                             const std::optional<calibration::SensorPicture>& taken_dark,
@@ -146,7 +146,9 @@ void write_view(const std::filesystem::path& session, const DevelopedView& devel
         "linear camera RGB, radiance unit (full scale per second); dark subtracted, "
         "exposures merged and divided by their times, flat-fielded, distortion removed; to be divided by "
         "the view's lamp_strength in views.json"},
-       {"threadstation/view", developed.view.id}});
+       {"threadstation/view", developed.view.id},
+       // Zip saves 6 % of pictures with noise in them and takes seconds for each of 24 MP.
+       {"compression", "none"}});
   renderer::write_png(session / developed.mask_file, developed.view.mask);
 }
 
@@ -188,8 +190,8 @@ struct DevelopedPicture {
   std::optional<double> sheet_width_mm;  // reflections only
 };
 
-// Everything of one view but the lamp's strength, which all views say together; its picture is on the disk afterwards and
-// no longer in memory.
+// Everything of one view but the lamp's strength, which all views say together; its picture is on the disk afterwards
+// and no longer in memory.
 DevelopedPicture develop_view(const std::filesystem::path& session, const SessionFile& asked,
                               const Pictures& pictures, const PlanStep& step, const RigCalibration& calibration,
                               const MountedHolder& mounted, DevelopedView& developed) {

@@ -9,6 +9,7 @@
 namespace station {
 namespace {
 
+constexpr int kMostColumns = 1024;  // that are looked at; between them a cylinder has no surprises
 constexpr float kBlackPaintAlbedo = 0.03F;
 constexpr double kRim_mm = 3;
 const double kLeastCosine = std::cos(75 * M_PI / 180);
@@ -43,15 +44,22 @@ int comparable_block_px(const renderer::YarnPatch& patch, const renderer::Camera
 
 cv::Mat1b lit_side(const renderer::CylinderShape& cylinder, const renderer::Camera& camera,
                    const Eigen::Vector3d& light_mm) {
+  const auto is_lit = [&](int column, int row) {
+    const renderer::CameraRay ray = renderer::ray_through(camera, column, row);
+    const auto point = side_point(ray, cylinder.radius_mm);
+    if (!point || point->z() < kRim_mm || point->z() > cylinder.height_mm - kRim_mm) return false;
+    const Eigen::Vector3d normal = Eigen::Vector3d(point->x(), point->y(), 0).normalized();
+    return normal.dot((light_mm - *point).normalized()) > kLeastCosine && -normal.dot(ray.direction) > kLeastCosine;
+  };
   cv::Mat1b mask(camera.height, camera.width, static_cast<unsigned char>(0));
-  for (int row = 0; row < mask.rows; ++row)
-    for (int column = 0; column < mask.cols; ++column) {
-      const renderer::CameraRay ray = renderer::ray_through(camera, column, row);
-      const auto point = side_point(ray, cylinder.radius_mm);
-      if (!point || point->z() < kRim_mm || point->z() > cylinder.height_mm - kRim_mm) continue;
-      const Eigen::Vector3d normal = Eigen::Vector3d(point->x(), point->y(), 0).normalized();
-      if (normal.dot((light_mm - *point).normalized()) > kLeastCosine && -normal.dot(ray.direction) > kLeastCosine)
-        mask(row, column) = 255;
+  const int block_px = (mask.cols + kMostColumns - 1) / kMostColumns;
+  for (int top = 0; top < mask.rows; top += block_px)
+    for (int left = 0; left < mask.cols; left += block_px) {
+      const cv::Rect block = cv::Rect(left, top, block_px, block_px) & cv::Rect({0, 0}, mask.size());
+      const int right = block.br().x - 1, bottom = block.br().y - 1;
+      if (!is_lit(left, top)) continue;
+      if (block_px == 1 || (is_lit(right, top) && is_lit(left, bottom) && is_lit(right, bottom)))
+        mask(block).setTo(255);
     }
   return mask;
 }

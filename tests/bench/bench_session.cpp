@@ -42,6 +42,11 @@ double now_s() {
   return Seconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// Of a place in the picture; the centre of the first pixel is at 0.
+double enlarged(double at_px) {
+  return (at_px + 0.5) * kEnlarge - 0.5;
+}
+
 RigFile drawn_rig() {
   nlohmann::json document = read_json_file(std::string(FIXTURES_DIR) + "/rigs/simulated_wire_grbl.json");
   document["simulation"]["samples_per_pixel"] = document["simulation"]["target_samples_per_pixel"] = 4;
@@ -53,7 +58,8 @@ RigFile large_rig() {
   RigFile rig = drawn_rig();
   rig::TrueLens& lens = rig.simulation->truth.lens;
   lens.width_px *= kEnlarge, lens.height_px *= kEnlarge;
-  for (double* value : {&lens.fx_px, &lens.fy_px, &lens.cx_px, &lens.cy_px}) *value *= kEnlarge;
+  lens.fx_px *= kEnlarge, lens.fy_px *= kEnlarge;
+  lens.cx_px = enlarged(lens.cx_px), lens.cy_px = enlarged(lens.cy_px);
   rig.focal_length_guess_px *= kEnlarge;
   return rig;
 }
@@ -62,10 +68,11 @@ RigCalibration large_calibration() {
   RigCalibration calibration = read_calibration(std::string(FIXTURES_DIR) + "/calibrations/simulated.json");
   calibration::Lens& lens = calibration.lens.lens;
   lens.width_px *= kEnlarge, lens.height_px *= kEnlarge;
-  for (double* value : {&lens.fx_px, &lens.fy_px, &lens.cx_px, &lens.cy_px}) *value *= kEnlarge;
+  lens.fx_px *= kEnlarge, lens.fy_px *= kEnlarge;
+  lens.cx_px = enlarged(lens.cx_px), lens.cy_px = enlarged(lens.cy_px);
   calibration.lens.projection_sigma_px *= kEnlarge;
   for (auto& [id, corners] : calibration.still_tags)
-    for (Eigen::Vector2d& corner : corners) corner *= kEnlarge;
+    for (Eigen::Vector2d& corner : corners) corner = {enlarged(corner.x()), enlarged(corner.y())};
   calibration.sensor.reset();
   return calibration;
 }

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "calibration/demosaic.h"
+#include "calibration/linear_grey.h"
 #include "synthetic_views.h"
 
 namespace calibration {
@@ -120,6 +123,82 @@ TEST(Develop, UndistortionPutsAPointWhereAPinholeWithTheSameMatrixSeesIt) {
   // centroid of a noiseless spot; rounding to 14 bits and to 1/32 px in the resampling leave less than 0.03 px
   EXPECT_NEAR(moments.m10 / moments.m00, straight.x(), 0.03);
   EXPECT_NEAR(moments.m01 / moments.m00, straight.y(), 0.03);
+}
+
+SensorPicture noise(cv::Size size, std::array<int, 4> cell) {
+  SensorPicture raw = photographed([](double, double, int) { return 0.0; }, size, 0.5, cell);
+  cv::RNG random(5);
+  random.fill(raw.mosaic, cv::RNG::UNIFORM, 400, 16383);
+  return raw;
+}
+
+TEST(Develop, RowsMayBeDemosaicedInAnyParts) {
+  LinearMosaic mosaic = merge_exposures({noise({41, 30}, {0, 1, 1, 2})}, {});
+  mosaic.variance = mosaic.radiance.clone();
+  const auto in_parts = [&](const std::vector<int>& ends) {
+    Developed out{.radiance = cv::Mat3f(mosaic.radiance.size()),
+                  .variance = cv::Mat3f(mosaic.radiance.size()),
+                  .saturated = cv::Mat1b(mosaic.radiance.size())};
+    int begin = 0;
+    for (const int end : ends) demosaic_rows(mosaic, {begin, end}, out), begin = end;
+    return out;
+  };
+  const Developed once = in_parts({30}), parts = in_parts({1, 8, 15, 30});
+  EXPECT_EQ(cv::norm(once.radiance, parts.radiance, cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(once.variance, parts.variance, cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(once.saturated, parts.saturated, cv::NORM_INF), 0);
+}
+
+// The variance of a mean of values with the same variance is that over their number.
+TEST(Develop, WhatAColourIsMadeFromMakesItsVariance) {
+  LinearMosaic mosaic = merge_exposures({noise({8, 8}, {0, 1, 1, 2})}, {});
+  mosaic.variance = cv::Mat1f(mosaic.radiance.size(), 0.4F);
+  Developed out{.radiance = cv::Mat3f(mosaic.radiance.size()),
+                .variance = cv::Mat3f(mosaic.radiance.size()),
+                .saturated = cv::Mat1b(mosaic.radiance.size())};
+  demosaic_rows(mosaic, {0, 8}, out);
+  EXPECT_LT(cv::norm(out.variance(4, 4) - cv::Vec3f(0.4F, 0.1F, 0.1F)), 1e-6) << "a red site";
+  EXPECT_LT(cv::norm(out.variance(4, 5) - cv::Vec3f(0.2F, 0.4F, 0.2F)), 1e-6) << "a green one";
+}
+
+TEST(Develop, BandsOfAStraightenedPictureFitTogether) {
+  Lens lens = synthetic::narrow_lens();
+  const Developed seen = develop(noise({lens.width_px, lens.height_px}, {0, 1, 1, 2}), {});
+  const Developed straight = develop(noise({lens.width_px, lens.height_px}, {0, 1, 1, 2}), {.lens = lens});
+  const cv::Matx33d matrix(lens.fx_px, 0, lens.cx_px, 0, lens.fy_px, lens.cy_px, 0, 0, 1);
+  cv::Mat3f expected;
+  cv::Mat1f column, row;
+  cv::initUndistortRectifyMap(matrix, std::vector<double>(lens.distortion.begin(), lens.distortion.end()),
+                              cv::noArray(), matrix, seen.radiance.size(), CV_32FC1, column, row);
+  cv::remap(seen.radiance, expected, column, row, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+  // Places are rounded to 1/32 px: a few pixels fall to the other side.
+  cv::Mat1b different;
+  cv::inRange(straight.radiance - expected, cv::Scalar::all(-1e-6), cv::Scalar::all(1e-6), different);
+  EXPECT_LT(straight.radiance.total() - static_cast<std::size_t>(cv::countNonZero(different)),
+            straight.radiance.total() / 1000);
+}
+
+TEST(LinearGrey, IsTheMeanOfTheDevelopedColoursAndNotBelowZero) {
+  for (const std::array<int, 4> cell :
+       {std::array<int, 4>{0, 1, 1, 2}, {2, 1, 1, 0}, {1, 0, 2, 1}, {1, 1, 1, 1}, {0, 0, 2, 1}}) {
+    const SensorPicture raw = noise({31, 22}, cell);
+    const cv::Mat3f radiance = develop(raw, {}).radiance;
+    const cv::Mat1f grey = linear_grey(raw);
+    for (int row = 0; row < grey.rows; ++row)
+      for (int column = 0; column < grey.cols; ++column) {
+        const cv::Vec3f& pixel = radiance(row, column);
+        ASSERT_NEAR(grey(row, column), std::max(0.F, (pixel[0] + pixel[1] + pixel[2]) / 3), 1e-5)
+            << row << ' ' << column;
+      }
+  }
+}
+
+TEST(LinearGrey, RefusesWhatCannotBeDeveloped) {
+  SensorPicture raw = noise({8, 8}, {0, 1, 1, 3});
+  EXPECT_THROW(linear_grey(raw), std::runtime_error);
+  raw.channel[3] = 2;
+  raw.exposure_s = 0;
+  EXPECT_THROW(linear_grey(raw), std::runtime_error);
 }
 
 TEST(Develop, EveryPixelMadeFromASaturatedValueIsMarkedAndNoOther) {

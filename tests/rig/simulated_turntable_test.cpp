@@ -1,33 +1,14 @@
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <limits>
 #include <numbers>
 
+#include "eventful_clock.h"
 #include "uniform_bench.h"
 
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-
-// A clock that lets a test act while somebody sleeps.
-class EventfulClock final : public rig::Clock {
- public:
-  double monotonic_s() override { return elapsed_s_; }
-  std::string utc() override { return "2026-11-21T10:20:30.123Z"; }
-  void sleep_s(double duration_s) override {
-    elapsed_s_ += duration_s;
-    if (at_time_s && elapsed_s_ >= *at_time_s) {
-      at_time_s.reset();
-      event();
-    }
-  }
-  std::optional<double> at_time_s;
-  std::function<void()> event;
-
- private:
-  double elapsed_s_ = 0;
-};
 
 struct TurningBench {
   explicit TurningBench(rig::TrueTurntable truth = {.scale = 1.002, .step_rad = 0.025 * kDegree, .speed_rad_s = 0.5})
@@ -106,11 +87,10 @@ TEST(SimulatedTurntable, RefusesAnglesThatAreNoAnglesBeforeItMoves) {
 TEST(SimulatedTurntable, AStopEndsTheMoveWhereItIsAndTheNextMoveGoesOn) {
   TurningBench rig({.scale = 1.002, .step_rad = 0.025 * kDegree, .speed_rad_s = 0.5});
   rig.table->home();
-  rig.clock.at_time_s = 1.0;
-  rig.clock.event = [&] {
+  rig.clock.plan(1.0, [&] {
     EXPECT_EQ(rig.table->state(), rig::TurntableState::moving);
     rig.table->stop();
-  };
+  });
   EXPECT_THROW(rig.table->move_to(90 * kDegree), std::runtime_error);
   EXPECT_EQ(rig.table->state(), rig::TurntableState::stopped);
   // Half a radian after a second; the stop is seen within a slice of 0.02 s, 0.01 rad.
@@ -124,8 +104,7 @@ TEST(SimulatedTurntable, AStopEndsTheMoveWhereItIsAndTheNextMoveGoesOn) {
 TEST(SimulatedTurntable, AStopWhileHomingLeavesThePositionUnknown) {
   TurningBench rig;
   rig.bench.turn_platform(2.0);
-  rig.clock.at_time_s = 1.0;
-  rig.clock.event = [&] { rig.table->stop(); };
+  rig.clock.plan(1.0, [&] { rig.table->stop(); });
   EXPECT_THROW(rig.table->home(), std::runtime_error);
   EXPECT_EQ(rig.table->state(), rig::TurntableState::unknown_position);
   rig.table->home();

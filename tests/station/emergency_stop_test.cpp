@@ -25,6 +25,7 @@ class WatchedPort final : public rig::SimulatedPort {
  public:
   explicit WatchedPort(std::shared_ptr<rig::SimulatedPort> port) : port_(std::move(port)) {}
   void power_on() override { port_->power_on(); }
+  void opened() override { port_->opened(); }
   void receive(std::string_view bytes) override {
     if (armed && (bytes.find('!') != std::string_view::npos || bytes.find('\x18') != std::string_view::npos) &&
         armed.exchange(false)) {

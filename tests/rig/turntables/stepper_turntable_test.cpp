@@ -148,16 +148,15 @@ TEST_P(StepperTurntable, ApproachesFromOneSideWhenItHasBacklash) {
   double least_rad = 1e9;
   std::function<void()> watch = [&] {
     least_rad = std::min(least_rad, rig.true_angle_rad());
-    rig.clock.at_s = rig.clock.monotonic_s();
-    rig.clock.event = watch;
+    rig.clock.plan(0, watch);
   };
-  rig.clock.event = watch;
+  rig.clock.plan(0, watch);
   table->move_to(30 * kDegree);
   EXPECT_NEAR(least_rad, 27 * kDegree, 1e-9);
   EXPECT_NEAR(rig.true_angle_rad(), 30 * kDegree, 1e-12);
   least_rad = 1e9;
   table->move_to(45 * kDegree);
-  rig.clock.event = nullptr;
+  rig.clock.plan(0, [] {});
   EXPECT_NEAR(least_rad, 30 * kDegree, 1e-9);
 }
 
@@ -166,11 +165,10 @@ TEST_P(StepperTurntable, AStopEndsTheMoveKeepsThePositionAndTheNextMoveGoesOn) {
     Rig own(GetParam());
     const auto table = own.make_turntable();
     table->home();
-    own.clock.at_s = own.clock.monotonic_s() + after_s;
-    own.clock.event = [&] {
+    own.clock.plan(after_s, [&] {
       EXPECT_EQ(table->state(), rig::TurntableState::moving);
       table->stop();
-    };
+    });
     EXPECT_THAT(refusal([&] { table->move_to(90 * kDegree); }), HasSubstr("was stopped at"));
     EXPECT_EQ(table->state(), rig::TurntableState::stopped);
     const double stood_rad = own.true_angle_rad();
@@ -206,6 +204,16 @@ TEST_P(StepperTurntable, AStopBeforeAnyWriteOfAnotherConnectionStopsThePlatform)
       [](rig::Turntable& table, Rig&) { table.home(); }, "home it again");
 }
 
+TEST_P(StepperTurntable, ABoardThatWasUnpluggedIsNotStartedByOpeningItsLine) {
+  rig.port->unplug();
+  rig.port->opened();
+  EXPECT_FALSE(rig.port->plugged());
+  EXPECT_THROW(rig.make_turntable(), rig::Unplugged);
+  rig.port->power_on();
+  rig.make_turntable()->home();
+  EXPECT_NEAR(rig.true_angle_rad(), 0, 1e-12);
+}
+
 TEST_P(StepperTurntable, AStopWhileStandingKeepsThePosition) {
   const auto table = rig.make_turntable();
   table->home();
@@ -219,8 +227,7 @@ TEST_P(StepperTurntable, AStopWhileStandingKeepsThePosition) {
 
 TEST_P(StepperTurntable, AStopWhileHomingLeavesThePositionUnknown) {
   const auto table = rig.make_turntable();
-  rig.clock.at_s = rig.clock.monotonic_s() + 0.5;
-  rig.clock.event = [&] { table->stop(); };
+  rig.clock.plan(0.5, [&] { table->stop(); });
   EXPECT_THAT(refusal([&] { table->home(); }), HasSubstr("home it again"));
   EXPECT_EQ(table->state(), rig::TurntableState::unknown_position);
   const double stood_rad = rig.true_angle_rad();

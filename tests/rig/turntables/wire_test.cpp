@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <future>
 #include <thread>
 
 #include "rig/device_contract.h"
@@ -14,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-using Rig = WiredBench<rig::SimulatedClock>;
+using Rig = WiredBench<EventfulClock>;
 enum class Line { pty, serial };
 
 std::unique_ptr<rig::ByteLine> open_line(Line kind, const std::string& path) {
@@ -72,13 +73,51 @@ TEST_P(Wire, APulledPlugIsToldApartFromSilenceWhileReading) {
 
 TEST_P(Wire, APulledPlugIsToldWhileWriting) {
   const auto open = open_line(line(), server->path());
-  rig.port->unplug();
+  rig.clock.plan(0.5, [this] { rig.port->unplug(); });
   EXPECT_THROW(
       while (true) {
         open->write("?");
+        rig.clock.sleep_s(0.1);
         open->read(0.01);
       },
       rig::Unplugged);
+  EXPECT_FALSE(rig.clock.planned());
+}
+
+// Opening a port starts the board behind it; one that is unplugged in that very moment is not started again.
+TEST_P(Wire, APlugPulledWhileTheLineIsOpenedStaysPulled) {
+  class PulledWhenOpened final : public rig::SimulatedPort {
+   public:
+    PulledWhenOpened(std::shared_ptr<rig::SimulatedPort> port, std::future<void> has_line)
+        : port_(std::move(port)), has_line_(std::move(has_line)) {}
+    void power_on() override { port_->power_on(); }
+    void opened() override {
+      has_line_.wait();
+      port_->unplug();
+      port_->opened();
+    }
+    void receive(std::string_view bytes) override { port_->receive(bytes); }
+    std::string transmit() override { return port_->transmit(); }
+    void unplug() override { port_->unplug(); }
+    bool plugged() override { return port_->plugged(); }
+    int operations() override { return port_->operations(); }
+
+   private:
+    std::shared_ptr<rig::SimulatedPort> port_;
+    std::future<void> has_line_;
+  };
+  std::promise<void> has_line;
+  server = rig::serve_on_pty(std::make_shared<PulledWhenOpened>(rig.port, has_line.get_future()));
+  const auto open = open_line(line(), server->path());
+  has_line.set_value();
+  const auto write_for_a_while = [&] {
+    for (int i = 0; i < 300; ++i) {
+      open->write("?");
+      open->read(0.01);
+    }
+  };
+  EXPECT_THROW(write_for_a_while(), rig::Unplugged);
+  EXPECT_FALSE(rig.port->plugged());
 }
 
 TEST_P(Wire, SilenceIsAnEmptyRead) {
@@ -96,14 +135,8 @@ TEST_P(Wire, ItIsTakenForOneProgramAlone) {
 TEST_P(Wire, APlugPulledInTheMiddleOfAMoveIsSaidAndAnotherPortIsFoundForHoming) {
   const auto table = rig.make_turntable();
   table->home();
-  std::thread puller([this] {
-    while (rig.true_angle_rad() < 10 * kDegree) {
-      std::this_thread::yield();
-    }
-    rig.port->unplug();
-  });
+  rig.clock.plan(0.5, [this] { rig.port->unplug(); });  // 15 deg on the way
   EXPECT_THAT(refusal([&] { table->move_to(350 * kDegree); }), HasSubstr("was unplugged"));
-  puller.join();
   EXPECT_EQ(table->state(), rig::TurntableState::unknown_position);
   EXPECT_THAT(refusal([&] { table->home(); }), testing::AnyOf(HasSubstr("plug"), HasSubstr("start")));
   table->stop();  // nothing is there to be stopped, and nothing fails
@@ -132,14 +165,8 @@ TEST_P(Wire, SilenceInTheMiddleOfAMoveIsATimeoutAndNoPulledPlug) {
 TEST_P(Wire, AStopFromAnotherThreadReachesTheMotorWhileTheMoverSleeps) {
   const auto table = rig.make_turntable();
   table->home();
-  std::thread stopper([&] {
-    while (rig.true_angle_rad() < 20 * kDegree) {
-      std::this_thread::yield();
-    }
-    table->stop();
-  });
+  rig.clock.plan(1, [&] { std::thread([&] { table->stop(); }).join(); });  // 30 deg on the way
   EXPECT_THAT(refusal([&] { table->move_to(350 * kDegree); }), HasSubstr("was stopped at"));
-  stopper.join();
   EXPECT_LT(rig.true_angle_rad(), 340 * kDegree);
   EXPECT_NEAR(table->angle_rad(), rig.true_angle_rad(), 1e-12);
 }

@@ -8,6 +8,7 @@
 #include <ostream>
 #include <string>
 
+#include "../eventful_clock.h"
 #include "rig/clock.h"
 #include "rig/simulated_bench.h"
 #include "rig/turntables/controllers.h"
@@ -21,25 +22,6 @@ enum class Protocol { grbl, zaber };
 inline std::ostream& operator<<(std::ostream& out, Protocol protocol) {
   return out << (protocol == Protocol::grbl ? "Grbl" : "Zaber");
 }
-
-// A clock that lets a test act when it reaches a time.
-class EventfulClock final : public rig::Clock {
- public:
-  double monotonic_s() override { return elapsed_s_; }
-  std::string utc() override { return "2026-11-21T10:20:30.123Z"; }
-  void sleep_s(double duration_s) override {
-    elapsed_s_ += duration_s;
-    if (event && elapsed_s_ >= at_s) {
-      const std::function<void()> now = std::exchange(event, nullptr);
-      now();
-    }
-  }
-  double at_s = 0;
-  std::function<void()> event;
-
- private:
-  double elapsed_s_ = 0;
-};
 
 template <typename ClockKind>
 struct WiredBench {

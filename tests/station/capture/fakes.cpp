@@ -159,6 +159,7 @@ void FakeTurntable::move_to(double angle_rad) {
     throw std::runtime_error("the platform was asked to turn before it was homed");
   }
   ++moves;
+  if (on_move) on_move(angle_rad);
   angle_rad_ = angle_rad + (slips ? 0.05 : 0.0);
 }
 

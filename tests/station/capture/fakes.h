@@ -87,6 +87,7 @@ class FakeTurntable final : public rig::Turntable {
   bool homed = false, slips = false;
   int stops = 0, moves = 0;
   std::function<void()> on_stop;
+  std::function<void(double angle_rad)> on_move;  // before it is there; may throw
 
   void home() override { homed = true, angle_rad_ = 0; }
   void move_to(double angle_rad) override;

@@ -31,6 +31,12 @@ struct ColdLamp : RunnerTest {
       if (record.event == "lamp_watch") found.push_back(record.data);
     return found;
   }
+  std::vector<std::string> warnings() const {
+    std::vector<std::string> found;
+    for (const JournalRecord& record : records_of(path))
+      if (record.event == "warning") found.push_back(record.data.at("message"));
+    return found;
+  }
   double missing = 0.1, time_constant_s = 30, on_since_s = -1;
   std::vector<std::string> said;
 };
@@ -38,22 +44,43 @@ struct ColdLamp : RunnerTest {
 TEST_F(ColdLamp, IsWaitedForAndThePersonIsToldSo) {
   EXPECT_EQ(fake.run(path, small_plan()), RunState::complete);
   ASSERT_EQ(watches().size(), 1U) << "from the front to behind it stays on";
-  // 0.1 exp(-t / 30) (1 - exp(-10 / 30)) of the strength is gained in the ten seconds after t: below half a percent from t = 52.
+  // 0.1 exp(-t / 30) (1 - exp(-10 / 30)) of the strength is gained in the ten seconds after t: below half a percent
+  // from t = 52.
   EXPECT_EQ(watches()[0].at("waited_s"), 70);
   EXPECT_EQ(said.size(), 6U);
   EXPECT_THAT(said[0], HasSubstr("warming up (3.1 % in 10 s, 0.5 % is steady): waiting, 10 s so far, at most 600 s"));
 }
 
-TEST_F(ColdLamp, ThatIsWarmOrCannotBeReadIsLookedAtOnceAndLeftAlone) {
+TEST_F(ColdLamp, ThatIsWarmIsLookedAtOnceAndLeftAlone) {
   missing = 0;
   fake.run(path, small_plan());
   EXPECT_EQ(watches().at(0).at("test_pictures"), 2);
   EXPECT_TRUE(said.empty());
+  EXPECT_TRUE(warnings().empty());
+}
+
+TEST_F(ColdLamp, ThatCannotBeReadIsSaidNotToBeWatched) {
   fake.options.read_lamp = [](const PlanStep&, const rig::Picture&) { return std::optional<double>(); };
-  path = folder / "unread";
   fake.run(path, small_plan());
   EXPECT_EQ(watches().at(0).at("test_pictures"), 1);
   EXPECT_FALSE(watches()[0].contains("change"));
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_THAT(said[0], HasSubstr("the lamp is not watched"));
+  ASSERT_EQ(warnings().size(), 1U);
+  EXPECT_THAT(warnings()[0], HasSubstr("the lamp is not watched"));
+}
+
+TEST_F(ColdLamp, ThatCannotBeReadAnyMoreIsSaidNotToBeWatched) {
+  int readings = 0;
+  fake.options.read_lamp = [&readings](const PlanStep&, const rig::Picture& test) {
+    return ++readings < 3 ? std::optional(FakeCamera::level(test) / test.settings.exposure_s) : std::nullopt;
+  };
+  fake.run(path, small_plan());
+  EXPECT_EQ(watches().at(0).at("test_pictures"), 3);
+  ASSERT_EQ(said.size(), 2U);
+  EXPECT_THAT(said[0], HasSubstr("warming up"));
+  EXPECT_THAT(said[1], HasSubstr("the lamp is not watched"));
+  EXPECT_EQ(warnings().size(), 1U);
 }
 
 TEST_F(ColdLamp, ThatNeverSettlesIsGivenUpInOneLineAndTheSessionResumes) {

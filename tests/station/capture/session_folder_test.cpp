@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 
+#include "station/capture/folder_lock.h"
 #include "station/capture/sha256.h"
 #include "station/capture/stored_file.h"
 #include "tests/station/capture/fakes.h"
@@ -156,6 +157,19 @@ TEST_F(SessionFolderTest, IsOpenInOneProcessAtATime) {
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_EQ(status, 0);
   EXPECT_EQ(message_of([&] { fake.open(path); }), "") << "the lock ends with its process";
+}
+
+// After a power cut the file is still there, and the number in it may be another process's by now.
+TEST_F(SessionFolderTest, ALockOfAnotherBootIsStale) {
+  fake.create(path, small_plan());
+  const std::string of_another_boot = std::to_string(::getppid()) + "\n";
+  write_text(path / kLockFile, of_another_boot);
+  EXPECT_FALSE(folder_in_use(path));
+  EXPECT_EQ(fake.run(path, small_plan()), RunState::complete);
+  EXPECT_NE(text_of(path / kLockFile), of_another_boot);
+  const SessionFolder session = fake.open(path);
+  EXPECT_TRUE(folder_in_use(path));
+  EXPECT_EQ(std::stol(text_of(path / kLockFile)), ::getpid());
 }
 
 }  // namespace

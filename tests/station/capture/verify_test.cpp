@@ -52,6 +52,18 @@ TEST_F(VerifyTest, NamesAFlippedBitAMissingFileAndAnExtraOne) {
               ElementsAre("raw/transmission-1.arw is missing", "raw/cat.jpg is not named in the journal"));
 }
 
+TEST_F(VerifyTest, ASessionThatHasJustBegunNamesItsMissingStepsInOneLine) {
+  path = folder / "begun";
+  fake.options.choose_exposure = nullptr;
+  fake.options.stop_wish = [this] { return fake.camera.captures > 0 ? StopWish::pause : StopWish::none; };
+  fake.camera.captures = 0;
+  fake.run(path, small_plan());
+  EXPECT_THAT(problems(),
+              ElementsAre("6 steps have no picture: reflection-horizontal-1 to 2, transmission-1, "
+                          "dark-reflection-horizontal-1 to 2, dark-transmission-1; resume the session",
+                          "the session is paused, not complete; resume it"));
+}
+
 TEST_F(VerifyTest, APictureThatWasReplacedByALinkIsMissing) {
   fs::rename(path / "raw/transmission-1.arw", folder / "kept.arw");
   fs::create_symlink(folder / "kept.arw", path / "raw/transmission-1.arw");
@@ -90,8 +102,8 @@ TEST_F(VerifyTest, AnInterruptedSessionNamesWhatIsLeftToDo) {
   other.options.stop_wish = [&] { return other.camera.captures == 5 ? StopWish::pause : StopWish::none; };
   ASSERT_EQ(other.run(second, small_plan()), RunState::paused);
   const VerifyReport report = verify_session(second);
-  EXPECT_THAT(report.problems, ElementsAre("step dark-reflection-horizontal-2 has no picture; resume the session",
-                                           "step dark-transmission-1 has no picture; resume the session",
+  EXPECT_THAT(report.problems, ElementsAre("2 steps have no picture: dark-reflection-horizontal-2, "
+                                           "dark-transmission-1; resume the session",
                                            "the session is paused, not complete; resume it"));
   EXPECT_EQ(report.views, 3U);
   EXPECT_FALSE(report.complete);
