@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "renderer/image_file.h"
+#include "station/capture/sha256.h"
 #include "station/documents/reader.h"
+#include "station/render_scene.h"
 #include "tests/station/program.h"
 
 namespace station_test {
@@ -42,6 +45,15 @@ class Render : public ::testing::Test {
     EXPECT_EQ(result.status, 1) << result.error;
     EXPECT_EQ(result.error_lines(), 1) << result.error;
     EXPECT_NE(result.error.find(must_name), std::string::npos) << result.error;
+  }
+  // Interrupted as soon as the first line of progress is there; `out` then is what it said from then on.
+  ProgramResult interrupted_render(const std::string& scene, const std::string& out, const std::string& more = {}) {
+    const std::string pipe = folder_ / "pipe";
+    const std::string command =
+        std::string(THREADSTATION_PROGRAM) + " render " + scene + " --out " + (folder_ / out).string() + more;
+    return run_shell("mkfifo " + pipe + "; " + command + " 2> " + pipe +
+                     " & program=$!; { read first; kill -INT $program; cat; } < " + pipe +
+                     "; wait $program; status=$?; rm " + pipe + "; exit $status");
   }
   TemporaryFolder folder_;
 };
@@ -101,20 +113,88 @@ TEST_F(Render, BadFilesGiveOneClearLine) {
   EXPECT_EQ(wrong_use.status, 2) << wrong_use.error;
 }
 
-TEST_F(Render, CtrlCStopsItInOneLineAndLeavesNoPicture) {
+TEST_F(Render, CtrlCLeavesACheckpointFromWhichTheSameCommandEndsWithTheSamePicture) {
   json scene = small_scene("plain_swatch");
-  scene["samples_per_pixel"] = 256;
-  scene["camera"]["width_px"] = scene["camera"]["height_px"] = 4000;  // hours
-  const std::string out = folder_ / "a.exr", pipe = folder_ / "pipe";
-  const std::string render =
-      std::string(THREADSTATION_PROGRAM) + " render " + written("scene.json", scene) + " --out " + out;
-  // Interrupts it as soon as the first line of progress is there, and prints what it says from then on.
-  const ProgramResult result =
-      run_shell("mkfifo " + pipe + "; " + render + " 2> " + pipe +
-                " & program=$!; { read first; kill -INT $program; cat; } < " + pipe + "; wait $program");
-  EXPECT_EQ(result.status, 1) << result.out << result.error;
-  EXPECT_NE(result.out.find("threadstation: rendering was stopped on request"), std::string::npos) << result.out;
-  EXPECT_FALSE(std::filesystem::exists(out));
+  scene["samples_per_pixel"] = 400;
+  const std::string file = written("scene.json", scene);
+  ASSERT_EQ(render(file, "whole.exr").status, 0);
+  const ProgramResult stopped = interrupted_render(file, "a.exr");
+  EXPECT_EQ(stopped.status, 1) << stopped.out << stopped.error;
+  EXPECT_NE(stopped.out.find("threadstation: rendering was stopped on request"), std::string::npos) << stopped.out;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.exr"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "a.exr.checkpoint"));
+  EXPECT_GT(std::filesystem::file_size(folder_ / "a.preview.png"), 100u);
+  const ProgramResult finished = render(file, "a.exr", {"--json"});
+  ASSERT_EQ(finished.status, 0) << finished.error;
+  const json report = json::parse(finished.out);
+  EXPECT_GT(report.at("samples_before"), 0);
+  EXPECT_EQ(report.at("samples").get<int>() + report.at("samples_before").get<int>(), 40 * 40 * 400);
+  EXPECT_EQ(station::sha256_of_file(folder_ / "a.exr"), station::sha256_of_file(folder_ / "whole.exr"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.exr.checkpoint"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.preview.png"));
+}
+
+TEST_F(Render, AnotherRenderingsCheckpointIsRefusedInOneLineUntilItIsThrownAway) {
+  json scene = small_scene("plain_swatch");
+  const json as_it_was = station::read_json_file(scene["threads"][0].get<std::string>());
+  written("thread.json", as_it_was);
+  scene["threads"][0] = "thread.json";
+  const std::string file = written("scene.json", scene);
+  ASSERT_EQ(interrupted_render(file, "a.exr", " --spp 4000").status, 1);
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& must_name) {
+    const ProgramResult result = render(file, "a.exr", more);
+    expect_one_line(result, must_name);
+    EXPECT_NE(result.error.find("a.exr.checkpoint"), std::string::npos) << result.error;
+    EXPECT_NE(result.error.find("--fresh"), std::string::npos) << result.error;
+  };
+  refused({}, "samples per pixel 4000, not 2");
+  refused({"--spp", "4000", "--seed", "9"}, "seed 1, not 9");
+  json thread = as_it_was;
+  thread["diameter_mm"] = 0.7;
+  written("thread.json", thread);
+  refused({"--spp", "4000"}, "another scene");
+  written("thread.json", as_it_was);
+  const std::filesystem::path checkpoint = folder_ / "a.exr.checkpoint";
+  const auto spoil = [&](std::streamoff at) {
+    std::fstream bytes(checkpoint, std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(at, std::ios::end);
+    bytes.put('?');
+  };
+  spoil(-5000);
+  refused({"--spp", "4000"}, "damaged");
+  std::filesystem::resize_file(checkpoint, 3000);
+  refused({"--spp", "4000"}, "cut short");
+  ASSERT_EQ(render(file, "a.exr", {"--fresh"}).status, 0);
+  ASSERT_EQ(render(file, "b.exr").status, 0);
+  EXPECT_EQ(station::sha256_of_file(folder_ / "a.exr"), station::sha256_of_file(folder_ / "b.exr"));
+  EXPECT_FALSE(std::filesystem::exists(checkpoint));
+}
+
+TEST_F(Render, CheckpointsNowAndThenDoNotChangeThePicture) {
+  json scene = small_scene("plain_swatch");
+  scene["samples_per_pixel"] = 32;
+  const std::string file = written("scene.json", scene);
+  ASSERT_EQ(render(file, "a.exr").status, 0);
+  station::render_scene({.scene = file,
+                         .out = folder_ / "b.exr",
+                         .checkpoint_every_s = 0.1,
+                         .progress = station::ProgressStyle::quiet});
+  EXPECT_EQ(station::sha256_of_file(folder_ / "a.exr"), station::sha256_of_file(folder_ / "b.exr"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "b.exr.checkpoint"));
+}
+
+TEST_F(Render, ANoiseToReachPutsSamplesWhereTheyAreNeeded) {
+  const std::string file = written("scene.json", small_scene("satin_cylinder"));
+  const ProgramResult result = render(file, "a.exr", {"--noise", "20%", "--spp", "2000", "--json"});
+  ASSERT_EQ(result.status, 0) << result.error;
+  const json report = json::parse(result.out);
+  EXPECT_LT(report.at("noise"), 0.2);
+  EXPECT_EQ(report.at("noisy"), 0);
+  const double samples = report.at("samples").get<double>() / (33 * 50);
+  EXPECT_GE(samples, 64);
+  EXPECT_LT(samples, 1000);
+  for (const char* wrong : {"0", "1 mm", "200%", "noise"})
+    EXPECT_EQ(render(file, "b.exr", {"--noise", wrong}).status, 2) << wrong;
 }
 
 }  // namespace
