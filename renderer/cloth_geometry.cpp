@@ -24,6 +24,13 @@ SurfaceRange shell_heights(const YarnPatch& patch) {
   return {range.low_mm - more, range.high_mm + more};
 }
 
+// A ray that crosses the cloth at 45 degrees stays in the column in which it starts.
+double margin_of(const Cloth& cloth) {
+  check_cloth(cloth.patch, cloth.threads.size());
+  const SurfaceRange heights = shell_heights(cloth.patch);
+  return heights.high_mm - heights.low_mm;
+}
+
 const ClothGeometry& cloth_of(void* user_pointer) {
   return *static_cast<const ClothGeometry*>(user_pointer);
 }
@@ -33,11 +40,9 @@ const ClothGeometry& cloth_of(void* user_pointer) {
 ClothGeometry::ClothGeometry(const Cloth& cloth, std::uint32_t first_curve_set, RTCDevice device)
     : shell_(make_shell(cloth.surface, shell_heights(cloth.patch))),
       period_mm_(cloth.patch.period_x_mm, cloth.patch.period_y_mm),
-      first_curve_set_(first_curve_set) {
-  check_cloth(cloth.patch, cloth.threads.size());
-  const SurfaceRange heights = shell_heights(cloth.patch);
-  // A ray that crosses the cloth at 45 degrees stays in the column in which it starts.
-  margin_mm_ = heights.high_mm - heights.low_mm;
+      margin_mm_(margin_of(cloth)),
+      first_curve_set_(first_curve_set),
+      places_(cloth.patch, margin_mm_ + 2 * kShellOverlap) {
   for (const RoundYarns& part : round_yarns_of(cloth.patch))
     for (const int thread : threads_of(part.patch))
       yarns_.push_back({cell_curves_of(part.patch, thread, margin_mm_ + 2 * kShellOverlap),

@@ -129,11 +129,6 @@ std::vector<cv::Rect> tiles_to_draw(const Film& film) {
   return tiles;
 }
 
-std::uint64_t pixel_number(const Camera& camera, int column, int row) {
-  return static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(camera.width) +
-         static_cast<std::uint64_t>(column);
-}
-
 void check_sizes(const Camera& camera, const RenderOptions& options, const Film& film) {
   const cv::Size size(camera.width, camera.height);
   if (film.counts.size() != size)
@@ -152,7 +147,7 @@ void PathTracer::Impl::add_samples(const PixelRays& pixel_rays, int column, int 
   Eigen::Array3d sum(film_sum[0], film_sum[1], film_sum[2]), batch = Eigen::Array3d::Zero();
   for (; count < goal; ++count) {
     sampler.start_sample(static_cast<std::uint32_t>(count));
-    const CameraRay ray = pixel_rays.at(column, row, sampler.next_2d());
+    const CameraRay ray = pixel_rays.sample(column, row, sampler);
     const Eigen::Array3d sample = radiance(ray, sampler, max_vertices, traced).cast<double>();
     sum += sample;
     batch += sample;
@@ -204,6 +199,12 @@ cv::Mat3f PathTracer::render(const Camera& camera, const RenderOptions& options)
   if (!refine(camera, options, film))
     throw std::runtime_error("rendering was stopped on request; start it again for the whole picture");
   return mean_radiance(film);
+}
+
+PictureLayers PathTracer::layers(const Camera& camera, const RenderOptions& options) const {
+  constexpr int kMostLayerSamples = 16;
+  return first_hit_layers(impl_->rays, impl_->models, camera, std::min(options.samples_per_pixel, kMostLayerSamples),
+                          options.seed, options.threads);
 }
 
 cv::Mat1b PathTracer::curve_coverage(const Camera& camera, int samples_per_pixel) const {

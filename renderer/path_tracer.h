@@ -9,6 +9,7 @@
 
 #include "renderer/camera.h"
 #include "renderer/film.h"
+#include "renderer/layers.h"
 #include "renderer/scene.h"
 
 namespace renderer {
@@ -48,6 +49,9 @@ class PathTracer {
   // time: goes on until the film has all samples, or returns false when stopped by `progress`. Called again with the same
   // scene, camera and options, it ends with the picture that render() gives, bit for bit. `statistics` are of this call.
   bool refine(const Camera& camera, const RenderOptions& options, Film& film) const;
+
+  // Of the first samples of such a rendering, at most 16 per pixel: far cheaper than its light.
+  PictureLayers layers(const Camera& camera, const RenderOptions& options) const;
 
   // 255 where a camera ray through the pixel (centre, or any of samples_per_pixel sub-positions) meets a curve first.
   cv::Mat1b curve_coverage(const Camera& camera, int samples_per_pixel) const;

@@ -2,6 +2,11 @@
 
 namespace renderer {
 
+std::uint64_t pixel_number(const Camera& camera, int column, int row) {
+  return static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(camera.width) +
+         static_cast<std::uint64_t>(column);
+}
+
 PixelRays::PixelRays(const Camera& camera, int column, int row, int width, int height)
     : column_(column), row_(row), width_(width), origin_(camera.world_from_camera.translation()) {
   const Eigen::Vector3d forward = camera.world_from_camera.linear().col(2);
@@ -12,6 +17,10 @@ PixelRays::PixelRays(const Camera& camera, int column, int row, int width, int h
       corners_.push_back(direction / direction.dot(forward));
     }
   }
+}
+
+CameraRay PixelRays::sample(int column, int row, Sampler& sampler) const {
+  return at(column, row, sampler.next_2d());
 }
 
 CameraRay PixelRays::at(int column, int row, const Eigen::Vector2f& u) const {

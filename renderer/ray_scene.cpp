@@ -27,6 +27,14 @@ RTCRayHit nearest(RTCScene scene, const Ray& ray, ClothQuery& query) {
   return found;
 }
 
+// Numbers of the segments with which a curve begins: segments that go on share control points.
+std::vector<std::uint32_t> first_segments(const CurveSet& curves) {
+  std::vector<std::uint32_t> first;
+  for (std::uint32_t i = 0; i < curves.segments.size(); ++i)
+    if (i == 0 || curves.segments[i] != curves.segments[i - 1] + 1) first.push_back(i);
+  return first;
+}
+
 }  // namespace
 
 RayScene::RayScene(Scene scene) : scene_(std::move(scene)) {
@@ -35,7 +43,10 @@ RayScene::RayScene(Scene scene) : scene_(std::move(scene)) {
     throw std::runtime_error("ray tracing: Embree could not start on this processor; it needs SSE2 or better");
   embree_ = {rtcNewScene(device_.get()), rtcReleaseScene};
   rtcSetSceneBuildQuality(embree_.get(), RTC_BUILD_QUALITY_HIGH);
-  for (const CurveSet& curves : scene_.curves) add_curves(device_.get(), embree_.get(), curves);
+  for (const CurveSet& curves : scene_.curves) {
+    add_curves(device_.get(), embree_.get(), curves);
+    first_segments_.push_back(first_segments(curves));
+  }
   for (const TriangleMesh& mesh : scene_.meshes) add_mesh(mesh);
   auto curve_set = static_cast<std::uint32_t>(scene_.curves.size());
   for (const Cloth& cloth : scene_.cloths) {
@@ -91,6 +102,23 @@ bool RayScene::occluded(const Ray& ray, float distance) const {
   RTCRay query = embree_ray(ray, distance);
   rtcOccluded1(embree_.get(), &context, &query);
   return query.tfar < 0;
+}
+
+std::optional<YarnPlace> RayScene::yarn_at(const Ray& ray) const {
+  ClothQuery query;
+  const RTCHit hit = nearest(embree_.get(), ray, query).hit;
+  if (hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  const std::uint32_t geometry = hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? hit.geomID : hit.instID[0];
+  const std::size_t first_mesh = scene_.curves.size(), first_cloth = first_mesh + scene_.meshes.size();
+  if (geometry >= first_cloth) {
+    YarnPlace place = cloths_[geometry - first_cloth]->yarn_at(query.cloth);
+    place.group = static_cast<std::uint32_t>(geometry - scene_.meshes.size());
+    return place;
+  }
+  if (geometry >= first_mesh) return std::nullopt;
+  const std::vector<std::uint32_t>& first = first_segments_[geometry];
+  const auto after = std::upper_bound(first.begin(), first.end(), hit.primID);
+  return YarnPlace{.group = geometry, .number = static_cast<int>(after - first.begin()) - 1};
 }
 
 bool RayScene::meets_curve_first(const Ray& ray) const {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "renderer/scene.h"
+#include "renderer/yarn_places.h"
 
 struct RTCDeviceTy;
 struct RTCSceneTy;
@@ -53,6 +54,8 @@ class RayScene {
   std::optional<SurfaceHit> intersect(const Ray& ray) const;
   // True when anything lies within `distance` along the ray.
   bool occluded(const Ray& ray, float distance) const;
+  // The yarn that a ray meets first; none when it meets none, or a body before.
+  std::optional<YarnPlace> yarn_at(const Ray& ray) const;
   // True when the first hit is on a curve, be it a cloth's.
   bool meets_curve_first(const Ray& ray) const;
 
@@ -68,6 +71,7 @@ class RayScene {
   MeshPoint mesh_point(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Ray& ray) const;
 
   Scene scene_;
+  std::vector<std::vector<std::uint32_t>> first_segments_;  // of each curve of each curve set
   std::shared_ptr<RTCDeviceTy> device_;
   std::vector<std::shared_ptr<const ClothGeometry>> cloths_;  // outlive the scene, which calls them
   std::shared_ptr<RTCSceneTy> embree_;

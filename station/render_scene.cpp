@@ -12,6 +12,8 @@
 #include "station/documents/session_file.h"
 #include "station/interrupt.h"
 #include "station/render/checkpoint.h"
+#include "station/render/render_channels.h"
+#include "station/render/render_progress.h"
 #include "station/report/display.h"
 
 namespace station {
@@ -24,11 +26,15 @@ double seconds_since(Clock::time_point start) {
 }
 
 // Before the work, not after it.
-void check_destination(const std::filesystem::path& out) {
+void check_destination(const RenderRequest& request) {
+  const std::filesystem::path& out = request.out;
   const std::string ending = out.extension().string();
   if (ending != ".exr" && ending != ".png")
     throw std::runtime_error("cannot write " + out.string() + ": found the ending \"" + ending +
                              "\", expected .exr (linear) or .png (display)");
+  if (ending != ".exr" && (request.layers || request.half))
+    throw std::runtime_error("cannot write " + out.string() +
+                             ": --layers and --half are for EXR files; give --out a name that ends in .exr");
   const std::filesystem::path folder = out.has_parent_path() ? out.parent_path() : ".";
   if (!std::filesystem::is_directory(folder))
     throw std::runtime_error("cannot write " + out.string() + ": there is no folder " + folder.string() +
@@ -39,53 +45,35 @@ double exposure_of(const RenderRequest& request, const SceneFile& scene, const c
   return request.exposure ? *request.exposure : scene.exposure ? *scene.exposure : display_scale(image);
 }
 
-void write_picture(const RenderRequest& request, const SceneFile& scene, const RenderIdentity& identity,
-                   const cv::Mat3f& image, RenderReport& report) {
-  if (request.out.extension() == ".exr") {
-    renderer::write_exr(request.out, image,
-                        {{"threadstation/content", "linear camera RGB, radiance; not white-balanced"},
-                         {"threadstation/scene", scene.name},
-                         {"threadstation/software", identity.software},
-                         {"threadstation/samples_per_pixel", std::to_string(identity.samples_per_pixel)},
-                         {"threadstation/noise", std::to_string(identity.noise)},
-                         {"threadstation/seed", std::to_string(identity.seed)}});
-    return;
-  }
-  report.exposure = exposure_of(request, scene, image);
-  renderer::write_png(request.out, display(image, report.exposure, scene.linear_srgb_from_camera));
-}
-
-// Shows the finished part of this run and what is left of it, not too often.
-class RenderProgress {
- public:
-  explicit RenderProgress(ProgressStyle style) : display_("render", style) {}
-
-  void show(double fraction) {
-    constexpr int kSteps = 20;
-    constexpr double kLeastEvery_s = 30;
-    if (first_ < 0) first_ = fraction;
-    const int step = static_cast<int>(kSteps * fraction);
-    if (step == step_ && seconds_since(shown_) < kLeastEvery_s) return;
-    const double gained = fraction - first_;
-    const double left_s = gained > 0 ? seconds_since(start_) / gained * (1 - fraction) : -1;
-    display_.show(static_cast<int>(100 * fraction), 100, "%", left_s);
-    step_ = step;
-    shown_ = Clock::now();
-  }
-  ProgressDisplay& display() { return display_; }
-
- private:
-  ProgressDisplay display_;
-  Clock::time_point start_ = Clock::now(), shown_ = start_;
-  double first_ = -1;  // fraction that was there already
-  int step_ = -1;
-};
-
 struct Rendering {
   const RenderRequest& request;
   const SceneFile& scene;
   const RenderIdentity& identity;
 };
+
+void write_exr(const Rendering& rendering, const renderer::PathTracer& tracer, const cv::Mat3f& image) {
+  const auto& [request, scene, identity] = rendering;
+  std::optional<renderer::PictureLayers> layers;
+  if (request.layers)
+    layers = tracer.layers(
+        scene.camera,
+        {.samples_per_pixel = identity.samples_per_pixel, .seed = identity.seed, .threads = request.threads});
+  renderer::write_exr(request.out, render_channels(image, layers ? &*layers : nullptr, scene, request.half),
+                      {{"threadstation/content", "linear camera RGB, radiance; not white-balanced"},
+                       {"threadstation/scene", scene.name},
+                       {"threadstation/software", identity.software},
+                       {"threadstation/samples_per_pixel", std::to_string(identity.samples_per_pixel)},
+                       {"threadstation/noise", std::to_string(identity.noise)},
+                       {"threadstation/seed", std::to_string(identity.seed)}});
+}
+
+void write_picture(const Rendering& rendering, const renderer::PathTracer& tracer, const cv::Mat3f& image,
+                   RenderReport& report) {
+  const RenderRequest& request = rendering.request;
+  if (request.out.extension() == ".exr") return write_exr(rendering, tracer, image);
+  report.exposure = exposure_of(request, rendering.scene, image);
+  renderer::write_png(request.out, display(image, report.exposure, rendering.scene.linear_srgb_from_camera));
+}
 
 // A checkpoint to go on from, and a picture of it to look at.
 void leave_behind(const Rendering& rendering, const renderer::Film& film) {
@@ -178,7 +166,7 @@ std::filesystem::path preview_of(const std::filesystem::path& picture) {
 
 RenderReport render_scene(const RenderRequest& request) {
   watch_interrupts();
-  check_destination(request.out);
+  check_destination(request);
   const Clock::time_point start = Clock::now();
   const SceneFile scene = read_scene(request.scene);
   const RenderIdentity identity{.scene_sha256 = sha256_of_scene(request.scene),
@@ -194,14 +182,15 @@ RenderReport render_scene(const RenderRequest& request) {
                       .samples_per_pixel = identity.samples_per_pixel,
                       .build_s = seconds_since(start),
                       .samples_before = renderer::samples_in(film)};
-  RenderProgress progress(request.progress);
+  RenderProgress progress("render", request.progress);
+  const Rendering rendering{request, scene, identity};
   const Clock::time_point render_start = Clock::now();
-  const renderer::RenderStatistics statistics = gather({request, scene, identity}, tracer, progress, film);
+  const renderer::RenderStatistics statistics = gather(rendering, tracer, progress, film);
   report.render_s = seconds_since(render_start);
   report.samples = statistics.samples;
   report.rays = statistics.rays;
   report_noise(film, request.noise, report);
-  write_picture(request, scene, identity, renderer::mean_radiance(film), report);
+  write_picture(rendering, tracer, renderer::mean_radiance(film), report);
   remove_what_was_left(request.out);
   progress.display().finish("wrote " + report.image);
   return report;

@@ -17,9 +17,10 @@ struct RenderRequest {
   std::optional<int> samples_per_pixel;
   double noise = 0;  // relative error to reach in each tile (renderer/film.h); 0: all samples everywhere
   std::uint64_t seed = 1;
-  int threads = 0;                 // 0 = all cores
-  std::optional<double> exposure;  // PNG only; the scene's own when left out, then the picture's 99th percentile
-  bool fresh = false;              // a checkpoint that is there is thrown away
+  int threads = 0;                    // 0 = all cores
+  std::optional<double> exposure;     // PNG only; the scene's own when left out, then the picture's 99th percentile
+  bool layers = false, half = false;  // EXR only: more channels (render/render_channels.h), colours in 16 bit
+  bool fresh = false;                 // a checkpoint that is there is thrown away
   double checkpoint_every_s = 300;
   ProgressStyle progress = ProgressStyle::automatic;
 };

@@ -28,6 +28,9 @@ void add_render_command(CLI::App& app) {
   command->add_option("--threads", request.threads, "processor threads, 0 for all")->check(CLI::Range(0, 4096));
   command->add_option("--exposure", request.exposure, "PNG: radiance times this is shown")
       ->check(CLI::PositiveNumber);
+  command->add_flag("--layers", request.layers,
+                    "EXR: albedo, normal, depth, cover, thread and yarn of what each pixel shows, as channels");
+  command->add_flag("--half", request.half, "EXR: colours in 16 bit");
   command->add_flag("--fresh", request.fresh, "begin again where an interrupted rendering left a checkpoint");
   command->add_flag("--time", arguments->time, "print how long it took, and how noisy the picture is");
   arguments->output.add_to(*command);

@@ -3,7 +3,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "renderer/image_file.h"
 #include "station/capture/sha256.h"
@@ -181,6 +183,37 @@ TEST_F(Render, CheckpointsNowAndThenDoNotChangeThePicture) {
                          .progress = station::ProgressStyle::quiet});
   EXPECT_EQ(station::sha256_of_file(folder_ / "a.exr"), station::sha256_of_file(folder_ / "b.exr"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "b.exr.checkpoint"));
+}
+
+TEST_F(Render, LayersAreNamedChannelsBesideTheSameColours) {
+  json scene = small_scene("satin_cylinder");
+  scene["samples_per_pixel"] = 4;
+  const std::string file = written("scene.json", scene);
+  ASSERT_EQ(render(file, "a.exr").status, 0);
+  ASSERT_EQ(render(file, "layers.exr", {"--layers"}).status, 0);
+  ASSERT_EQ(render(file, "half.exr", {"--layers", "--half"}).status, 0);
+  const cv::Mat3f colours = renderer::read_exr(folder_ / "a.exr");
+  EXPECT_EQ(cv::norm(colours, renderer::read_exr(folder_ / "layers.exr"), cv::NORM_INF), 0);
+  EXPECT_LT(cv::norm(colours, renderer::read_exr(folder_ / "half.exr")), 1e-3 * cv::norm(colours));
+  EXPECT_LT(std::filesystem::file_size(folder_ / "half.exr"), std::filesystem::file_size(folder_ / "layers.exr"));
+  std::map<std::string, renderer::ExrChannel> channels, halves;
+  for (const auto& channel : renderer::read_exr_channels(folder_ / "layers.exr")) channels[channel.name] = channel;
+  for (const auto& channel : renderer::read_exr_channels(folder_ / "half.exr")) halves[channel.name] = channel;
+  EXPECT_EQ(channels.size(), 13u);
+  // The cylinder's middle, 41 mm before its axis and 700 mm minus that from the eye, faces the camera.
+  const auto middle = [&](const std::string& name) { return channels.at(name).plane.at<float>(25, 16); };
+  EXPECT_NEAR(middle("depth.Z"), 665, 10);
+  EXPECT_GT(middle("normal.X"), 0.5f);
+  EXPECT_EQ(middle("cover.A"), 1);
+  EXPECT_GT(middle("albedo.B"), middle("albedo.R")) << "blue warp";
+  EXPECT_TRUE(halves.at("albedo.B").half && !halves.at("depth.Z").half);
+  EXPECT_EQ(cv::norm(halves.at("yarn.id").plane, channels.at("yarn.id").plane, cv::NORM_INF), 0);
+  std::set<int> threads, yarns;
+  for (const int id : cv::Mat1i(channels.at("thread.id").plane)) threads.insert(id);
+  for (const int id : cv::Mat1i(channels.at("yarn.id").plane)) yarns.insert(id);
+  EXPECT_EQ(threads, (std::set<int>{0, 1, 2})) << "the table, warp, weft";
+  EXPECT_GT(yarns.size(), 50u);
+  expect_one_line(render(file, "a.png", {"--layers"}), "--layers and --half are for EXR files");
 }
 
 TEST_F(Render, ANoiseToReachPutsSamplesWhereTheyAreNeeded) {
