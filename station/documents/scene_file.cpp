@@ -204,6 +204,9 @@ renderer::Camera parse_camera(ObjectReader reader) {
     reader.refuse("width_px", "the picture has more than 100 million pixels; make it smaller");
   camera.fx = camera.fy = reader.number("focal_length_px", 1, 1e7);
   camera.cx = (camera.width - 1) / 2.0, camera.cy = (camera.height - 1) / 2.0;
+  camera.focus_mm = (target - eye).norm();
+  if (reader.has("aperture_mm")) camera.aperture_mm = reader.number("aperture_mm", 0, kMostSize);
+  if (reader.has("focus_mm")) camera.focus_mm = reader.number("focus_mm", 1, kMostCoordinate);
   reader.finish();
   return camera;
 }

@@ -97,6 +97,17 @@ TEST(SceneFile, WhatItSaysIsWhereItBelongs) {
   EXPECT_EQ(scene.exposure, 2.5);
 }
 
+TEST(SceneFile, ALensIsFocusedOnTheTargetUnlessItSaysWhere) {
+  json document = plain_scene();
+  EXPECT_EQ(parse_scene(document, "scene", kScenes).camera.aperture_mm, 0);
+  document["camera"]["aperture_mm"] = 12;
+  const renderer::Camera camera = parse_scene(document, "scene", kScenes).camera;
+  EXPECT_EQ(camera.aperture_mm, 12);
+  EXPECT_DOUBLE_EQ(camera.focus_mm, 400);
+  document["camera"]["focus_mm"] = 380;
+  EXPECT_EQ(parse_scene(document, "scene", kScenes).camera.focus_mm, 380);
+}
+
 TEST(SceneFile, BruteForceTurnsClothIntoCurvesOfItsThreads) {
   json document = plain_scene();
   document["cloths"][0]["method"] = "brute_force";
@@ -173,6 +184,8 @@ TEST(SceneFile, EachMistakeIsRefusedInOneLineThatNamesIt) {
       {"/camera/up", {0, 0, 1}, "camera.up"},
       {"/camera/width_px", 0, "camera.width_px"},
       {"/camera/focal_length_px", nullptr, "camera.focal_length_px"},
+      {"/camera/aperture_mm", -1, "camera.aperture_mm"},
+      {"/camera/focus_mm", 0, "camera.focus_mm"},
       {"/samples_per_pixel", 0.5, "samples_per_pixel"},
       {"/exposure", -1, "exposure"}};
   for (const Mistake& mistake : mistakes) {
