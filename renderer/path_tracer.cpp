@@ -54,6 +54,7 @@ Array3f PathTracer::Impl::direct_light(const PathVertex& vertex, Sampler& sample
   const Vector3f start = vertex.start_toward(about->cast<float>(), sampler);
   const Vector3d origin = start.cast<double>();
   const std::optional<Vector3d> direction = lights.sample(origin, u_light, u);  // from there, hardly another
+  if (!direction) return Array3f::Zero();  // seen from the vertex, not from there
   const std::optional<LightHit> light = lights.intersect(origin, *direction, false);
   if (!light) return Array3f::Zero();  // rounding at the rim of the cone
   const Vector3f wi = direction->cast<float>();

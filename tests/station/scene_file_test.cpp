@@ -97,6 +97,25 @@ TEST(SceneFile, WhatItSaysIsWhereItBelongs) {
   EXPECT_EQ(scene.exposure, 2.5);
 }
 
+TEST(SceneFile, ARectanglesBrightSideFacesItsTarget) {
+  json document = plain_scene();
+  document["lights"] = {{{"kind", "rectangle"},
+                         {"position_mm", {100, 0, 50}},
+                         {"target_mm", {0, 0, 50}},
+                         {"width_mm", 30},
+                         {"height_mm", 20},
+                         {"intensity_mm2", {600, 1200, 1800}},
+                         {"visible", false}}};
+  const SceneFile scene = parse_scene(document, "scene", kScenes);
+  EXPECT_TRUE(scene.lights.empty());
+  ASSERT_EQ(to_scene(scene).rectangles.size(), 1u);
+  const renderer::RectangleLight& light = scene.rectangles[0];
+  EXPECT_LT((light.edge_x.cross(light.edge_y) - Eigen::Vector3d(-600, 0, 0)).norm(), 1e-9);
+  EXPECT_LT((light.edge_y - Eigen::Vector3d(0, 0, 20)).norm(), 1e-9);
+  EXPECT_LT((light.radiance - Eigen::Vector3d(1, 2, 3)).norm(), 1e-12);
+  EXPECT_FALSE(light.visible);
+}
+
 TEST(SceneFile, ALensIsFocusedOnTheTargetUnlessItSaysWhere) {
   json document = plain_scene();
   EXPECT_EQ(parse_scene(document, "scene", kScenes).camera.aperture_mm, 0);
@@ -180,6 +199,13 @@ TEST(SceneFile, EachMistakeIsRefusedInOneLineThatNamesIt) {
       {"/lights/0", {{"kind", "environment"}, {"file", "none.exr"}}, "none.exr"},
       {"/lights/0", {{"kind", "sphere"}, {"file", "none.exr"}}, "lights[0].kind"},
       {"/lights/0/radius_mm", -1, "lights[0].radius_mm"},
+      {"/lights/0",
+       {{"kind", "rectangle"}, {"position_mm", {0, 0, 1}}, {"target_mm", {0, 0, 1}}},
+       "lights[0].target_mm"},
+      {"/lights/0", {{"kind", "rectangle"}, {"position_mm", {0, 0, 1}}, {"target_mm", {0, 0, 0}}}, "lights[0].up"},
+      {"/lights/0",
+       {{"kind", "rectangle"}, {"position_mm", {0, 0, 1}}, {"target_mm", {1, 0, 0}}, {"width_mm", -1}},
+       "lights[0].width_mm"},
       {"/camera/eye_mm", {0, 0, 0}, "camera.target_mm"},
       {"/camera/up", {0, 0, 1}, "camera.up"},
       {"/camera/width_px", 0, "camera.width_px"},
