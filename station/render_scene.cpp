@@ -45,6 +45,34 @@ double exposure_of(const RenderRequest& request, const SceneFile& scene, const c
   return request.exposure ? *request.exposure : scene.exposure ? *scene.exposure : display_scale(image);
 }
 
+constexpr const char* kRenderingAttribute = "threadstation/rendering";
+
+// All that decides what stands in an EXR file.
+std::string rendering_of(const RenderRequest& request, const RenderIdentity& identity) {
+  nlohmann::json rendering = to_json(identity);
+  rendering["layers"] = request.layers;
+  rendering["half"] = request.half;
+  return rendering.dump();
+}
+
+std::filesystem::path png_beside(const std::filesystem::path& picture) {
+  std::filesystem::path png = picture;
+  return png.replace_extension(".png");
+}
+
+bool is_finished(const RenderRequest& request, const RenderIdentity& identity) {
+  std::error_code ignored;
+  if (request.out.extension() != ".exr" || !std::filesystem::exists(request.out, ignored)) return false;
+  if (request.png && !std::filesystem::exists(png_beside(request.out), ignored)) return false;
+  try {
+    renderer::ImageHeader header;
+    renderer::read_exr(request.out, &header);
+    return header[kRenderingAttribute] == rendering_of(request, identity);
+  } catch (const std::runtime_error&) {
+    return false;  // a file that is damaged is made again
+  }
+}
+
 struct Rendering {
   const RenderRequest& request;
   const SceneFile& scene;
@@ -59,7 +87,8 @@ void write_exr(const Rendering& rendering, const renderer::PathTracer& tracer, c
         scene.camera,
         {.samples_per_pixel = identity.samples_per_pixel, .seed = identity.seed, .threads = request.threads});
   renderer::write_exr(request.out, render_channels(image, layers ? &*layers : nullptr, scene, request.half),
-                      {{"threadstation/content", "linear camera RGB, radiance; not white-balanced"},
+                      {{kRenderingAttribute, rendering_of(request, identity)},
+                       {"threadstation/content", "linear camera RGB, radiance; not white-balanced"},
                        {"threadstation/scene", scene.name},
                        {"threadstation/software", identity.software},
                        {"threadstation/samples_per_pixel", std::to_string(identity.samples_per_pixel)},
@@ -70,9 +99,13 @@ void write_exr(const Rendering& rendering, const renderer::PathTracer& tracer, c
 void write_picture(const Rendering& rendering, const renderer::PathTracer& tracer, const cv::Mat3f& image,
                    RenderReport& report) {
   const RenderRequest& request = rendering.request;
-  if (request.out.extension() == ".exr") return write_exr(rendering, tracer, image);
-  report.exposure = exposure_of(request, rendering.scene, image);
-  renderer::write_png(request.out, display(image, report.exposure, rendering.scene.linear_srgb_from_camera));
+  const bool is_exr = request.out.extension() == ".exr";
+  if (!is_exr || request.png) {
+    report.exposure = exposure_of(request, rendering.scene, image);
+    renderer::write_png(png_beside(request.out),
+                        display(image, report.exposure, rendering.scene.linear_srgb_from_camera));
+  }
+  if (is_exr) write_exr(rendering, tracer, image);
 }
 
 // A checkpoint to go on from, and a picture of it to look at.
@@ -174,6 +207,7 @@ RenderReport render_scene(const RenderRequest& request) {
                                 .seed = request.seed,
                                 .samples_per_pixel = samples_of(request, scene),
                                 .noise = request.noise};
+  if (request.keep_finished && is_finished(request, identity)) return {.image = request.out.string(), .kept = true};
   renderer::Film film = film_to_begin_with(request, identity, {scene.camera.width, scene.camera.height});
   const renderer::PathTracer tracer(to_scene(scene));
   RenderReport report{.image = request.out.string(),
@@ -182,7 +216,7 @@ RenderReport render_scene(const RenderRequest& request) {
                       .samples_per_pixel = identity.samples_per_pixel,
                       .build_s = seconds_since(start),
                       .samples_before = renderer::samples_in(film)};
-  RenderProgress progress("render", request.progress);
+  RenderProgress progress(request.task, request.progress);
   const Rendering rendering{request, scene, identity};
   const Clock::time_point render_start = Clock::now();
   const renderer::RenderStatistics statistics = gather(rendering, tracer, progress, film);
@@ -197,6 +231,7 @@ RenderReport render_scene(const RenderRequest& request) {
 }
 
 nlohmann::json to_json(const RenderReport& report) {
+  if (report.kept) return {{"image", report.image}, {"kept", true}};
   nlohmann::json document{{"image", report.image},       {"width_px", report.width},
                           {"height_px", report.height},  {"samples_per_pixel", report.samples_per_pixel},
                           {"exposure", report.exposure}, {"build_s", report.build_s},

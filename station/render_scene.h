@@ -20,15 +20,19 @@ struct RenderRequest {
   int threads = 0;                    // 0 = all cores
   std::optional<double> exposure;     // PNG only; the scene's own when left out, then the picture's 99th percentile
   bool layers = false, half = false;  // EXR only: more channels (render/render_channels.h), colours in 16 bit
+  bool png = false;                   // a display picture beside the EXR, a.exr -> a.png
+  bool keep_finished = false;         // nothing is done where `out` is this very rendering already
   bool fresh = false;                 // a checkpoint that is there is thrown away
   double checkpoint_every_s = 300;
   ProgressStyle progress = ProgressStyle::automatic;
+  std::string task = "render";  // for the progress
 };
 
 inline constexpr int kMostSamples = 4096;
 
 struct RenderReport {
   std::string image;
+  bool kept = false;  // it was there
   int width = 0, height = 0, samples_per_pixel = 0;
   double build_s = 0, render_s = 0;
   std::uint64_t samples = 0, rays = 0;  // of this run

@@ -216,6 +216,37 @@ TEST_F(Render, LayersAreNamedChannelsBesideTheSameColours) {
   expect_one_line(render(file, "a.png", {"--layers"}), "--layers and --half are for EXR files");
 }
 
+TEST_F(Render, SeveralScenesGoIntoOneFolderAndWhatIsThereIsKept) {
+  json slow = small_scene("satin_swatch");
+  slow["samples_per_pixel"] = 400;
+  const std::string first = written("first.json", small_scene("plain_swatch")), second = written("second.json", slow),
+                    third = written("third.json", small_scene("twill_swatch"));
+  ASSERT_EQ(render(second, "alone.exr").status, 0);
+  ASSERT_EQ(render(first, "pictures", {"--quiet"}).status, 0) << "a name without an ending is a folder";
+  ASSERT_TRUE(std::filesystem::exists(folder_ / "pictures" / "first.png"));
+  const auto written_at = std::filesystem::last_write_time(folder_ / "pictures" / "first.exr");
+  const ProgramResult stopped = interrupted_render(first + " " + second + " " + third, "pictures");
+  EXPECT_EQ(stopped.status, 1);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "pictures" / "second.exr.checkpoint"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "pictures" / "third.exr"));
+  const ProgramResult finished = render(first, "pictures", {second, third, "--json"});
+  ASSERT_EQ(finished.status, 0) << finished.error;
+  const json reports = json::parse(finished.out);
+  ASSERT_EQ(reports.size(), 3u);
+  EXPECT_EQ(reports[0].at("kept"), true);
+  EXPECT_EQ(std::filesystem::last_write_time(folder_ / "pictures" / "first.exr"), written_at);
+  EXPECT_GT(reports[1].at("samples_before"), 0);
+  EXPECT_EQ(reports[2].at("samples_before"), 0);
+  EXPECT_EQ(station::sha256_of_file(folder_ / "pictures" / "second.exr"),
+            station::sha256_of_file(folder_ / "alone.exr"));
+  EXPECT_GT(std::filesystem::file_size(folder_ / "pictures" / "third.png"), 100u);
+  const ProgramResult other_seed = render(first, "pictures", {"--seed", "2", "--json"});
+  EXPECT_FALSE(json::parse(other_seed.out).contains("kept"));
+  expect_one_line(render(first, "pictures", {(folder_ / "pictures" / ".." / "first.json").string()}), "rename one");
+  expect_one_line(render(first, "pictures", {folder_ / "none.json"}), "no such file");
+  expect_one_line(render(first, "a.exr", {third}), "a.exr");
+}
+
 TEST_F(Render, ANoiseToReachPutsSamplesWhereTheyAreNeeded) {
   const std::string file = written("scene.json", small_scene("satin_cylinder"));
   const ProgramResult result = render(file, "a.exr", {"--noise", "20%", "--spp", "2000", "--json"});
