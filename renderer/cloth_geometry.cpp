@@ -161,7 +161,7 @@ CurvePoint ClothGeometry::point_at(const ClothHit& hit) const {
   CurvePoint point =
       point_on_curve(yarns.curves, hit.segment, hit.u, hit.hit_normal, hit.ray, hit.distance, yarns.stretch);
   const Vector3d patch = point.position.cast<double>() + hit.tile;
-  const Vector3d world = cell.world_from_patch * patch.homogeneous();
+  const Vector3d world = world_from_patch(cell, patch);
   const Eigen::Matrix3f frame = frame_at(shell_, cell, world).cast<float>();
   point.curve_set = first_curve_set_ + yarns.thread;
   point.position = world.cast<float>();
@@ -174,6 +174,10 @@ std::size_t ClothGeometry::yarn_bytes() const {
   std::size_t bytes = 0;
   for (const Yarns& yarns : yarns_) bytes += bytes_of(yarns.curves);
   return bytes;
+}
+
+std::size_t ClothGeometry::shell_bytes() const {
+  return shell_.cells.size() * sizeof(ShellCell) + shell_.frames.size() * sizeof(Eigen::Matrix3d);
 }
 
 }  // namespace renderer

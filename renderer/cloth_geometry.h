@@ -40,6 +40,7 @@ class ClothGeometry {
   YarnPlace yarn_at(const ClothHit& hit) const { return places_.at(hit.yarns, hit.segment, hit.tile); }
   // Control points and segments of the column: all that is stored of the yarns.
   std::size_t yarn_bytes() const;
+  std::size_t shell_bytes() const;
 
  private:
   template <class Visit>

@@ -56,6 +56,11 @@ std::uint64_t samples_in(const Film& film) {
   return static_cast<std::uint64_t>(cv::sum(film.counts)[0]);  // exact below 2^53
 }
 
+std::size_t bytes_of(const Film& film) {
+  const auto bytes = [](const cv::Mat& plane) { return plane.total() * plane.elemSize(); };
+  return bytes(film.sums) + bytes(film.squares) + bytes(film.counts) + bytes(film.goals);
+}
+
 double relative_error(const Film& film, const cv::Rect& pixels, double least_brightness) {
   double error2 = 0, brightness = 0;
   int seen = 0;

@@ -31,6 +31,7 @@ int tile_at(const cv::Size& picture, int column, int row);
 // Mean radiance; black where there is no sample.
 cv::Mat3f mean_radiance(const Film& film);
 std::uint64_t samples_in(const Film& film);
+std::size_t bytes_of(const Film& film);
 
 // Standard error of a pixel's mean radiance, root mean square over the given pixels and with the three colours together as
 // one vector, over the pixels' mean brightness |RGB|, but over `least_brightness` where they are darker. Pixels without

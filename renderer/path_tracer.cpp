@@ -208,6 +208,10 @@ PictureLayers PathTracer::layers(const Camera& camera, const RenderOptions& opti
                           options.seed, options.threads);
 }
 
+SceneMemory PathTracer::memory() const {
+  return impl_->rays.memory();
+}
+
 cv::Mat1b PathTracer::curve_coverage(const Camera& camera, int samples_per_pixel) const {
   cv::Mat1b coverage(camera.height, camera.width, uchar{0});
   const int side = std::max(1, static_cast<int>(std::ceil(std::sqrt(samples_per_pixel))));

@@ -53,6 +53,8 @@ class PathTracer {
   // Of the first samples of such a rendering, at most 16 per pixel: far cheaper than its light.
   PictureLayers layers(const Camera& camera, const RenderOptions& options) const;
 
+  SceneMemory memory() const;
+
   // 255 where a camera ray through the pixel (centre, or any of samples_per_pixel sub-positions) meets a curve first.
   cv::Mat1b curve_coverage(const Camera& camera, int samples_per_pixel) const;
 

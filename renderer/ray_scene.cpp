@@ -27,6 +27,11 @@ RTCRayHit nearest(RTCScene scene, const Ray& ray, ClothQuery& query) {
   return found;
 }
 
+template <class Element>
+std::size_t bytes_of(const std::vector<Element>& elements) {
+  return elements.size() * sizeof(Element);
+}
+
 // Numbers of the segments with which a curve begins: segments that go on share control points.
 std::vector<std::uint32_t> first_segments(const CurveSet& curves) {
   std::vector<std::uint32_t> first;
@@ -37,10 +42,18 @@ std::vector<std::uint32_t> first_segments(const CurveSet& curves) {
 
 }  // namespace
 
-RayScene::RayScene(Scene scene) : scene_(std::move(scene)) {
+RayScene::RayScene(Scene scene)
+    : scene_(std::move(scene)), embree_bytes_(std::make_shared<std::atomic<std::int64_t>>(0)) {
   device_ = {rtcNewDevice(nullptr), rtcReleaseDevice};
   if (!device_)
     throw std::runtime_error("ray tracing: Embree could not start on this processor; it needs SSE2 or better");
+  rtcSetDeviceMemoryMonitorFunction(
+      device_.get(),
+      [](void* bytes, ssize_t change, bool) {
+        *static_cast<std::atomic<std::int64_t>*>(bytes) += change;
+        return true;
+      },
+      embree_bytes_.get());
   embree_ = {rtcNewScene(device_.get()), rtcReleaseScene};
   rtcSetSceneBuildQuality(embree_.get(), RTC_BUILD_QUALITY_HIGH);
   for (const CurveSet& curves : scene_.curves) {
@@ -134,6 +147,19 @@ std::size_t RayScene::yarn_bytes() const {
   for (const CurveSet& curves : scene_.curves) bytes += bytes_of(curves);
   for (const auto& cloth : cloths_) bytes += cloth->yarn_bytes();
   return bytes;
+}
+
+SceneMemory RayScene::memory() const {
+  SceneMemory memory{.yarns = yarn_bytes(), .trees = static_cast<std::size_t>(embree_bytes_->load())};
+  for (const auto& cloth : cloths_) memory.surfaces += cloth->shell_bytes();
+  for (const Cloth& cloth : scene_.cloths) {
+    const ClothSurface& s = cloth.surface;
+    memory.surfaces += bytes_of(s.vertices) + bytes_of(s.normals) + bytes_of(s.patch_mm) + bytes_of(s.triangles);
+  }
+  for (const TriangleMesh& mesh : scene_.meshes)
+    memory.surfaces += bytes_of(mesh.vertices) + bytes_of(mesh.triangles) + bytes_of(mesh.texture_coordinates) +
+                       mesh.albedo.total() * mesh.albedo.elemSize();
+  return memory;
 }
 
 MeshPoint RayScene::mesh_point(std::uint32_t mesh_index, std::uint32_t triangle, float u, float v,

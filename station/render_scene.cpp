@@ -225,6 +225,7 @@ RenderReport render_scene(const RenderRequest& request) {
   report.rays = statistics.rays;
   report_noise(film, request.noise, report);
   write_picture(rendering, tracer, renderer::mean_radiance(film), report);
+  report.memory = memory_of(scene, tracer.memory(), film);
   remove_what_was_left(request.out);
   progress.display().finish("wrote " + report.image);
   return report;
@@ -237,7 +238,7 @@ nlohmann::json to_json(const RenderReport& report) {
                           {"exposure", report.exposure}, {"build_s", report.build_s},
                           {"render_s", report.render_s}, {"samples", report.samples},
                           {"rays", report.rays},         {"samples_before", report.samples_before},
-                          {"noisy", report.noisy}};
+                          {"noisy", report.noisy},       {"memory", to_json(report.memory)}};
   if (std::isfinite(report.noise)) document["noise"] = report.noise;  // a single batch of samples tells nothing of it
   return document;
 }

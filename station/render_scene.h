@@ -8,6 +8,7 @@
 #include <string>
 
 #include "station/progress.h"
+#include "station/render/render_memory.h"
 
 namespace station {
 
@@ -39,6 +40,7 @@ struct RenderReport {
   std::uint64_t samples_before = 0;     // of the checkpoint that it went on from
   double exposure = 1;
   double noise = 0;  // relative error of a pixel, root mean square over the tiles
+  RenderMemory memory;
   double noisy = 0;  // share of the tiles that have more than the noise asked for
 };
 

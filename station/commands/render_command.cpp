@@ -11,7 +11,7 @@ namespace {
 struct Arguments {
   std::vector<std::filesystem::path> scenes;
   RenderRequest request;
-  bool time = false;
+  bool time = false, memory = false;
   std::string noise;
   OutputOptions output;
 };
@@ -27,9 +27,10 @@ std::vector<RenderReport> render(const Arguments& arguments) {
   return {render_scene(request)};
 }
 
-std::string describe(const RenderReport& report) {
+std::string description(const Arguments& arguments, const RenderReport& report) {
   if (report.kept) return report.image + " is there already\n";
-  return report.image + "\n" + describe_times(report) + describe_noise(report);
+  return report.image + "\n" + (arguments.time ? describe_times(report) + describe_noise(report) : "") +
+         (arguments.memory ? describe(report.memory) : "");
 }
 
 void print(const Arguments& arguments, const std::vector<RenderReport>& reports) {
@@ -37,8 +38,8 @@ void print(const Arguments& arguments, const std::vector<RenderReport>& reports)
     nlohmann::json all = nlohmann::json::array();
     for (const RenderReport& report : reports) all.push_back(to_json(report));
     std::cout << (arguments.scenes.size() > 1 ? all : all.front()).dump() << "\n";
-  } else if (arguments.time) {
-    for (const RenderReport& report : reports) std::cout << describe(report);
+  } else if (arguments.time || arguments.memory) {
+    for (const RenderReport& report : reports) std::cout << description(arguments, report);
   }
 }
 
@@ -70,6 +71,7 @@ void add_render_command(CLI::App& app) {
   command->add_flag("--fresh", request.fresh,
                     "begin again where an interrupted rendering left a checkpoint, or the picture is there");
   command->add_flag("--time", arguments->time, "print how long it took, and how noisy the picture is");
+  command->add_flag("--memory", arguments->memory, "print what the scene and the picture take of the memory");
   arguments->output.add_to(*command);
   command->callback([arguments] { print(*arguments, render(*arguments)); });
 }

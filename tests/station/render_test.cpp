@@ -247,6 +247,24 @@ TEST_F(Render, SeveralScenesGoIntoOneFolderAndWhatIsThereIsKept) {
   expect_one_line(render(first, "a.exr", {third}), "a.exr");
 }
 
+TEST_F(Render, ASquareMetreOfSilkTakesLittleMemory) {
+  json scene = small_scene("square_metre/scene");
+  for (json& thread : scene["threads"])
+    thread = std::string(FIXTURES_DIR) + "/scenes/square_metre/../../threads/" +
+             std::filesystem::path(thread.get<std::string>()).filename().string();
+  scene["cloths"][0]["draft"] = std::string(FIXTURES_DIR) + "/scenes/square_metre/draft.json";
+  const ProgramResult result = render(written("scene.json", scene), "a.exr", {"--json"});
+  ASSERT_EQ(result.status, 0) << result.error;
+  const json memory = json::parse(result.out).at("memory");
+  EXPECT_LE(memory.at("control_points_bytes"), 10000);
+  EXPECT_LE(memory.at("scene_bytes"), 50e6);
+  EXPECT_GT(memory.at("trees_bytes"), 1e5);
+  EXPECT_GT(memory.at("surfaces_bytes"), 1e6);
+  // As many repeats as square millimetres.
+  EXPECT_NEAR(memory.at("explicit_yarns_bytes").get<double>() / memory.at("control_points_bytes").get<double>(), 1e6,
+              0.02e6);
+}
+
 TEST_F(Render, ANoiseToReachPutsSamplesWhereTheyAreNeeded) {
   const std::string file = written("scene.json", small_scene("satin_cylinder"));
   const ProgramResult result = render(file, "a.exr", {"--noise", "20%", "--spp", "2000", "--json"});
