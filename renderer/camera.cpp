@@ -57,6 +57,18 @@ CameraRay ray_through(const Camera& camera, double column, double row) {
   return {camera.world_from_camera.translation(), camera.world_from_camera.linear() * direction_camera};
 }
 
+CameraRay ray_through_lens(const Camera& camera, const CameraRay& pinhole, const Eigen::Vector2d& lens) {
+  const auto axes = camera.world_from_camera.linear();
+  const Eigen::Vector3d in_focus =
+      pinhole.origin + pinhole.direction * (camera.focus_mm / pinhole.direction.dot(axes.col(2)));
+  const Eigen::Vector3d origin = pinhole.origin + axes.leftCols<2>() * (camera.aperture_mm / 2 * lens);
+  return {origin, (in_focus - origin).normalized()};
+}
+
+double circle_of_confusion_px(const Camera& camera, double depth_mm) {
+  return camera.fx * camera.aperture_mm * std::abs(1 / camera.focus_mm - 1 / depth_mm);
+}
+
 Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point_world) {
   const Eigen::Vector3d point_camera = camera.world_from_camera.inverse() * point_world;
   const Vector2d plane = distort(camera.distortion, point_camera.hnormalized()).position;

@@ -24,6 +24,13 @@ SurfaceRange shell_heights(const YarnPatch& patch) {
   return {range.low_mm - more, range.high_mm + more};
 }
 
+// A ray that crosses the cloth at 45 degrees stays in the column in which it starts.
+double margin_of(const Cloth& cloth) {
+  check_cloth(cloth.patch, cloth.threads.size());
+  const SurfaceRange heights = shell_heights(cloth.patch);
+  return heights.high_mm - heights.low_mm;
+}
+
 const ClothGeometry& cloth_of(void* user_pointer) {
   return *static_cast<const ClothGeometry*>(user_pointer);
 }
@@ -33,11 +40,9 @@ const ClothGeometry& cloth_of(void* user_pointer) {
 ClothGeometry::ClothGeometry(const Cloth& cloth, std::uint32_t first_curve_set, RTCDevice device)
     : shell_(make_shell(cloth.surface, shell_heights(cloth.patch))),
       period_mm_(cloth.patch.period_x_mm, cloth.patch.period_y_mm),
-      first_curve_set_(first_curve_set) {
-  check_cloth(cloth.patch, cloth.threads.size());
-  const SurfaceRange heights = shell_heights(cloth.patch);
-  // A ray that crosses the cloth at 45 degrees stays in the column in which it starts.
-  margin_mm_ = heights.high_mm - heights.low_mm;
+      margin_mm_(margin_of(cloth)),
+      first_curve_set_(first_curve_set),
+      places_(cloth.patch, margin_mm_ + 2 * kShellOverlap) {
   for (const RoundYarns& part : round_yarns_of(cloth.patch))
     for (const int thread : threads_of(part.patch))
       yarns_.push_back({cell_curves_of(part.patch, thread, margin_mm_ + 2 * kShellOverlap),
@@ -156,7 +161,7 @@ CurvePoint ClothGeometry::point_at(const ClothHit& hit) const {
   CurvePoint point =
       point_on_curve(yarns.curves, hit.segment, hit.u, hit.hit_normal, hit.ray, hit.distance, yarns.stretch);
   const Vector3d patch = point.position.cast<double>() + hit.tile;
-  const Vector3d world = cell.world_from_patch * patch.homogeneous();
+  const Vector3d world = world_from_patch(cell, patch);
   const Eigen::Matrix3f frame = frame_at(shell_, cell, world).cast<float>();
   point.curve_set = first_curve_set_ + yarns.thread;
   point.position = world.cast<float>();
@@ -169,6 +174,10 @@ std::size_t ClothGeometry::yarn_bytes() const {
   std::size_t bytes = 0;
   for (const Yarns& yarns : yarns_) bytes += bytes_of(yarns.curves);
   return bytes;
+}
+
+std::size_t ClothGeometry::shell_bytes() const {
+  return shell_.cells.size() * sizeof(ShellCell) + shell_.frames.size() * sizeof(Eigen::Matrix3d);
 }
 
 }  // namespace renderer

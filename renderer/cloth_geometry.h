@@ -37,8 +37,10 @@ class ClothGeometry {
   void attach_to(RTCDeviceTy* device, RTCSceneTy* scene) const;
   // A hit in world coordinates.
   CurvePoint point_at(const ClothHit& hit) const;
+  YarnPlace yarn_at(const ClothHit& hit) const { return places_.at(hit.yarns, hit.segment, hit.tile); }
   // Control points and segments of the column: all that is stored of the yarns.
   std::size_t yarn_bytes() const;
+  std::size_t shell_bytes() const;
 
  private:
   template <class Visit>
@@ -58,6 +60,7 @@ class ClothGeometry {
   };
   std::vector<Yarns> yarns_;  // of one thread and section
   std::shared_ptr<RTCSceneTy> column_;
+  YarnPlaces places_;
 };
 
 }  // namespace renderer

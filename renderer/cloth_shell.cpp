@@ -81,7 +81,6 @@ ShellCell make_cell(const ClothSurface& surface, const std::array<Corner, 4>& co
            "normals and order of corners, or take a smoother surface");
   cell.inside_from_world.topRows<4>() = world.inverse();
   cell.patch_from_world = patch.topRows<3>() * cell.inside_from_world.topRows<4>();
-  cell.world_from_patch = world.topRows<3>() * patch.inverse();
   return cell;
 }
 
@@ -103,6 +102,11 @@ bool is_flat(const ClothSurface& surface, const Triangle& v) {
 }
 
 }  // namespace
+
+Vector3d world_from_patch(const ShellCell& cell, const Vector3d& patch) {
+  const Matrix3d linear = cell.patch_from_world.leftCols<3>();
+  return linear.inverse() * (patch - cell.patch_from_world.col(3));
+}
 
 ClothShell make_shell(const ClothSurface& surface, const SurfaceRange& heights) {
   check(surface);

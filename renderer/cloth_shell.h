@@ -29,9 +29,11 @@ struct ShellCell {
   int faces = 4, corners = 4;
   std::array<std::uint32_t, 4> vertex{};  // of the surface, above, below or at which each corner lies
   Affine3x4 patch_from_world;             // mm to mm; rows x, y, z of the endless patch
-  Affine3x4 world_from_patch;
-  Eigen::AlignedBox3d bounds;  // world
+  Eigen::AlignedBox3d bounds;             // world
 };
+
+// Where a place of the patch, in the cell, lies in the world. Not stored: a garment has a hundred thousand cells.
+Eigen::Vector3d world_from_patch(const ShellCell& cell, const Eigen::Vector3d& patch);
 
 struct ClothShell {
   std::vector<ShellCell> cells;

@@ -77,13 +77,16 @@ void write_atomically(const fs::path& file, const Bytes& bytes) {
 }
 
 // The bytes of a picture file, made in memory so that every failure of the disk is seen by write_atomically.
-Bytes encode(const std::string& format, const OIIO::ImageSpec& spec, const void* pixels, std::size_t row_stride) {
+// `native`: the pixels' channels are of the types that the specification has for each.
+Bytes encode(const std::string& format, const OIIO::ImageSpec& spec, const void* pixels, std::size_t row_stride,
+             bool native = false) {
   const auto output = OIIO::ImageOutput::create(format);
   if (!output) fail("encoding a " + format + " picture", OIIO::geterror(), "reinstall OpenImageIO with that format");
   Bytes bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
   if (!output->set_ioproxy(&memory) || !output->open("memory." + format, spec) ||
-      !output->write_image(spec.format, pixels, OIIO::AutoStride, static_cast<OIIO::stride_t>(row_stride)) ||
+      !output->write_image(native ? OIIO::TypeDesc() : spec.format, pixels, OIIO::AutoStride,
+                           static_cast<OIIO::stride_t>(row_stride)) ||
       !output->close()) {
     fail("encoding a " + format + " picture", output->geterror(), "check its size");
   }
@@ -134,6 +137,19 @@ cv::Mat_<Pixel> read_pixels(OIIO::ImageInput& input, const fs::path& file, OIIO:
   return image;
 }
 
+void set_attributes(OIIO::ImageSpec& spec, const ImageHeader& header) {
+  spec.attribute("compression", "zip");
+  spec.attribute("DateTime", "    :  :     :  :  ");  // unknown; the time of writing would make equal pictures differ
+  for (const auto& [name, text] : header) spec.attribute(name, text);
+}
+
+constexpr double kMostHalf = 65504;
+
+OIIO::TypeDesc stored_type(const ExrChannel& channel) {
+  if (channel.plane.depth() == CV_32S) return OIIO::TypeDesc::UINT32;
+  return channel.half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT;
+}
+
 float srgb_encoded(float linear) {
   return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
 }
@@ -142,10 +158,60 @@ float srgb_encoded(float linear) {
 
 void write_exr(const fs::path& file, const cv::Mat3f& linear, const ImageHeader& header) {
   OIIO::ImageSpec spec(linear.cols, linear.rows, 3, OIIO::TypeDesc::FLOAT);
-  spec.attribute("compression", "zip");
-  spec.attribute("DateTime", "    :  :     :  :  ");  // unknown; the time of writing would make equal pictures differ
-  for (const auto& [name, text] : header) spec.attribute(name, text);
+  set_attributes(spec, header);
   write_atomically(file, encode("exr", spec, linear.data, linear.step));
+}
+
+void write_exr(const fs::path& file, const std::vector<ExrChannel>& channels, const ImageHeader& header) {
+  if (channels.empty()) fail("writing picture " + file.string(), "there is no channel", "give one");
+  const cv::Size size = channels.front().plane.size();
+  OIIO::ImageSpec spec(size.width, size.height, static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);
+  spec.channelnames.clear();
+  for (const ExrChannel& channel : channels) {
+    spec.channelnames.push_back(channel.name);
+    spec.channelformats.push_back(stored_type(channel));
+  }
+  set_attributes(spec, header);
+  // As the file has them: one pixel's channels after the other, each in its own type.
+  const std::size_t pixel_bytes = spec.pixel_bytes(true);
+  Bytes pixels(static_cast<std::size_t>(size.area()) * pixel_bytes);
+  std::size_t offset = 0;
+  for (const ExrChannel& channel : channels) {
+    if (channel.plane.size() != size || channel.plane.channels() != 1)
+      fail("writing picture " + file.string(), "channel " + channel.name + " has another size", "make them equal");
+    const cv::Mat values =
+        channel.half ? cv::Mat(cv::min(cv::max(channel.plane, -kMostHalf), kMostHalf)) : channel.plane;
+    const OIIO::TypeDesc stored = stored_type(channel);
+    unsigned char* to = pixels.data() + offset;
+    for (int row = 0; row < size.height; ++row)
+      for (int column = 0; column < size.width; ++column, to += pixel_bytes)
+        OIIO::convert_pixel_values(channel.half ? OIIO::TypeDesc::FLOAT : stored,
+                                   values.ptr(row) + 4 * static_cast<std::size_t>(column), stored, to);
+    offset += stored.size();
+  }
+  const bool mixed = std::any_of(spec.channelformats.begin(), spec.channelformats.end(),
+                                 [&](OIIO::TypeDesc type) { return type != spec.channelformats.front(); });
+  if (!mixed) spec.set_format(spec.channelformats.front());
+  write_atomically(file,
+                   encode("exr", spec, pixels.data(), pixel_bytes * static_cast<std::size_t>(size.width), mixed));
+}
+
+std::vector<ExrChannel> read_exr_channels(const fs::path& file) {
+  const auto input = open_picture(file);
+  const OIIO::ImageSpec spec = input->spec();
+  std::vector<ExrChannel> channels;
+  for (int c = 0; c < spec.nchannels; ++c) {
+    const OIIO::TypeDesc stored = spec.channelformat(c);
+    const bool integer = stored == OIIO::TypeDesc::UINT32;
+    ExrChannel channel{.name = spec.channel_name(c),
+                       .plane = cv::Mat(spec.height, spec.width, integer ? CV_32S : CV_32F),
+                       .half = stored == OIIO::TypeDesc::HALF};
+    if (!input->read_image(0, 0, c, c + 1, integer ? OIIO::TypeDesc::UINT32 : OIIO::TypeDesc::FLOAT,
+                           channel.plane.data))
+      fail("reading picture " + file.string(), input->geterror(), "it is damaged or cut short: make it again");
+    channels.push_back(channel);
+  }
+  return channels;
 }
 
 cv::Mat3f read_exr(const fs::path& file, ImageHeader* header) {

@@ -8,6 +8,7 @@
 #include <map>
 #include <opencv2/core.hpp>
 #include <string>
+#include <vector>
 
 namespace renderer {
 
@@ -18,6 +19,16 @@ using ImageHeader = std::map<std::string, std::string>;  // text attributes stor
 // Linear EXR, 3 x float; written to a temporary name, flushed and renamed.
 void write_exr(const std::filesystem::path& file, const cv::Mat3f& linear, const ImageHeader& header = {});
 cv::Mat3f read_exr(const std::filesystem::path& file, ImageHeader* header = nullptr);
+
+// A named channel of an EXR file, "R" or "layer.R"; all of one file have the same size.
+struct ExrChannel {
+  std::string name;
+  cv::Mat plane;      // one channel: float, or int for what is stored as unsigned 32 bit
+  bool half = false;  // float stored in 16 bit, clipped at their largest number
+};
+void write_exr(const std::filesystem::path& file, const std::vector<ExrChannel>& channels,
+               const ImageHeader& header = {});
+std::vector<ExrChannel> read_exr_channels(const std::filesystem::path& file);
 
 // 8-bit PNG: a mask (grey) or display colours (RGB, already encoded).
 void write_png(const std::filesystem::path& file, const cv::Mat1b& grey);

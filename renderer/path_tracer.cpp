@@ -1,18 +1,13 @@
 #include "renderer/path_tracer.h"
 
-#include <tbb/blocked_range2d.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
-#include <thread>
 
 #include "renderer/lights.h"
 #include "renderer/path_vertex.h"
-#include "renderer/pixel_rays.h"
+#include "renderer/picture_tiles.h"
 #include "renderer/sampler.h"
 
 namespace renderer {
@@ -22,7 +17,6 @@ using Eigen::Array3f;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr int kTile = 16;  // pixels
 // Shadow rays are traced with a probability in proportion to f_cos below this value, a quarter of what a uniformly
 // scattering white fiber has: most faint lobes of curves are skipped, at 2 % more variance and 15 % less work.
 // Diffuse surfaces are never faint in this sense: a black one would come out grainy.
@@ -43,6 +37,8 @@ struct PathTracer::Impl {
   // Both count the rays that they trace.
   Array3f radiance(CameraRay camera_ray, Sampler& sampler, int max_vertices, std::uint64_t& traced) const;
   Array3f direct_light(const PathVertex& vertex, Sampler& sampler, std::uint64_t& traced) const;
+  void add_samples(const PixelRays& pixel_rays, int column, int row, Sampler sampler, int goal, int max_vertices,
+                   Film& film, std::uint64_t& traced) const;
 
   RayScene rays;
   std::vector<CurveModel> models;
@@ -58,6 +54,7 @@ Array3f PathTracer::Impl::direct_light(const PathVertex& vertex, Sampler& sample
   const Vector3f start = vertex.start_toward(about->cast<float>(), sampler);
   const Vector3d origin = start.cast<double>();
   const std::optional<Vector3d> direction = lights.sample(origin, u_light, u);  // from there, hardly another
+  if (!direction) return Array3f::Zero();  // seen from the vertex, not from there
   const std::optional<LightHit> light = lights.intersect(origin, *direction, false);
   if (!light) return Array3f::Zero();  // rounding at the rim of the cone
   const Vector3f wi = direction->cast<float>();
@@ -122,60 +119,97 @@ PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
 
 namespace {
 
-// Calls work(rays, column, row) for each pixel, tiles in parallel.
-template <class Work>
-void for_each_pixel(const Camera& camera, int threads, const std::function<bool(double)>& progress,
-                    const Work& work) {
-  const int columns = (camera.width + kTile - 1) / kTile, rows = (camera.height + kTile - 1) / kTile;
-  std::atomic<std::int64_t> done{0};  // pixels
-  std::atomic<bool> stopped{false};
-  const std::thread::id caller = std::this_thread::get_id();
-  const auto draw_tile = [&](int tile) {
-    const int column = tile % columns * kTile, row = tile / columns * kTile;
-    const int width = std::min(kTile, camera.width - column), height = std::min(kTile, camera.height - row);
-    const PixelRays rays(camera, column, row, width, height);
-    for (int y = row; y < row + height && !stopped; ++y) {
-      for (int x = column; x < column + width; ++x) work(rays, x, y);
-      const std::int64_t finished = done += width;
-      if (progress && std::this_thread::get_id() == caller &&
-          !progress(static_cast<double>(finished) / (static_cast<double>(camera.width) * camera.height))) {
-        stopped = true;
-      }
-    }
-  };
-  const int cores = tbb::info::default_concurrency();
-  tbb::task_arena arena(threads > 0 ? std::min(threads, cores) : cores);
-  arena.execute([&] { tbb::parallel_for(0, columns * rows, draw_tile, tbb::simple_partitioner()); });
-  if (stopped) throw std::runtime_error("rendering was stopped on request; start it again for the whole picture");
+// Tiles that still have pixels below their goal.
+std::vector<cv::Rect> tiles_to_draw(const Film& film) {
+  std::vector<cv::Rect> tiles, all = tiles_of(film.counts.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    double least = 0;
+    cv::minMaxLoc(film.counts(all[i]), &least);
+    if (least < film.goals(static_cast<int>(i))) tiles.push_back(all[i]);
+  }
+  return tiles;
+}
+
+void check_sizes(const Camera& camera, const RenderOptions& options, const Film& film) {
+  const cv::Size size(camera.width, camera.height);
+  if (film.counts.size() != size)
+    throw std::runtime_error("the film has another size than the picture; make it width x height of the camera");
+  if (!options.only.empty() && options.only.size() != size)
+    throw std::runtime_error("the region to render has another size than the picture; make it height x width");
 }
 
 }  // namespace
 
-cv::Mat3f PathTracer::render(const Camera& camera, const RenderOptions& options) const {
-  cv::Mat3f image(camera.height, camera.width, cv::Vec3f(0, 0, 0));
-  if (!options.only.empty() && options.only.size() != image.size())
-    throw std::runtime_error("the region to render has another size than the picture; make it height x width");
-  const int max_vertices = options.max_vertices > 0 ? options.max_vertices : kMostVertices;
-  std::atomic<std::uint64_t> samples{0}, all_traced{0};
-  const auto draw = [&](const PixelRays& rays, int column, int row) {
-    if (!options.only.empty() && options.only(row, column) == 0) return;
-    Sampler sampler(options.seed, static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(camera.width) +
-                                      static_cast<std::uint64_t>(column));
-    Eigen::Array3d sum = Eigen::Array3d::Zero();
-    std::uint64_t traced = 0;
-    for (int s = 0; s < options.samples_per_pixel; ++s) {
-      sampler.start_sample(static_cast<std::uint32_t>(s));
-      const CameraRay ray = rays.at(column, row, sampler.next_2d());
-      sum += impl_->radiance(ray, sampler, max_vertices, traced).cast<double>();
+// Samples of one pixel from those that it has up to its goal.
+void PathTracer::Impl::add_samples(const PixelRays& pixel_rays, int column, int row, Sampler sampler, int goal,
+                                   int max_vertices, Film& film, std::uint64_t& traced) const {
+  cv::Vec3d& film_sum = film.sums(row, column);
+  int& count = film.counts(row, column);
+  Eigen::Array3d sum(film_sum[0], film_sum[1], film_sum[2]), batch = Eigen::Array3d::Zero();
+  for (; count < goal; ++count) {
+    sampler.start_sample(static_cast<std::uint32_t>(count));
+    const CameraRay ray = pixel_rays.sample(column, row, sampler);
+    const Eigen::Array3d sample = radiance(ray, sampler, max_vertices, traced).cast<double>();
+    sum += sample;
+    batch += sample;
+    const int in_batch = count % kBatch + 1;
+    if (in_batch == kBatch || count + 1 == goal) {
+      film.squares(row, column) += batch.square().sum() / in_batch;
+      batch.setZero();
     }
-    const Array3f mean = (sum / options.samples_per_pixel).cast<float>();
-    image(row, column) = {mean[0], mean[1], mean[2]};
-    samples += static_cast<std::uint64_t>(options.samples_per_pixel);
+  }
+  film_sum = {sum[0], sum[1], sum[2]};
+}
+
+bool PathTracer::refine(const Camera& camera, const RenderOptions& options, Film& film) const {
+  check_sizes(camera, options, film);
+  const int max_vertices = options.max_vertices > 0 ? options.max_vertices : kMostVertices;
+  const std::uint64_t before = samples_in(film);
+  std::atomic<std::uint64_t> samples{before}, all_traced{0};
+  const auto draw = [&](const PixelRays& rays, int column, int row) {
+    const int goal = film.goals(tile_at(film.counts.size(), column, row)), count = film.counts(row, column);
+    if (count >= goal || (!options.only.empty() && options.only(row, column) == 0)) return;
+    const Sampler sampler(options.seed, pixel_number(camera, column, row));
+    std::uint64_t traced = 0;
+    impl_->add_samples(rays, column, row, sampler, goal, max_vertices, film, traced);
+    samples += static_cast<std::uint64_t>(goal - count);
     all_traced += traced;
   };
-  for_each_pixel(camera, options.threads, options.progress, draw);
-  if (options.statistics) *options.statistics = {samples, all_traced};
-  return image;
+  double expected = 1, shown = 0;
+  std::uint64_t asked_at = before;
+  const auto go_on = [&] {
+    const std::uint64_t now = samples;
+    if (!options.progress || now == asked_at) return true;  // rows that were there already are no progress
+    asked_at = now;
+    shown = std::clamp(static_cast<double>(now) / expected, shown, 1.0);
+    return options.progress(shown);
+  };
+  const double asked_for = options.only.empty() ? 1 : cv::mean(options.only != 0)[0] / 255;
+  bool finished = false;
+  for (bool stopped = false; !stopped && !finished;) {
+    expected = std::max(1.0, asked_for * expected_samples(film, options.samples_per_pixel, options.noise));
+    stopped = !for_each_pixel(camera, tiles_to_draw(film), options.threads, draw, go_on);
+    finished = !stopped && !raise_goals(film, options.samples_per_pixel, options.noise);
+  }
+  if (options.statistics) *options.statistics = {samples_in(film) - before, all_traced};
+  return finished;
+}
+
+cv::Mat3f PathTracer::render(const Camera& camera, const RenderOptions& options) const {
+  Film film = empty_film(camera.width, camera.height);
+  if (!refine(camera, options, film))
+    throw std::runtime_error("rendering was stopped on request; start it again for the whole picture");
+  return mean_radiance(film);
+}
+
+PictureLayers PathTracer::layers(const Camera& camera, const RenderOptions& options) const {
+  constexpr int kMostLayerSamples = 16;
+  return first_hit_layers(impl_->rays, impl_->models, camera, std::min(options.samples_per_pixel, kMostLayerSamples),
+                          options.seed, options.threads);
+}
+
+SceneMemory PathTracer::memory() const {
+  return impl_->rays.memory();
 }
 
 cv::Mat1b PathTracer::curve_coverage(const Camera& camera, int samples_per_pixel) const {
@@ -191,7 +225,7 @@ cv::Mat1b PathTracer::curve_coverage(const Camera& camera, int samples_per_pixel
         coverage(row, column) = 255;
     }
   };
-  for_each_pixel(camera, 0, {}, look);
+  for_each_pixel(camera, tiles_of({camera.width, camera.height}), 0, look, [] { return true; });
   return coverage;
 }
 

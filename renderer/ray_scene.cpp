@@ -27,15 +27,39 @@ RTCRayHit nearest(RTCScene scene, const Ray& ray, ClothQuery& query) {
   return found;
 }
 
+template <class Element>
+std::size_t bytes_of(const std::vector<Element>& elements) {
+  return elements.size() * sizeof(Element);
+}
+
+// Numbers of the segments with which a curve begins: segments that go on share control points.
+std::vector<std::uint32_t> first_segments(const CurveSet& curves) {
+  std::vector<std::uint32_t> first;
+  for (std::uint32_t i = 0; i < curves.segments.size(); ++i)
+    if (i == 0 || curves.segments[i] != curves.segments[i - 1] + 1) first.push_back(i);
+  return first;
+}
+
 }  // namespace
 
-RayScene::RayScene(Scene scene) : scene_(std::move(scene)) {
+RayScene::RayScene(Scene scene)
+    : scene_(std::move(scene)), embree_bytes_(std::make_shared<std::atomic<std::int64_t>>(0)) {
   device_ = {rtcNewDevice(nullptr), rtcReleaseDevice};
   if (!device_)
     throw std::runtime_error("ray tracing: Embree could not start on this processor; it needs SSE2 or better");
+  rtcSetDeviceMemoryMonitorFunction(
+      device_.get(),
+      [](void* bytes, ssize_t change, bool) {
+        *static_cast<std::atomic<std::int64_t>*>(bytes) += change;
+        return true;
+      },
+      embree_bytes_.get());
   embree_ = {rtcNewScene(device_.get()), rtcReleaseScene};
   rtcSetSceneBuildQuality(embree_.get(), RTC_BUILD_QUALITY_HIGH);
-  for (const CurveSet& curves : scene_.curves) add_curves(device_.get(), embree_.get(), curves);
+  for (const CurveSet& curves : scene_.curves) {
+    add_curves(device_.get(), embree_.get(), curves);
+    first_segments_.push_back(first_segments(curves));
+  }
   for (const TriangleMesh& mesh : scene_.meshes) add_mesh(mesh);
   auto curve_set = static_cast<std::uint32_t>(scene_.curves.size());
   for (const Cloth& cloth : scene_.cloths) {
@@ -93,6 +117,23 @@ bool RayScene::occluded(const Ray& ray, float distance) const {
   return query.tfar < 0;
 }
 
+std::optional<YarnPlace> RayScene::yarn_at(const Ray& ray) const {
+  ClothQuery query;
+  const RTCHit hit = nearest(embree_.get(), ray, query).hit;
+  if (hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  const std::uint32_t geometry = hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? hit.geomID : hit.instID[0];
+  const std::size_t first_mesh = scene_.curves.size(), first_cloth = first_mesh + scene_.meshes.size();
+  if (geometry >= first_cloth) {
+    YarnPlace place = cloths_[geometry - first_cloth]->yarn_at(query.cloth);
+    place.group = static_cast<std::uint32_t>(geometry - scene_.meshes.size());
+    return place;
+  }
+  if (geometry >= first_mesh) return std::nullopt;
+  const std::vector<std::uint32_t>& first = first_segments_[geometry];
+  const auto after = std::upper_bound(first.begin(), first.end(), hit.primID);
+  return YarnPlace{.group = geometry, .number = static_cast<int>(after - first.begin()) - 1};
+}
+
 bool RayScene::meets_curve_first(const Ray& ray) const {
   ClothQuery query;
   const RTCRayHit found = nearest(embree_.get(), ray, query);
@@ -106,6 +147,19 @@ std::size_t RayScene::yarn_bytes() const {
   for (const CurveSet& curves : scene_.curves) bytes += bytes_of(curves);
   for (const auto& cloth : cloths_) bytes += cloth->yarn_bytes();
   return bytes;
+}
+
+SceneMemory RayScene::memory() const {
+  SceneMemory memory{.yarns = yarn_bytes(), .trees = static_cast<std::size_t>(embree_bytes_->load())};
+  for (const auto& cloth : cloths_) memory.surfaces += cloth->shell_bytes();
+  for (const Cloth& cloth : scene_.cloths) {
+    const ClothSurface& s = cloth.surface;
+    memory.surfaces += bytes_of(s.vertices) + bytes_of(s.normals) + bytes_of(s.patch_mm) + bytes_of(s.triangles);
+  }
+  for (const TriangleMesh& mesh : scene_.meshes)
+    memory.surfaces += bytes_of(mesh.vertices) + bytes_of(mesh.triangles) + bytes_of(mesh.texture_coordinates) +
+                       mesh.albedo.total() * mesh.albedo.elemSize();
+  return memory;
 }
 
 MeshPoint RayScene::mesh_point(std::uint32_t mesh_index, std::uint32_t triangle, float u, float v,

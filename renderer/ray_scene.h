@@ -6,12 +6,14 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <variant>
 #include <vector>
 
 #include "renderer/scene.h"
+#include "renderer/yarn_places.h"
 
 struct RTCDeviceTy;
 struct RTCSceneTy;
@@ -46,6 +48,14 @@ struct SurfaceHit {
   std::variant<CurvePoint, MeshPoint> point;
 };
 
+// What a scene takes of the memory, in bytes.
+struct SceneMemory {
+  std::size_t yarns = 0;     // control points and segments of cloths and curves, with what hits of them need
+  std::size_t surfaces = 0;  // shapes of cloths and bodies, cells of shells
+  std::size_t trees = 0;     // all that Embree has taken for itself
+  std::size_t all() const { return yarns + surfaces + trees; }
+};
+
 class RayScene {
  public:
   explicit RayScene(Scene scene);
@@ -53,12 +63,15 @@ class RayScene {
   std::optional<SurfaceHit> intersect(const Ray& ray) const;
   // True when anything lies within `distance` along the ray.
   bool occluded(const Ray& ray, float distance) const;
+  // The yarn that a ray meets first; none when it meets none, or a body before.
+  std::optional<YarnPlace> yarn_at(const Ray& ray) const;
   // True when the first hit is on a curve, be it a cloth's.
   bool meets_curve_first(const Ray& ray) const;
 
   // Control points and segments of all yarns and fibers: the same for every size of a two-scale cloth. Embree's tree
   // and the cells of surfaces come on top.
   std::size_t yarn_bytes() const;
+  SceneMemory memory() const;
 
   const Eigen::AlignedBox3d& bounds() const { return bounds_; }
   const Scene& scene() const { return scene_; }
@@ -68,6 +81,8 @@ class RayScene {
   MeshPoint mesh_point(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Ray& ray) const;
 
   Scene scene_;
+  std::shared_ptr<std::atomic<std::int64_t>> embree_bytes_;  // outlives the device, which counts them
+  std::vector<std::vector<std::uint32_t>> first_segments_;   // of each curve of each curve set
   std::shared_ptr<RTCDeviceTy> device_;
   std::vector<std::shared_ptr<const ClothGeometry>> cloths_;  // outlive the scene, which calls them
   std::shared_ptr<RTCSceneTy> embree_;

@@ -1,4 +1,4 @@
-// What the path tracer sees: thread or fiber curves, cloth, diffuse meshes and spherical lights, in one world frame
+// What the path tracer sees: thread or fiber curves, cloth, diffuse meshes and lights, in one world frame
 // (mm).
 #pragma once
 
@@ -78,12 +78,23 @@ struct SphereLight {
 
 double beam_factor(const SphereLight& light, const Eigen::Vector3d& point);
 
+// Emitting rectangle, bright on the side from which edge_x turns counter-clockwise to edge_y; irradiance far away on its
+// axis: radiance * area / d^2.
+struct RectangleLight {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  Eigen::Vector3d edge_x = Eigen::Vector3d::UnitX(),
+                  edge_y = Eigen::Vector3d::UnitY();   // whole sides, perpendicular, mm
+  Eigen::Vector3d radiance = Eigen::Vector3d::Ones();  // RGB
+  bool visible = true;                                 // seen by camera rays
+};
+
 struct Scene {
   std::vector<CurveSet> curves{};
   std::vector<TriangleMesh> meshes{};
   std::vector<SphereLight> lights{};
   std::optional<EnvironmentLight> surroundings{};
   std::vector<Cloth> cloths{};
+  std::vector<RectangleLight> rectangles{};
 };
 
 // The models of all curves, in the order in which hits number them (CurvePoint::curve_set): the curve sets, then the

@@ -88,7 +88,8 @@ void check_cloth(const YarnPatch& patch, std::size_t threads) {
 
 std::vector<RoundYarns> round_yarns_of(const YarnPatch& patch) {
   std::map<std::pair<bool, double>, RoundYarns> parts;  // by system, flatness
-  for (const Yarn& yarn : patch.yarns) {
+  for (std::size_t i = 0; i < patch.yarns.size(); ++i) {
+    const Yarn& yarn = patch.yarns[i];
     const bool round = yarn.flatness == 1;
     RoundYarns& part = parts[{round || yarn.warp, yarn.flatness}];
     if (part.patch.yarns.empty()) {
@@ -103,6 +104,7 @@ std::vector<RoundYarns> round_yarns_of(const YarnPatch& patch) {
     unstretched.flatness = 1;
     for (Eigen::Vector3d& point : unstretched.control_points) point = point.cwiseQuotient(part.stretch);
     part.patch.yarns.push_back(std::move(unstretched));
+    part.numbers.push_back(static_cast<int>(i));
   }
   std::vector<RoundYarns> all;
   for (auto& [key, part] : parts) all.push_back(std::move(part));
@@ -125,7 +127,7 @@ CurveSet curves_of(const YarnPatch& patch, int tiles_x, int tiles_y, int thread)
   return set;
 }
 
-CurveSet cell_curves_of(const YarnPatch& patch, int thread, double margin_mm) {
+CurveSet cell_curves_of(const YarnPatch& patch, int thread, double margin_mm, std::vector<SegmentOrigin>* origins) {
   assert(margin_mm >= 0);
   CurveSet set;
   const Eigen::Vector2d low(-margin_mm, -margin_mm);
@@ -133,7 +135,8 @@ CurveSet cell_curves_of(const YarnPatch& patch, int thread, double margin_mm) {
   const double reach = margin_mm + stray_of(patch);
   const int images_x = 1 + static_cast<int>(reach / patch.period_x_mm),
             images_y = 1 + static_cast<int>(reach / patch.period_y_mm);
-  for (const Yarn& yarn : patch.yarns) {
+  for (std::size_t i = 0; i < patch.yarns.size(); ++i) {
+    const Yarn& yarn = patch.yarns[i];
     const PeriodicSpline line = center_line(patch, yarn);
     const int across = yarn.warp ? images_x : images_y, along = yarn.warp ? images_y : images_x;
     const double radius = yarn.radius_mm * profile_bound(yarn.thickness);
@@ -144,6 +147,7 @@ CurveSet cell_curves_of(const YarnPatch& patch, int thread, double margin_mm) {
       add_runs(set, yarn, line, offset, -along * count, (along + 1) * count, [&](int k) {
         return thread_of_segment(yarn, k) == thread && reaches(line, radius, offset, k, low, high);
       });
+      if (origins) origins->resize(set.segments.size(), {static_cast<int>(i), image});
     }
   }
   return set;

@@ -21,6 +21,7 @@ void check_cloth(const YarnPatch& patch, std::size_t threads);
 // Yarns that become those of the cloth when stretched by `stretch` (x, y, z), and are round before.
 struct RoundYarns {
   YarnPatch patch;
+  std::vector<int> numbers{};  // of its yarns among those of the cloth's patch
   Eigen::Vector3d stretch = Eigen::Vector3d::Ones();
 };
 // The patch by the shape of its sections; one part for a cloth of round yarns. Elliptical sections are stretched in the
@@ -33,7 +34,13 @@ CurveSet curves_of(const YarnPatch& patch, int tiles_x, int tiles_y, int thread)
 
 // For the two-scale renderer: every segment, of whichever periodic image, whose surface can reach the column
 // [-margin, period_x + margin] x [-margin, period_y + margin]. A ray that stays inside the column meets exactly what
-// it would meet in the infinite cloth. Segments are tested by the box of their control points plus the radius.
-CurveSet cell_curves_of(const YarnPatch& patch, int thread, double margin_mm = 0.0);
+// it would meet in the infinite cloth. Segments are tested by the box of their control points plus the radius. `origins`,
+// when given, gets one entry per segment.
+struct SegmentOrigin {
+  int yarn;   // of the patch
+  int image;  // periods that it is moved across the yarn
+};
+CurveSet cell_curves_of(const YarnPatch& patch, int thread, double margin_mm = 0.0,
+                        std::vector<SegmentOrigin>* origins = nullptr);
 
 }  // namespace renderer

@@ -2,36 +2,78 @@
 
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/render/render_jobs.h"
 #include "station/render_scene.h"
 
 namespace station {
+namespace {
+
+struct Arguments {
+  std::vector<std::filesystem::path> scenes;
+  RenderRequest request;
+  bool time = false, memory = false;
+  std::string noise;
+  OutputOptions output;
+};
+
+// A folder is written to where several pictures are to be made, or a name without an ending is given.
+std::vector<RenderReport> render(const Arguments& arguments) {
+  RenderRequest request = arguments.request;
+  request.noise = parse_noise(arguments.noise).value_or(0);
+  request.progress = arguments.output.progress_style();
+  const bool is_folder = !request.out.has_extension() || std::filesystem::is_directory(request.out);
+  if (arguments.scenes.size() > 1 || is_folder) return render_scenes(arguments.scenes, request);
+  request.scene = arguments.scenes.front();
+  return {render_scene(request)};
+}
+
+std::string description(const Arguments& arguments, const RenderReport& report) {
+  if (report.kept) return report.image + " is there already\n";
+  return report.image + "\n" + (arguments.time ? describe_times(report) + describe_noise(report) : "") +
+         (arguments.memory ? describe(report.memory) : "");
+}
+
+void print(const Arguments& arguments, const std::vector<RenderReport>& reports) {
+  if (arguments.output.json) {
+    nlohmann::json all = nlohmann::json::array();
+    for (const RenderReport& report : reports) all.push_back(to_json(report));
+    std::cout << (arguments.scenes.size() > 1 ? all : all.front()).dump() << "\n";
+  } else if (arguments.time || arguments.memory) {
+    for (const RenderReport& report : reports) std::cout << description(arguments, report);
+  }
+}
+
+}  // namespace
 
 void add_render_command(CLI::App& app) {
-  struct Arguments {
-    RenderRequest request;
-    bool time = false;
-    OutputOptions output;
-  };
   auto arguments = std::make_shared<Arguments>();
   RenderRequest& request = arguments->request;
   CLI::App* command = app.add_subcommand("render", "a scene of cloth to a picture");
-  command->add_option("scene", request.scene, "scene file")->required();
-  command->add_option("--out", request.out, "picture to write: .exr (linear) or .png (display)")->required();
+  command->add_option("scene", arguments->scenes, "scene file, or several")->required();
+  command
+      ->add_option("--out", request.out,
+                   "picture to write: .exr (linear) or .png (display); or a folder: both, named as the scene")
+      ->required();
   command->add_option("--spp", request.samples_per_pixel, "samples per pixel")->check(CLI::Range(1, 1 << 20));
+  command
+      ->add_option("--noise", arguments->noise,
+                   "samples where they are needed, until the noise is this share of the brightness (1%) or --spp is "
+                   "reached (4096 when left out)")
+      ->check([](const std::string& text) { return parse_noise(text) ? "" : "give 0.01% to 100%"; });
   command->add_option("--seed", request.seed, "another number gives another noise")->capture_default_str();
   command->add_option("--threads", request.threads, "processor threads, 0 for all")->check(CLI::Range(0, 4096));
   command->add_option("--exposure", request.exposure, "PNG: radiance times this is shown")
       ->check(CLI::PositiveNumber);
-  command->add_flag("--time", arguments->time, "print how long it took");
+  command->add_flag("--png", request.png, "a PNG beside the EXR");
+  command->add_flag("--layers", request.layers,
+                    "EXR: albedo, normal, depth, cover, thread and yarn of what each pixel shows, as channels");
+  command->add_flag("--half", request.half, "EXR: colours in 16 bit");
+  command->add_flag("--fresh", request.fresh,
+                    "begin again where an interrupted rendering left a checkpoint, or the picture is there");
+  command->add_flag("--time", arguments->time, "print how long it took, and how noisy the picture is");
+  command->add_flag("--memory", arguments->memory, "print what the scene and the picture take of the memory");
   arguments->output.add_to(*command);
-  command->callback([arguments] {
-    arguments->request.progress = arguments->output.progress_style();
-    const RenderReport report = render_scene(arguments->request);
-    if (arguments->output.json)
-      std::cout << to_json(report).dump() << "\n";
-    else if (arguments->time)
-      std::cout << describe_times(report);
-  });
+  command->callback([arguments] { print(*arguments, render(*arguments)); });
 }
 
 }  // namespace station

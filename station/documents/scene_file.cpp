@@ -162,26 +162,54 @@ SceneBody parse_object(ObjectReader reader, const std::filesystem::path& folder)
   return body;
 }
 
-renderer::SphereLight parse_light(ObjectReader reader) {
-  constexpr double kMostRadiance = 1e12;
+constexpr double kMostRadiance = 1e12;
+
+// Given as such, or as the intensity of a light that is seen head-on with that area.
+Vector3d parse_radiance(ObjectReader& reader, double area_mm2) {
+  if (reader.has("radiance") == reader.has("intensity_mm2"))
+    reader.refuse("radiance", "give either radiance or intensity_mm2, not both and not none");
+  if (reader.has("radiance")) return at_least_zero(reader, "radiance", kMostRadiance);
+  return at_least_zero(reader, "intensity_mm2", kMostRadiance) / area_mm2;
+}
+
+renderer::SphereLight parse_sphere(ObjectReader& reader) {
   renderer::SphereLight light;
-  if (reader.choice("kind", {"sphere", "environment"}) == "environment") {
-    light.radius_mm = kSurroundings_mm;
-    light.radiance = at_least_zero(reader, "radiance", kMostRadiance);
-  } else {
-    light.center = point(reader, "position_mm");
-    light.radius_mm = reader.number("radius_mm", 1e-3, kMostCoordinate);
-    if (reader.has("radiance") == reader.has("intensity_mm2"))
-      reader.refuse("radiance", "give either radiance or intensity_mm2, not both and not none");
-    if (reader.has("radiance"))
-      light.radiance = at_least_zero(reader, "radiance", kMostRadiance);
-    else
-      light.radiance =
-          at_least_zero(reader, "intensity_mm2", kMostRadiance) / (renderer::kPi * light.radius_mm * light.radius_mm);
-  }
-  if (reader.has("visible")) light.visible = reader.flag("visible");
-  reader.finish();
+  light.center = point(reader, "position_mm");
+  light.radius_mm = reader.number("radius_mm", 1e-3, kMostCoordinate);
+  light.radiance = parse_radiance(reader, renderer::kPi * light.radius_mm * light.radius_mm);
   return light;
+}
+
+renderer::RectangleLight parse_rectangle(ObjectReader& reader) {
+  renderer::RectangleLight light;
+  light.center = point(reader, "position_mm");
+  const Vector3d toward = point(reader, "target_mm") - light.center;
+  const Vector3d up = reader.has("up") ? reader.vector3("up") : Vector3d::UnitZ();
+  if (!(toward.norm() > 0)) reader.refuse("target_mm", "is where the light is; let it shine somewhere else");
+  if (!(up.cross(toward).norm() > 1e-6 * up.norm() * toward.norm()))
+    reader.refuse("up", "points along the light's axis (its default is [0, 0, 1]); give the direction of its height");
+  const double width_mm = reader.number("width_mm", 1e-3, kMostCoordinate),
+               height_mm = reader.number("height_mm", 1e-3, kMostCoordinate);
+  const Vector3d across = up.cross(toward).normalized();
+  light.edge_x = width_mm * across;
+  light.edge_y = height_mm * toward.cross(across).normalized();
+  light.radiance = parse_radiance(reader, width_mm * height_mm);
+  return light;
+}
+
+void parse_light(ObjectReader reader, SceneFile& scene) {
+  const std::string kind = reader.choice("kind", {"sphere", "rectangle", "environment"});
+  const bool visible = !reader.has("visible") || reader.flag("visible");
+  if (kind == "rectangle") {
+    scene.rectangles.push_back(parse_rectangle(reader));
+    scene.rectangles.back().visible = visible;
+  } else {
+    scene.lights.push_back(kind == "sphere" ? parse_sphere(reader)
+                                            : renderer::SphereLight{.radius_mm = kSurroundings_mm});
+    if (kind == "environment") scene.lights.back().radiance = at_least_zero(reader, "radiance", kMostRadiance);
+    scene.lights.back().visible = visible;
+  }
+  reader.finish();
 }
 
 // An environment that has a file is a picture, of which there can be one.
@@ -218,6 +246,9 @@ renderer::Camera parse_camera(ObjectReader reader) {
     reader.refuse("width_px", "the picture has more than 100 million pixels; make it smaller");
   camera.fx = camera.fy = reader.number("focal_length_px", 1, 1e7);
   camera.cx = (camera.width - 1) / 2.0, camera.cy = (camera.height - 1) / 2.0;
+  camera.focus_mm = (target - eye).norm();
+  if (reader.has("aperture_mm")) camera.aperture_mm = reader.number("aperture_mm", 0, kMostSize);
+  if (reader.has("focus_mm")) camera.focus_mm = reader.number("focus_mm", 1, kMostCoordinate);
   reader.finish();
   return camera;
 }
@@ -249,8 +280,8 @@ SceneFile parse_scene(const json& document, const std::string& source, const std
     if (light.has("file"))
       parse_surroundings(light, folder, scene);
     else
-      scene.lights.push_back(parse_light(light));
-  if (scene.lights.empty() && !scene.surroundings)
+      parse_light(light, scene);
+  if (scene.lights.empty() && scene.rectangles.empty() && !scene.surroundings)
     reader.refuse("lights", "the list is empty and the picture would be black; add a light");
   scene.camera = parse_camera(reader.object("camera"));
   if (reader.has("samples_per_pixel")) scene.samples_per_pixel = reader.integer("samples_per_pixel", 1, 1 << 20);
@@ -279,6 +310,7 @@ renderer::Scene to_scene(const SceneFile& file) {
   for (const SceneBody& body : file.objects)
     scene.meshes.push_back(renderer::body_of(body.shape, body.world_from_object, body.albedo));
   scene.lights = file.lights;
+  scene.rectangles = file.rectangles;
   scene.surroundings = file.surroundings;
   return scene;
 }

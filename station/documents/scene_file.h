@@ -37,6 +37,7 @@ struct SceneFile {
   std::vector<SceneCloth> cloths;
   std::vector<SceneBody> objects;
   std::vector<renderer::SphereLight> lights;
+  std::vector<renderer::RectangleLight> rectangles;
   std::optional<renderer::EnvironmentLight> surroundings;  // as a picture
   renderer::Camera camera;
   int samples_per_pixel = 64;

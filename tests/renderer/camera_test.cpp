@@ -50,5 +50,20 @@ TEST(CameraTest, LookAtCentresTheTargetWithUpUpwards) {
   EXPECT_NEAR(camera.world_from_camera.linear().determinant(), 1, 1e-12);
 }
 
+TEST(CameraTest, RaysThroughTheLensMeetInThePlaneOfFocus) {
+  Camera camera = distorted_camera();
+  camera.aperture_mm = 30, camera.focus_mm = 420;
+  const CameraRay pinhole = ray_through(camera, 33, 310);
+  const Eigen::Vector3d forward = camera.world_from_camera.linear().col(2);
+  const Eigen::Vector3d in_focus = pinhole.origin + pinhole.direction * (420 / pinhole.direction.dot(forward));
+  for (const Eigen::Vector2d& lens : {Eigen::Vector2d(1, 0), Eigen::Vector2d(-0.3, 0.6)}) {
+    const CameraRay ray = ray_through_lens(camera, pinhole, lens);
+    EXPECT_NEAR((ray.origin - pinhole.origin).norm(), 15 * lens.norm(), 1e-9);
+    EXPECT_NEAR((ray.origin - pinhole.origin).dot(forward), 0, 1e-9);
+    EXPECT_LT((in_focus - ray.origin).cross(ray.direction).norm(), 1e-9);
+    EXPECT_NEAR(ray.direction.norm(), 1, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace renderer

@@ -73,6 +73,46 @@ TEST_F(ImageFileTest, ExrKeepsItsHeader) {
   for (const auto& [name, text] : written) EXPECT_EQ(read[name], text);
 }
 
+TEST_F(ImageFileTest, ExrKeepsNamedChannelsOfEachKindBesideTheColours) {
+  cv::Mat planes[3];
+  cv::split(ramp(), planes);
+  planes[1] *= 1e-4;
+  const cv::Mat depth = planes[0] * 1e5 + 1e5;  // more than half has room for
+  cv::Mat1i ids(20, 30, 0);
+  ids(3, 4) = static_cast<int>(0xfedcba98u);
+  const cv::Mat bright = planes[0] * 1e6;
+  write_exr(
+      folder_ / "a.exr",
+      {{"R", planes[0], true}, {"G", planes[1], true}, {"B", bright, true}, {"depth.Z", depth}, {"yarn.id", ids}},
+      {{"threadstation/scene", "test"}});
+  ImageHeader header;
+  const cv::Mat3f colours = read_exr(folder_ / "a.exr", &header);
+  EXPECT_EQ(header["threadstation/scene"], "test");
+  EXPECT_NEAR(colours(7, 8)[0], 7 * 0.37f, 2e-3) << "11 bits of 2.6";
+  EXPECT_NEAR(colours(7, 8)[1], 8, 1e-6) << "small integers are exact";
+  EXPECT_EQ(colours(7, 8)[2], 65504) << "clipped, not infinite";
+  std::map<std::string, ExrChannel> read;
+  for (const ExrChannel& channel : read_exr_channels(folder_ / "a.exr")) read[channel.name] = channel;
+  ASSERT_EQ(read.size(), 5u);
+  EXPECT_TRUE(read["R"].half);
+  EXPECT_FALSE(read["depth.Z"].half);
+  EXPECT_EQ(cv::norm(read["depth.Z"].plane, depth, cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(read["yarn.id"].plane, ids, cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(read["R"].plane, planes[0], cv::NORM_INF) < 4e-3, true);
+}
+
+TEST_F(ImageFileTest, ExrOfNamedColoursAloneIsTheOrdinaryFile) {
+  cv::Mat planes[3];
+  cv::split(ramp(), planes);
+  write_exr(folder_ / "a.exr", {{"R", planes[0]}, {"G", planes[1]}, {"B", planes[2]}});
+  EXPECT_EQ(cv::norm(read_exr(folder_ / "a.exr"), ramp(), cv::NORM_INF), 0);
+  EXPECT_THAT(error_of([&] {
+                write_exr(folder_ / "b.exr", {{"R", planes[0]}, {"G", cv::Mat1f(2, 2)}});
+              }),
+              HasSubstr("channel G"));
+  EXPECT_THAT(error_of([&] { write_exr(folder_ / "b.exr", std::vector<ExrChannel>{}); }), HasSubstr("no channel"));
+}
+
 TEST_F(ImageFileTest, PngKeepsMasksAndColours) {
   cv::Mat1b mask(20, 30, uchar{0});
   mask(3, 4) = 255;

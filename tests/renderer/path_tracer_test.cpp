@@ -193,6 +193,40 @@ TEST(PathTracerTest, LightsAreSeenByCamerasOnlyWhenVisible) {
   EXPECT_EQ(mean(PathTracer({.lights = {light}}).render(camera, {})), 0);
 }
 
+// A lamp smaller than a pixel, before and behind the plane of focus, and in it.
+TEST(PathTracerTest, APointOutOfFocusIsSpreadOverItsCircleOfConfusion) {
+  Camera camera = look_at({0, 0, 500}, {0, 0, 0}, {0, 1, 0});
+  camera.width = 48, camera.height = 40;
+  camera.fx = camera.fy = 1500, camera.cx = 23.5, camera.cy = 19.5;
+  camera.aperture_mm = 20, camera.focus_mm = 500;
+  for (const double depth_mm : {350.0, 500.0, 900.0}) {
+    const Vector3d at(0.003 * depth_mm, -0.002 * depth_mm, 500 - depth_mm);  // 4.5 and 3 pixels beside the middle
+    const double radius_mm = 3e-4 * depth_mm;                                // 0.45 pixels
+    const PathTracer tracer({.lights = {{.center = at, .radius_mm = radius_mm}}});
+    const cv::Mat3f image = tracer.render(camera, {.samples_per_pixel = 4096});
+    double sum = 0, farthest = 0;
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero(), spread = Eigen::Vector2d::Zero();
+    const Eigen::Vector2d expected = project(camera, at);
+    for (int row = 0; row < camera.height; ++row) {
+      for (int column = 0; column < camera.width; ++column) {
+        const double light = image(row, column)[0];
+        const Eigen::Vector2d from = Eigen::Vector2d(column, row) - expected;
+        sum += light, mean += light * from, spread += light * from.cwiseAbs2();
+        if (light > 0) farthest = std::max(farthest, from.norm());
+      }
+    }
+    EXPECT_NEAR(sum, kPi * 0.45 * 0.45, 0.06 * sum) << depth_mm;  // all of its light; 2600 rays meet the lamp
+    EXPECT_LT((mean / sum).norm(), 0.4) << depth_mm;              // of 26 pixels, as many rays
+    const double diameter = circle_of_confusion_px(camera, depth_mm);
+    EXPECT_DOUBLE_EQ(diameter, 1500 * 20 * std::abs(1 / 500.0 - 1 / depth_mm));
+    EXPECT_LT(farthest, diameter / 2 + 1.5);  // the lamp's own radius and the pixels'
+    EXPECT_GT(farthest, diameter / 2 - 1.5);
+    if (diameter == 0) continue;
+    const double moment = diameter * diameter / 16;  // of a disc along an axis
+    for (int axis = 0; axis < 2; ++axis) EXPECT_NEAR(spread[axis] / sum, moment, 0.05 * moment) << depth_mm;
+  }
+}
+
 TEST(PathTracerTest, AnOpaqueFloorHidesTheLightBehindIt) {
   const PathTracer tracer({.meshes = {white_floor(0.5f)}, .lights = {{.center = {0, 0, -100}, .radius_mm = 20}}});
   EXPECT_EQ(mean(tracer.render(small_camera({0, 0, 100}, 10), {})), 0);

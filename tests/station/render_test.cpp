@@ -2,10 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "renderer/image_file.h"
+#include "station/capture/sha256.h"
 #include "station/documents/reader.h"
+#include "station/render_scene.h"
 #include "tests/places.h"
 #include "tests/station/program.h"
 
@@ -43,6 +48,15 @@ class Render : public ::testing::Test {
     EXPECT_EQ(result.status, 1) << result.error;
     EXPECT_EQ(result.error_lines(), 1) << result.error;
     EXPECT_NE(result.error.find(must_name), std::string::npos) << result.error;
+  }
+  // Interrupted as soon as the first line of progress is there; `out` then is what it said from then on.
+  ProgramResult interrupted_render(const std::string& scene, const std::string& out, const std::string& more = {}) {
+    const std::string pipe = folder_ / "pipe";
+    const std::string command =
+        std::string(THREADSTATION_PROGRAM) + " render " + scene + " --out " + (folder_ / out).string() + more;
+    return run_shell("mkfifo " + pipe + "; " + command + " 2> " + pipe +
+                     " & program=$!; { read first; kill -INT $program; cat; } < " + pipe +
+                     "; wait $program; status=$?; rm " + pipe + "; exit $status");
   }
   TemporaryFolder folder_;
 };
@@ -102,20 +116,168 @@ TEST_F(Render, BadFilesGiveOneClearLine) {
   EXPECT_EQ(wrong_use.status, 2) << wrong_use.error;
 }
 
-TEST_F(Render, CtrlCStopsItInOneLineAndLeavesNoPicture) {
+TEST_F(Render, CtrlCLeavesACheckpointFromWhichTheSameCommandEndsWithTheSamePicture) {
   json scene = small_scene("plain_swatch");
-  scene["samples_per_pixel"] = 256;
-  scene["camera"]["width_px"] = scene["camera"]["height_px"] = 4000;  // hours
-  const std::string out = folder_ / "a.exr", pipe = folder_ / "pipe";
-  const std::string render =
-      std::string(THREADSTATION_PROGRAM) + " render " + written("scene.json", scene) + " --out " + out;
-  // Interrupts it as soon as the first line of progress is there, and prints what it says from then on.
-  const ProgramResult result =
-      run_shell("mkfifo " + pipe + "; " + render + " 2> " + pipe +
-                " & program=$!; { read first; kill -INT $program; cat; } < " + pipe + "; wait $program");
-  EXPECT_EQ(result.status, 1) << result.out << result.error;
-  EXPECT_NE(result.out.find("threadstation: rendering was stopped on request"), std::string::npos) << result.out;
-  EXPECT_FALSE(std::filesystem::exists(out));
+  scene["samples_per_pixel"] = 400;
+  const std::string file = written("scene.json", scene);
+  ASSERT_EQ(render(file, "whole.exr").status, 0);
+  const ProgramResult stopped = interrupted_render(file, "a.exr");
+  EXPECT_EQ(stopped.status, 1) << stopped.out << stopped.error;
+  EXPECT_NE(stopped.out.find("threadstation: rendering was stopped on request"), std::string::npos) << stopped.out;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.exr"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "a.exr.checkpoint"));
+  EXPECT_GT(std::filesystem::file_size(folder_ / "a.preview.png"), 100u);
+  const ProgramResult finished = render(file, "a.exr", {"--json"});
+  ASSERT_EQ(finished.status, 0) << finished.error;
+  const json report = json::parse(finished.out);
+  EXPECT_GT(report.at("samples_before"), 0);
+  EXPECT_EQ(report.at("samples").get<int>() + report.at("samples_before").get<int>(), 40 * 40 * 400);
+  EXPECT_EQ(station::sha256_of_file(folder_ / "a.exr"), station::sha256_of_file(folder_ / "whole.exr"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.exr.checkpoint"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.preview.png"));
+}
+
+TEST_F(Render, AnotherRenderingsCheckpointIsRefusedInOneLineUntilItIsThrownAway) {
+  json scene = small_scene("plain_swatch");
+  const json as_it_was = station::read_json_file(scene["threads"][0].get<std::string>());
+  written("thread.json", as_it_was);
+  scene["threads"][0] = "thread.json";
+  const std::string file = written("scene.json", scene);
+  ASSERT_EQ(interrupted_render(file, "a.exr", " --spp 4000").status, 1);
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& must_name) {
+    const ProgramResult result = render(file, "a.exr", more);
+    expect_one_line(result, must_name);
+    EXPECT_NE(result.error.find("a.exr.checkpoint"), std::string::npos) << result.error;
+    EXPECT_NE(result.error.find("--fresh"), std::string::npos) << result.error;
+  };
+  refused({}, "samples per pixel 4000, not 2");
+  refused({"--spp", "4000", "--seed", "9"}, "seed 1, not 9");
+  json thread = as_it_was;
+  thread["diameter_mm"] = 0.7;
+  written("thread.json", thread);
+  refused({"--spp", "4000"}, "another scene");
+  written("thread.json", as_it_was);
+  const std::filesystem::path checkpoint = folder_ / "a.exr.checkpoint";
+  const auto spoil = [&](std::streamoff at) {
+    std::fstream bytes(checkpoint, std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(at, std::ios::end);
+    bytes.put('?');
+  };
+  spoil(-5000);
+  refused({"--spp", "4000"}, "damaged");
+  std::filesystem::resize_file(checkpoint, 3000);
+  refused({"--spp", "4000"}, "cut short");
+  ASSERT_EQ(render(file, "a.exr", {"--fresh"}).status, 0);
+  ASSERT_EQ(render(file, "b.exr").status, 0);
+  EXPECT_EQ(station::sha256_of_file(folder_ / "a.exr"), station::sha256_of_file(folder_ / "b.exr"));
+  EXPECT_FALSE(std::filesystem::exists(checkpoint));
+}
+
+TEST_F(Render, CheckpointsNowAndThenDoNotChangeThePicture) {
+  json scene = small_scene("plain_swatch");
+  scene["samples_per_pixel"] = 32;
+  const std::string file = written("scene.json", scene);
+  ASSERT_EQ(render(file, "a.exr").status, 0);
+  station::render_scene({.scene = file,
+                         .out = folder_ / "b.exr",
+                         .checkpoint_every_s = 0.1,
+                         .progress = station::ProgressStyle::quiet});
+  EXPECT_EQ(station::sha256_of_file(folder_ / "a.exr"), station::sha256_of_file(folder_ / "b.exr"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "b.exr.checkpoint"));
+}
+
+TEST_F(Render, LayersAreNamedChannelsBesideTheSameColours) {
+  json scene = small_scene("satin_cylinder");
+  scene["samples_per_pixel"] = 4;
+  const std::string file = written("scene.json", scene);
+  ASSERT_EQ(render(file, "a.exr").status, 0);
+  ASSERT_EQ(render(file, "layers.exr", {"--layers"}).status, 0);
+  ASSERT_EQ(render(file, "half.exr", {"--layers", "--half"}).status, 0);
+  const cv::Mat3f colours = renderer::read_exr(folder_ / "a.exr");
+  EXPECT_EQ(cv::norm(colours, renderer::read_exr(folder_ / "layers.exr"), cv::NORM_INF), 0);
+  EXPECT_LT(cv::norm(colours, renderer::read_exr(folder_ / "half.exr")), 1e-3 * cv::norm(colours));
+  EXPECT_LT(std::filesystem::file_size(folder_ / "half.exr"), std::filesystem::file_size(folder_ / "layers.exr"));
+  std::map<std::string, renderer::ExrChannel> channels, halves;
+  for (const auto& channel : renderer::read_exr_channels(folder_ / "layers.exr")) channels[channel.name] = channel;
+  for (const auto& channel : renderer::read_exr_channels(folder_ / "half.exr")) halves[channel.name] = channel;
+  EXPECT_EQ(channels.size(), 13u);
+  // The cylinder's middle, 41 mm before its axis and 700 mm minus that from the eye, faces the camera.
+  const auto middle = [&](const std::string& name) { return channels.at(name).plane.at<float>(25, 16); };
+  EXPECT_NEAR(middle("depth.Z"), 665, 10);
+  EXPECT_GT(middle("normal.X"), 0.5f);
+  EXPECT_EQ(middle("cover.A"), 1);
+  EXPECT_GT(middle("albedo.B"), middle("albedo.R")) << "blue warp";
+  EXPECT_TRUE(halves.at("albedo.B").half && !halves.at("depth.Z").half);
+  EXPECT_EQ(cv::norm(halves.at("yarn.id").plane, channels.at("yarn.id").plane, cv::NORM_INF), 0);
+  std::set<int> threads, yarns;
+  for (const int id : cv::Mat1i(channels.at("thread.id").plane)) threads.insert(id);
+  for (const int id : cv::Mat1i(channels.at("yarn.id").plane)) yarns.insert(id);
+  EXPECT_EQ(threads, (std::set<int>{0, 1, 2})) << "the table, warp, weft";
+  EXPECT_GT(yarns.size(), 50u);
+  expect_one_line(render(file, "a.png", {"--layers"}), "--layers and --half are for EXR files");
+}
+
+TEST_F(Render, SeveralScenesGoIntoOneFolderAndWhatIsThereIsKept) {
+  json slow = small_scene("satin_swatch");
+  slow["samples_per_pixel"] = 400;
+  const std::string first = written("first.json", small_scene("plain_swatch")), second = written("second.json", slow),
+                    third = written("third.json", small_scene("twill_swatch"));
+  ASSERT_EQ(render(second, "alone.exr").status, 0);
+  ASSERT_EQ(render(first, "pictures", {"--quiet"}).status, 0) << "a name without an ending is a folder";
+  ASSERT_TRUE(std::filesystem::exists(folder_ / "pictures" / "first.png"));
+  const auto written_at = std::filesystem::last_write_time(folder_ / "pictures" / "first.exr");
+  const ProgramResult stopped = interrupted_render(first + " " + second + " " + third, "pictures");
+  EXPECT_EQ(stopped.status, 1);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "pictures" / "second.exr.checkpoint"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "pictures" / "third.exr"));
+  const ProgramResult finished = render(first, "pictures", {second, third, "--json"});
+  ASSERT_EQ(finished.status, 0) << finished.error;
+  const json reports = json::parse(finished.out);
+  ASSERT_EQ(reports.size(), 3u);
+  EXPECT_EQ(reports[0].at("kept"), true);
+  EXPECT_EQ(std::filesystem::last_write_time(folder_ / "pictures" / "first.exr"), written_at);
+  EXPECT_GT(reports[1].at("samples_before"), 0);
+  EXPECT_EQ(reports[2].at("samples_before"), 0);
+  EXPECT_EQ(station::sha256_of_file(folder_ / "pictures" / "second.exr"),
+            station::sha256_of_file(folder_ / "alone.exr"));
+  EXPECT_GT(std::filesystem::file_size(folder_ / "pictures" / "third.png"), 100u);
+  const ProgramResult other_seed = render(first, "pictures", {"--seed", "2", "--json"});
+  EXPECT_FALSE(json::parse(other_seed.out).contains("kept"));
+  expect_one_line(render(first, "pictures", {(folder_ / "pictures" / ".." / "first.json").string()}), "rename one");
+  expect_one_line(render(first, "pictures", {folder_ / "none.json"}), "no such file");
+  expect_one_line(render(first, "a.exr", {third}), "a.exr");
+}
+
+TEST_F(Render, ASquareMetreOfSilkTakesLittleMemory) {
+  json scene = small_scene("square_metre/scene");
+  for (json& thread : scene["threads"])
+    thread = std::string(FIXTURES_DIR) + "/scenes/square_metre/../../threads/" +
+             std::filesystem::path(thread.get<std::string>()).filename().string();
+  scene["cloths"][0]["draft"] = std::string(FIXTURES_DIR) + "/scenes/square_metre/draft.json";
+  const ProgramResult result = render(written("scene.json", scene), "a.exr", {"--json"});
+  ASSERT_EQ(result.status, 0) << result.error;
+  const json memory = json::parse(result.out).at("memory");
+  EXPECT_LE(memory.at("control_points_bytes"), 10000);
+  EXPECT_LE(memory.at("scene_bytes"), 50e6);
+  EXPECT_GT(memory.at("trees_bytes"), 1e5);
+  EXPECT_GT(memory.at("surfaces_bytes"), 1e6);
+  // As many repeats as square millimetres.
+  EXPECT_NEAR(memory.at("explicit_yarns_bytes").get<double>() / memory.at("control_points_bytes").get<double>(), 1e6,
+              0.02e6);
+}
+
+TEST_F(Render, ANoiseToReachPutsSamplesWhereTheyAreNeeded) {
+  const std::string file = written("scene.json", small_scene("satin_cylinder"));
+  const ProgramResult result = render(file, "a.exr", {"--noise", "20%", "--spp", "2000", "--json"});
+  ASSERT_EQ(result.status, 0) << result.error;
+  const json report = json::parse(result.out);
+  EXPECT_LT(report.at("noise"), 0.2);
+  EXPECT_EQ(report.at("noisy"), 0);
+  const double samples = report.at("samples").get<double>() / (33 * 50);
+  EXPECT_GE(samples, 64);
+  EXPECT_LT(samples, 1000);
+  for (const char* wrong : {"0", "1 mm", "200%", "noise"})
+    EXPECT_EQ(render(file, "b.exr", {"--noise", wrong}).status, 2) << wrong;
 }
 
 }  // namespace

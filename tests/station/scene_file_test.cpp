@@ -98,6 +98,36 @@ TEST(SceneFile, WhatItSaysIsWhereItBelongs) {
   EXPECT_EQ(scene.exposure, 2.5);
 }
 
+TEST(SceneFile, ARectanglesBrightSideFacesItsTarget) {
+  json document = plain_scene();
+  document["lights"] = {{{"kind", "rectangle"},
+                         {"position_mm", {100, 0, 50}},
+                         {"target_mm", {0, 0, 50}},
+                         {"width_mm", 30},
+                         {"height_mm", 20},
+                         {"intensity_mm2", {600, 1200, 1800}},
+                         {"visible", false}}};
+  const SceneFile scene = parse_scene(document, "scene", kScenes);
+  EXPECT_TRUE(scene.lights.empty());
+  ASSERT_EQ(to_scene(scene).rectangles.size(), 1u);
+  const renderer::RectangleLight& light = scene.rectangles[0];
+  EXPECT_LT((light.edge_x.cross(light.edge_y) - Eigen::Vector3d(-600, 0, 0)).norm(), 1e-9);
+  EXPECT_LT((light.edge_y - Eigen::Vector3d(0, 0, 20)).norm(), 1e-9);
+  EXPECT_LT((light.radiance - Eigen::Vector3d(1, 2, 3)).norm(), 1e-12);
+  EXPECT_FALSE(light.visible);
+}
+
+TEST(SceneFile, ALensIsFocusedOnTheTargetUnlessItSaysWhere) {
+  json document = plain_scene();
+  EXPECT_EQ(parse_scene(document, "scene", kScenes).camera.aperture_mm, 0);
+  document["camera"]["aperture_mm"] = 12;
+  const renderer::Camera camera = parse_scene(document, "scene", kScenes).camera;
+  EXPECT_EQ(camera.aperture_mm, 12);
+  EXPECT_DOUBLE_EQ(camera.focus_mm, 400);
+  document["camera"]["focus_mm"] = 380;
+  EXPECT_EQ(parse_scene(document, "scene", kScenes).camera.focus_mm, 380);
+}
+
 TEST(SceneFile, BruteForceTurnsClothIntoCurvesOfItsThreads) {
   json document = plain_scene();
   document["cloths"][0]["method"] = "brute_force";
@@ -170,10 +200,19 @@ TEST(SceneFile, EachMistakeIsRefusedInOneLineThatNamesIt) {
       {"/lights/0", {{"kind", "environment"}, {"file", "none.exr"}}, "none.exr"},
       {"/lights/0", {{"kind", "sphere"}, {"file", "none.exr"}}, "lights[0].kind"},
       {"/lights/0/radius_mm", -1, "lights[0].radius_mm"},
+      {"/lights/0",
+       {{"kind", "rectangle"}, {"position_mm", {0, 0, 1}}, {"target_mm", {0, 0, 1}}},
+       "lights[0].target_mm"},
+      {"/lights/0", {{"kind", "rectangle"}, {"position_mm", {0, 0, 1}}, {"target_mm", {0, 0, 0}}}, "lights[0].up"},
+      {"/lights/0",
+       {{"kind", "rectangle"}, {"position_mm", {0, 0, 1}}, {"target_mm", {1, 0, 0}}, {"width_mm", -1}},
+       "lights[0].width_mm"},
       {"/camera/eye_mm", {0, 0, 0}, "camera.target_mm"},
       {"/camera/up", {0, 0, 1}, "camera.up"},
       {"/camera/width_px", 0, "camera.width_px"},
       {"/camera/focal_length_px", nullptr, "camera.focal_length_px"},
+      {"/camera/aperture_mm", -1, "camera.aperture_mm"},
+      {"/camera/focus_mm", 0, "camera.focus_mm"},
       {"/samples_per_pixel", 0.5, "samples_per_pixel"},
       {"/exposure", -1, "exposure"}};
   for (const Mistake& mistake : mistakes) {
