@@ -27,6 +27,11 @@ RTCRayHit nearest(RTCScene scene, const Ray& ray, ClothQuery& query) {
   return found;
 }
 
+// Of curves that are placed elsewhere, the number is the instance's.
+std::uint32_t geometry_of(const RTCHit& hit) {
+  return hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? hit.geomID : hit.instID[0];
+}
+
 }  // namespace
 
 RayScene::RayScene(Scene scene) : scene_(std::move(scene)) {
@@ -39,7 +44,7 @@ RayScene::RayScene(Scene scene) : scene_(std::move(scene)) {
   for (const TriangleMesh& mesh : scene_.meshes) add_mesh(mesh);
   auto curve_set = static_cast<std::uint32_t>(scene_.curves.size());
   for (const Cloth& cloth : scene_.cloths) {
-    cloths_.push_back(std::make_shared<ClothGeometry>(cloth, curve_set, device_.get()));
+    cloths_.push_back(std::make_shared<ClothGeometry>(cloth, curve_set));
     cloths_.back()->attach_to(device_.get(), embree_.get());
     curve_set += static_cast<std::uint32_t>(cloth.threads.size());
   }
@@ -74,14 +79,15 @@ std::optional<SurfaceHit> RayScene::intersect(const Ray& ray) const {
   if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   const auto first_mesh = static_cast<std::uint32_t>(scene_.curves.size());
   const auto first_cloth = first_mesh + static_cast<std::uint32_t>(scene_.meshes.size());
-  if (found.hit.geomID >= first_cloth)
-    return SurfaceHit{found.ray.tfar, cloths_[found.hit.geomID - first_cloth]->point_at(query.cloth)};
-  if (found.hit.geomID >= first_mesh)
+  const std::uint32_t geometry = geometry_of(found.hit);
+  if (geometry >= first_cloth)
+    return SurfaceHit{found.ray.tfar, cloths_[geometry - first_cloth]->point_at(query.cloth)};
+  if (geometry >= first_mesh)
     return SurfaceHit{found.ray.tfar,
-                      mesh_point(found.hit.geomID - first_mesh, found.hit.primID, found.hit.u, found.hit.v, ray)};
-  CurvePoint point = point_on_curve(scene_.curves[found.hit.geomID], found.hit.primID, found.hit.u,
+                      mesh_point(geometry - first_mesh, found.hit.primID, found.hit.u, found.hit.v, ray)};
+  CurvePoint point = point_on_curve(scene_.curves[geometry], found.hit.primID, found.hit.u,
                                     {found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z}, ray, found.ray.tfar);
-  point.curve_set = found.hit.geomID;
+  point.curve_set = geometry;
   return SurfaceHit{found.ray.tfar, point};
 }
 
@@ -97,8 +103,9 @@ bool RayScene::meets_curve_first(const Ray& ray) const {
   ClothQuery query;
   const RTCRayHit found = nearest(embree_.get(), ray, query);
   const std::size_t first_mesh = scene_.curves.size(), first_cloth = first_mesh + scene_.meshes.size();
-  return found.hit.geomID != RTC_INVALID_GEOMETRY_ID &&
-         (found.hit.geomID < first_mesh || found.hit.geomID >= first_cloth);
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  const std::uint32_t geometry = geometry_of(found.hit);
+  return geometry < first_mesh || geometry >= first_cloth;
 }
 
 std::size_t RayScene::yarn_bytes() const {
