@@ -49,6 +49,7 @@ struct Piece {
   double from = 0, to = 1;
   Vector3d base = Vector3d::Zero(), axis = Vector3d::UnitX();
   double radius = 0, low = 0, high = 0;
+  double length = 1;  // of its chord
   double deviation = 0, lean = 0;  // of the line from the axis; of the discs along it
   double taper = 0;                // radius times the widening
   double thickest = 0, tilt = 0;
@@ -59,6 +60,7 @@ Piece piece_of(const Cubic& line, double from, double to) {
   Piece piece{.from = from, .to = to, .base = line.at(from).head<3>()};
   const Vector3d chord = line.at(to).head<3>() - piece.base;
   piece.axis = chord.norm() > 0 ? Vector3d(chord.normalized()) : line.tangent(from);
+  piece.length = std::max(chord.norm(), 1e-9);
   piece.low = 1e300, piece.high = -1e300;
   for (int i = 0; i <= kSteps; ++i) {
     const double u = from + (to - from) * i / kSteps;
@@ -112,6 +114,7 @@ void put(YarnPieces& group, int lane, const Piece& p) {
   // Directions in the patch are longer than 1 where the surface is stretched; rounding.
   group.slack[lane] = static_cast<float>(1.5 * p.deviation + kWider * p.thickest);
   group.axial_slack[lane] = static_cast<float>(1.05 * p.lean + 3 * p.taper);
+  group.inverse_length[lane] = static_cast<float>(1 / p.length);
   group.segment[lane] = p.segment;
   group.from[lane] = static_cast<float>(p.from), group.to[lane] = static_cast<float>(p.to);
 }

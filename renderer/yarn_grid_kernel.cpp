@@ -26,8 +26,11 @@ typedef float Float4 __attribute__((vector_size(16)));
 
 constexpr float kFar = 1e30f;
 constexpr int kMostSteps = 8;
-// Of the radius, along the axis: moves the normal by as much, a tenth of what Embree leaves.
-constexpr float kConverged = 2e-4f;
+// Of the radius, along the axis: moves the normal by as much, a quarter of what Embree leaves.
+constexpr float kConverged = 5e-4f;
+constexpr float kOnSurface = 2e-5f;  // of the radius squared
+// Of the same: scattered rays start a thousandth of a radius deep.
+constexpr float kInside = 5e-4f;
 constexpr float kPastEnds = 1e-3f;  // of a segment: neighbours overlap, so that rounding leaves no gap
 
 #define INLINE inline __attribute__((always_inline))
@@ -118,7 +121,7 @@ INLINE bool solve_along(const Float4* k, Float4 o, Float4 d, bool forward, float
     float at = before + (after - before) * outside[i] / (outside[i] - outside[i + 1]);
     for (int step = 0; step < kMostSteps; ++step) {
       const Crossing x = cross(k, o, d, at);
-      if (x.outside * x.outside < 0.01f * kConverged * kConverged * x.r * x.r * x.r * x.r) {
+      if (x.outside * x.outside < kOnSurface * kOnSurface * x.r * x.r * x.r * x.r) {
         const float distance = near + x.t;
         if (!(distance > 0) || !(distance <= most)) break;
         found.t = distance, found.u = at < 0 ? 0 : (at > 1 ? 1 : at), found.normal = x.q;
@@ -132,8 +135,9 @@ INLINE bool solve_along(const Float4* k, Float4 o, Float4 d, bool forward, float
   return false;
 }
 
-// Where the ray enters the yarn between parameters `from` and `to`, at t > 0 and before `most`.
-INLINE bool solve(const YarnSegment& segment, LocalRay ray, float from, float to, float near, float most,
+// Where the ray enters the yarn between parameters `from` and `to`, at t > 0 and before `most`. It comes near it at t =
+// `near` (0: it may start inside), about where the parameter is `guess`.
+INLINE bool solve(const YarnSegment& segment, LocalRay ray, float from, float to, float guess, float near, float most,
                   Solution& found) {
   Float4 k[4];
   for (int i = 0; i < 4; ++i) k[i] = *reinterpret_cast<const Float4*>(segment.power[i]);
@@ -145,7 +149,7 @@ INLINE bool solve(const YarnSegment& segment, LocalRay ray, float from, float to
   const float speed = dot3(d, axis);
   if (speed * speed > 0.7f * dd * dot3(axis, axis))
     return solve_along(k, o, d, speed > 0, low, high, near, most, found);
-  float u = middle, bend = 0;
+  float u = guess, bend = 0;
   for (int step = 0; step < kMostSteps; ++step) {
     const Float4 c = k[0] + u * (k[1] + u * (k[2] + u * k[3]));
     const Float4 c1 = k[1] + u * (2 * k[2] + u * (3 * k[3]));
@@ -160,6 +164,8 @@ INLINE bool solve(const YarnSegment& segment, LocalRay ray, float from, float to
     const float a = dd - da * da * inv - widens * widens;
     const float b = dot3(w, d) - wa * da * inv - across * widens;
     const float cc = dot3(w, w) - wa * wa * inv - across * across;
+    // It starts inside, and leaves the yarn unseen.
+    if (step == 0 && near == 0 && cc < -kInside * r * r && wa * wa < kInside * r * r * along2) return false;
     const float disc = b * b - a * cc;
     const bool met = disc > 0;
     const float root = met ? __builtin_sqrtf(disc) : 0.0f;
@@ -180,16 +186,17 @@ INLINE bool solve(const YarnSegment& segment, LocalRay ray, float from, float to
       return true;
     }
     const float next = u - miss / slope;
-    // Half a piece beyond either end and still away: it is met in another piece or not at all.
-    const float room = 0.5f * (to - from);
-    if ((next < from - room && u < from - room) || (next > to + room && u > to + room)) return false;
-    u = next < from - 2 * room ? from - 2 * room : (next > to + 2 * room ? to + 2 * room : next);
+    // Clearly beyond either end: it is met in another piece or not at all.
+    const float change = next - u, room = 0.1f * (to - from) + 0.5f * (change < 0 ? -change : change);
+    if (next < from - room || next > to + room) return false;
+    u = next;
   }
   return false;
 }
 
 // Pieces of the batch that the ray may meet before `most`, as bits; where it comes near them.
-INLINE unsigned candidates(const YarnPieces& p, LocalRay ray, float most, Float8& near) {
+// `guess`: parameters there.
+INLINE unsigned candidates(const YarnPieces& p, LocalRay ray, float most, Float8& near, Float8& guess) {
   const Float4 o = ray.origin, d = ray.direction;
   const Float8 ox = o[0] - load8(p.base_x), oy = o[1] - load8(p.base_y), oz = o[2] - load8(p.base_z);
   const Float8 ax = load8(p.axis_x), ay = load8(p.axis_y), az = load8(p.axis_z);
@@ -209,6 +216,8 @@ INLINE unsigned candidates(const YarnPieces& p, LocalRay ray, float most, Float8
   near = max8(max8((-b - root) * inv_a, min8(t_low, t_high)), Float8{});
   const Float8 end = min8(min8((root - b) * inv_a, max8(t_low, t_high)), Float8{} + most);
   possible &= near <= end;
+  const Float8 from = load8(p.from), to = load8(p.to), share = (oa + near * da) * load8(p.inverse_length);
+  guess = from + (to - from) * min8(max8(share, Float8{}), Float8{} + 1.0f);
   return bits8(possible);
 }
 
@@ -237,14 +246,14 @@ INLINE bool walk(const YarnGridData& grid, const YarnGridRay& ray, YarnGridHit* 
       const YarnPieces& pieces = grid.pieces[i];
       const Float4 unstretch = {pieces.unstretch_x, pieces.unstretch_y, 1, 0};
       const LocalRay local{o * unstretch, d * unstretch};
-      Float8 near;
+      Float8 near, guess;
       const float reach = leave + 1e-3f < best ? leave + 1e-3f : best;
-      for (unsigned bits = candidates(pieces, local, reach, near); bits; bits &= bits - 1) {
+      for (unsigned bits = candidates(pieces, local, reach, near, guess); bits; bits &= bits - 1) {
         const int lane = __builtin_ctz(bits);
         if (near[lane] > best) continue;
         Solution solution;
-        if (!solve(grid.segments[pieces.segment[lane]], local, pieces.from[lane], pieces.to[lane], near[lane], best,
-                   solution))
+        if (!solve(grid.segments[pieces.segment[lane]], local, pieces.from[lane], pieces.to[lane], guess[lane],
+                   near[lane], best, solution))
           continue;
         if (any) return true;
         found = true;

@@ -15,7 +15,7 @@ struct alignas(32) YarnPieces {
   float base_x[kGridLanes], base_y[kGridLanes], base_z[kGridLanes];
   float axis_x[kGridLanes], axis_y[kGridLanes], axis_z[kGridLanes];  // unit
   float radius2[kGridLanes], low[kGridLanes], high[kGridLanes];      // ends, along the axis from the base
-  float slack[kGridLanes], axial_slack[kGridLanes];
+  float slack[kGridLanes], axial_slack[kGridLanes], inverse_length[kGridLanes];
   std::uint32_t segment[kGridLanes];  // of the grid
   float from[kGridLanes], to[kGridLanes];  // parameters on the segment
   float unstretch_x, unstretch_y;  // the pieces are round where space is multiplied by this
