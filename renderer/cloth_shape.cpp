@@ -134,20 +134,28 @@ std::vector<CurveSet> explicit_curves(const ClothShape& shape, const YarnPatch& 
                              std::to_string(tiles.y) + " repeats of \"" + patch.name +
                              "\" as curves, more than memory should hold; use two_scale or a smaller cloth");
   check_cloth(patch, threads.size());
-  for (const Yarn& yarn : patch.yarns)
-    if (yarn.flatness != 1)
-      throw std::runtime_error("cloth: \"" + patch.name +
-                               "\" has flattened yarns, and brute force draws round ones only; use two_scale");
+  const auto* swatch = std::get_if<SwatchShape>(&shape);
   const double around_mm = tiles.x * patch.period_x_mm;
   std::vector<CurveSet> sets;
-  for (const int thread : threads_of(patch)) {
-    CurveSet set = curves_of(patch, tiles.x, tiles.y, thread);
-    set.scattering = threads[static_cast<std::size_t>(thread)];
-    for (Eigen::Vector4f& point : set.control_points) {
-      const Vector3d sheet = point.head<3>().cast<double>();
-      point.head<3>() = (world_from_cloth * on_shape(shape, around_mm, sheet)).cast<float>();
+  for (const RoundYarns& part : round_yarns_of(patch)) {
+    const bool round = part.stretch == Vector3d::Ones();
+    if (!round && !swatch)
+      throw std::runtime_error("cloth: \"" + patch.name +
+                               "\" has flattened yarns, and brute force bends round ones only; use two_scale");
+    for (const int thread : threads_of(part.patch)) {
+      CurveSet set = curves_of(part.patch, tiles.x, tiles.y, thread);
+      set.scattering = threads[static_cast<std::size_t>(thread)];
+      if (round)
+        for (Eigen::Vector4f& point : set.control_points) {
+          const Vector3d sheet = point.head<3>().cast<double>();
+          point.head<3>() = (world_from_cloth * on_shape(shape, around_mm, sheet)).cast<float>();
+        }
+      else
+        set.placed = (world_from_cloth * Eigen::Translation3d(on_shape(shape, around_mm, Vector3d::Zero())) *
+                      Eigen::Scaling(part.stretch))
+                         .cast<float>();
+      sets.push_back(std::move(set));
     }
-    sets.push_back(std::move(set));
   }
   return sets;
 }

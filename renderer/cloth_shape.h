@@ -39,9 +39,10 @@ using ClothShape = std::variant<SwatchShape, CylinderShape, MeshShape>;
 // of the patch; those of cloth_surface.
 ClothSurface surface_of(const ClothShape& shape, const YarnPatch& patch, const Eigen::Isometry3d& world_from_cloth);
 
-// The same cloth as curves, one set per thread that occurs, in whole periods (rounded up, so that it can be larger than
-// the shape along x and y). Yarns bend smoothly on a cylinder and keep their round cross-section. Errors: as surface_of;
-// a mesh, which has no brute force; a thread that is not among `threads`; more than `kMostExplicitSegments` segments.
+// The same cloth as curves, one set per thread and section that occur, in whole periods (rounded up, so that it can be
+// larger than the shape along x and y). Yarns bend smoothly on a cylinder and keep their round cross-section. Errors: as
+// surface_of; a mesh, which has no brute force; flattened yarns on a cylinder; a thread that is not among `threads`; more
+// than `kMostExplicitSegments` segments.
 inline constexpr double kMostExplicitSegments = 2e7;  // about 4 GB with Embree's tree
 std::vector<CurveSet> explicit_curves(const ClothShape& shape, const YarnPatch& patch,
                                       const std::vector<ScatteringModel>& threads,

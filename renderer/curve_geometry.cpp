@@ -2,6 +2,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <optional>
 
@@ -39,9 +40,16 @@ std::optional<Vector3f> cylinder_normal(const Vector3f& point, const Vector3f& d
   return (o + step * d).normalized();
 }
 
-}  // namespace
+Ray unplaced(const Eigen::Affine3f& placed, const Ray& ray) {
+  const Eigen::Affine3f inverse = placed.inverse();
+  return {inverse * ray.origin, inverse.linear() * ray.direction};
+}
 
-void add_curves(RTCDevice device, RTCScene scene, const CurveSet& curves) {
+bool is_in_place(const CurveSet& curves) {
+  return curves.placed.matrix() == Eigen::Matrix4f::Identity();
+}
+
+void add_round_curves(RTCDevice device, RTCScene scene, const CurveSet& curves) {
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_BSPLINE_CURVE);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, curves.control_points.data(), 0,
                              sizeof(Eigen::Vector4f), curves.control_points.size());
@@ -54,20 +62,22 @@ void add_curves(RTCDevice device, RTCScene scene, const CurveSet& curves) {
   rtcReleaseGeometry(geometry);
 }
 
-void add_stretched_curves(RTCDevice device, RTCScene scene, const CurveSet& curves, const Vector3f& stretch) {
-  const RTCScene unstretched = rtcNewScene(device);
-  rtcSetSceneBuildQuality(unstretched, RTC_BUILD_QUALITY_HIGH);
-  add_curves(device, unstretched, curves);
-  rtcCommitScene(unstretched);
+}  // namespace
+
+void add_curves(RTCDevice device, RTCScene scene, const CurveSet& curves) {
+  if (is_in_place(curves)) return add_round_curves(device, scene, curves);
+  const RTCScene apart = rtcNewScene(device);
+  rtcSetSceneBuildQuality(apart, RTC_BUILD_QUALITY_HIGH);
+  add_round_curves(device, apart, curves);
+  rtcCommitScene(apart);
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-  rtcSetGeometryInstancedScene(geometry, unstretched);
-  const Eigen::Matrix<float, 3, 4> transform =
-      (Eigen::Matrix<float, 3, 4>() << Eigen::Matrix3f(stretch.asDiagonal()), Vector3f::Zero()).finished();
+  rtcSetGeometryInstancedScene(geometry, apart);
+  const Eigen::Matrix<float, 3, 4> transform = curves.placed.matrix().topRows<3>();
   rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, transform.data());
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene, geometry);
   rtcReleaseGeometry(geometry);
-  rtcReleaseScene(unstretched);
+  rtcReleaseScene(apart);
 }
 
 std::size_t bytes_of(const CurveSet& curves) {
@@ -75,24 +85,28 @@ std::size_t bytes_of(const CurveSet& curves) {
 }
 
 CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u, const Vector3f& hit_normal,
-                          const Ray& ray, float distance, const Vector3f& stretch) {
+                          const Ray& ray, float distance) {
   const Eigen::Vector4f* p = &curves.control_points[curves.segments[segment]];
   const float w = 1 - u;
   const Eigen::Vector4f center =
       (w * w * w * p[0] + (4 + 3 * u * u * (u - 2)) * p[1] + (4 + 3 * w * w * (w - 2)) * p[2] + u * u * u * p[3]) / 6;
   const Vector3f derivative =
       (-w * w * p[0] + u * (3 * u - 4) * p[1] - w * (3 * w - 4) * p[2] + u * u * p[3]).head<3>();
+  const bool in_place = is_in_place(curves);
+  const Ray local = in_place ? ray : unplaced(curves.placed, ray);
   CurvePoint point;
   point.tangent = derivative.normalized();
   point.normal = across(hit_normal, point.tangent).normalized();
-  const Vector3f origin = ray.origin.cwiseQuotient(stretch), direction = ray.direction.cwiseQuotient(stretch);
-  const Vector3f from_center = origin + distance * direction - center.head<3>();
-  if (const auto exact = cylinder_normal(from_center, direction, point.tangent, center.w())) point.normal = *exact;
+  const Vector3f from_center = local.origin + distance * local.direction - center.head<3>();
+  if (const auto exact = cylinder_normal(from_center, local.direction, point.tangent, center.w()))
+    point.normal = *exact;
   point.radius = center.w() * (1 - kStartDepth);
-  point.position = (center.head<3>() + point.radius * point.normal).cwiseProduct(stretch);
-  if (stretch == Vector3f::Ones()) return point;
-  point.tangent = point.tangent.cwiseProduct(stretch).normalized();
-  point.normal = point.normal.cwiseQuotient(stretch).normalized();
+  point.position = center.head<3>() + point.radius * point.normal;
+  if (in_place) return point;
+  const Eigen::Matrix3f linear = curves.placed.linear();
+  point.position = curves.placed * point.position;
+  point.normal = (linear.inverse().transpose() * point.normal).normalized();
+  point.tangent = (linear * point.tangent).normalized();
   return point;
 }
 

@@ -40,6 +40,11 @@ std::vector<std::uint32_t> first_segments(const CurveSet& curves) {
   return first;
 }
 
+// Of curves that are placed elsewhere, the number is the instance's.
+std::uint32_t geometry_of(const RTCHit& hit) {
+  return hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? hit.geomID : hit.instID[0];
+}
+
 }  // namespace
 
 RayScene::RayScene(Scene scene)
@@ -63,7 +68,7 @@ RayScene::RayScene(Scene scene)
   for (const TriangleMesh& mesh : scene_.meshes) add_mesh(mesh);
   auto curve_set = static_cast<std::uint32_t>(scene_.curves.size());
   for (const Cloth& cloth : scene_.cloths) {
-    cloths_.push_back(std::make_shared<ClothGeometry>(cloth, curve_set, device_.get()));
+    cloths_.push_back(std::make_shared<ClothGeometry>(cloth, curve_set));
     cloths_.back()->attach_to(device_.get(), embree_.get());
     curve_set += static_cast<std::uint32_t>(cloth.threads.size());
   }
@@ -98,14 +103,15 @@ std::optional<SurfaceHit> RayScene::intersect(const Ray& ray) const {
   if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   const auto first_mesh = static_cast<std::uint32_t>(scene_.curves.size());
   const auto first_cloth = first_mesh + static_cast<std::uint32_t>(scene_.meshes.size());
-  if (found.hit.geomID >= first_cloth)
-    return SurfaceHit{found.ray.tfar, cloths_[found.hit.geomID - first_cloth]->point_at(query.cloth)};
-  if (found.hit.geomID >= first_mesh)
+  const std::uint32_t geometry = geometry_of(found.hit);
+  if (geometry >= first_cloth)
+    return SurfaceHit{found.ray.tfar, cloths_[geometry - first_cloth]->point_at(query.cloth)};
+  if (geometry >= first_mesh)
     return SurfaceHit{found.ray.tfar,
-                      mesh_point(found.hit.geomID - first_mesh, found.hit.primID, found.hit.u, found.hit.v, ray)};
-  CurvePoint point = point_on_curve(scene_.curves[found.hit.geomID], found.hit.primID, found.hit.u,
+                      mesh_point(geometry - first_mesh, found.hit.primID, found.hit.u, found.hit.v, ray)};
+  CurvePoint point = point_on_curve(scene_.curves[geometry], found.hit.primID, found.hit.u,
                                     {found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z}, ray, found.ray.tfar);
-  point.curve_set = found.hit.geomID;
+  point.curve_set = geometry;
   return SurfaceHit{found.ray.tfar, point};
 }
 
@@ -121,7 +127,7 @@ std::optional<YarnPlace> RayScene::yarn_at(const Ray& ray) const {
   ClothQuery query;
   const RTCHit hit = nearest(embree_.get(), ray, query).hit;
   if (hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  const std::uint32_t geometry = hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? hit.geomID : hit.instID[0];
+  const std::uint32_t geometry = geometry_of(hit);
   const std::size_t first_mesh = scene_.curves.size(), first_cloth = first_mesh + scene_.meshes.size();
   if (geometry >= first_cloth) {
     YarnPlace place = cloths_[geometry - first_cloth]->yarn_at(query.cloth);
@@ -138,8 +144,9 @@ bool RayScene::meets_curve_first(const Ray& ray) const {
   ClothQuery query;
   const RTCRayHit found = nearest(embree_.get(), ray, query);
   const std::size_t first_mesh = scene_.curves.size(), first_cloth = first_mesh + scene_.meshes.size();
-  return found.hit.geomID != RTC_INVALID_GEOMETRY_ID &&
-         (found.hit.geomID < first_mesh || found.hit.geomID >= first_cloth);
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  const std::uint32_t geometry = geometry_of(found.hit);
+  return geometry < first_mesh || geometry >= first_cloth;
 }
 
 std::size_t RayScene::yarn_bytes() const {
@@ -151,7 +158,7 @@ std::size_t RayScene::yarn_bytes() const {
 
 SceneMemory RayScene::memory() const {
   SceneMemory memory{.yarns = yarn_bytes(), .trees = static_cast<std::size_t>(embree_bytes_->load())};
-  for (const auto& cloth : cloths_) memory.surfaces += cloth->shell_bytes();
+  for (const auto& cloth : cloths_) memory.surfaces += cloth->shell_bytes(), memory.trees += cloth->grid_bytes();
   for (const Cloth& cloth : scene_.cloths) {
     const ClothSurface& s = cloth.surface;
     memory.surfaces += bytes_of(s.vertices) + bytes_of(s.normals) + bytes_of(s.patch_mm) + bytes_of(s.triangles);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "renderer/cloth_shape.h"
+
 namespace renderer {
 namespace {
 
@@ -24,6 +26,15 @@ FiberParameters material() {
   return {.sigma_a = {0.1, 0.3, 0.8}};
 }
 
+constexpr int kSegments = 4;  // per crossing
+
+// Of control point k of yarn i. A uniform cubic B-spline through samples of a cosine: its control points are the samples,
+// amplified.
+double control_height(bool warp, int i, int k) {
+  const double amplitude = 0.15 * 6 / (4 + 2 * std::cos(kPi / kSegments)), t = static_cast<double>(k) / kSegments;
+  return (warp ? -1 : 1) * amplitude * std::cos(kPi * (t - 0.5) + kPi * i);
+}
+
 }  // namespace
 
 CurveScene parallel_threads_scene() {
@@ -36,17 +47,14 @@ CurveScene parallel_threads_scene() {
 }
 
 CurveScene plain_weave_scene() {
-  constexpr int kYarns = 200, kSegments = 4;  // segments per crossing
-  // A uniform cubic B-spline through samples of a cosine: its control points are the samples, amplified.
-  const double amplitude = 0.15 * 6 / (4 + 2 * std::cos(kPi / kSegments));
+  constexpr int kYarns = 200;
   CurveSet yarns{.scattering = material()};
   for (const bool warp : {false, true}) {
     for (int i = 0; i < kYarns; ++i) {
       const double across = (i - 99.5) * 0.45;
       const auto first = static_cast<std::uint32_t>(yarns.control_points.size());
       for (int k = -1; k <= kYarns * kSegments + 1; ++k) {
-        const double t = static_cast<double>(k) / kSegments, along = -45 + 0.45 * t;
-        const double z = (warp ? -1 : 1) * amplitude * std::cos(kPi * (t - 0.5) + kPi * i);
+        const double along = -45 + 0.45 * k / kSegments, z = control_height(warp, i, k);
         const Eigen::Vector3d point = warp ? Eigen::Vector3d(across, along, z) : Eigen::Vector3d(along, across, z);
         yarns.control_points.emplace_back(point.x(), point.y(), point.z(), 0.15);
         if (k + 2 <= kYarns * kSegments) yarns.segments.push_back(first + static_cast<std::uint32_t>(k + 1));
@@ -54,6 +62,23 @@ CurveScene plain_weave_scene() {
     }
   }
   return {{.curves = {yarns}, .lights = {light()}}, camera_with_frame_width(90)};
+}
+
+CurveScene plain_weave_cloth() {
+  YarnPatch patch{.name = "scene b", .period_x_mm = 0.9, .period_y_mm = 0.9};
+  for (const bool warp : {true, false}) {
+    for (int i = 0; i < 2; ++i) {
+      Yarn yarn{.warp = warp, .radius_mm = 0.15};
+      const double across = (i + 0.5) * 0.45;
+      for (int k = 0; k < 2 * kSegments; ++k) {
+        const double along = 0.45 * k / kSegments, z = control_height(warp, i, k);
+        yarn.control_points.push_back(warp ? Eigen::Vector3d(across, along, z) : Eigen::Vector3d(along, across, z));
+      }
+      patch.yarns.push_back(yarn);
+    }
+  }
+  const ClothSurface surface = surface_of(SwatchShape{90, 90}, patch, Eigen::Isometry3d::Identity());
+  return {{.lights = {light()}, .cloths = {{surface, patch, {material()}}}}, camera_with_frame_width(90)};
 }
 
 }  // namespace renderer

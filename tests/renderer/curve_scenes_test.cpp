@@ -58,6 +58,14 @@ TEST(CurveScenesTest, ParallelThreadsHaveTheMeanRadianceOfCyclesAndMitsuba) {
   expect_means_inside("a", parallel_threads_scene());
 }
 
+TEST(CurveScenesTest, PlainWeaveInTwoScalesHasTheMeanRadianceOfItsCurves) {
+  const CurveScene curves = plain_weave_scene(), cloth = plain_weave_cloth();
+  const RenderOptions options{.samples_per_pixel = 8, .max_vertices = 8};
+  const cv::Scalar expected = cv::mean(PathTracer(curves.scene).render(curves.camera, options)),
+                   found = cv::mean(PathTracer(cloth.scene).render(cloth.camera, options));
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c] / expected[c], 1, 2e-3) << c;  // the same seed: noise of half that
+}
+
 TEST(CurveScenesTest, PlainWeaveHasTheMeanRadianceOfCyclesAndMitsuba) {
   expect_means_inside("b", plain_weave_scene());
 }

@@ -1,0 +1,117 @@
+// Rays per second through scene b of fixtures/reference/README.md: bare Embree with every yarn a curve, the patch's own grid
+// alone, and the grid inside the world's scene with the point that was hit (RayScene). On one core, on the same rays: those of
+// the camera, and those that scatter from where they meet the cloth.
+#include <benchmark/benchmark.h>
+#include <embree3/rtcore.h>
+
+#include <limits>
+#include <memory>
+
+#include "../renderer/curve_scenes.h"
+#include "renderer/path_vertex.h"
+#include "renderer/ray_scene.h"
+#include "renderer/weave/patch_curves.h"
+#include "renderer/yarn_grid.h"
+
+namespace renderer {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+std::vector<Ray> rays_of(bool scattered) {
+  const CurveScene scene = plain_weave_cloth();
+  const RayScene rays(scene.scene);
+  const auto models = prepare_curve_models(scattering_models(scene.scene));
+  std::vector<Ray> all;
+  for (int pixel = 0; pixel < scene.camera.width * scene.camera.height; pixel += 3) {
+    const CameraRay camera_ray =
+        ray_through(scene.camera, pixel % scene.camera.width + 0.2, pixel / scene.camera.width + 0.3);
+    const Ray ray{(camera_ray.origin + 390 * camera_ray.direction).cast<float>(), camera_ray.direction.cast<float>()};
+    if (!scattered) {
+      all.push_back(ray);
+      continue;
+    }
+    const auto hit = rays.intersect(ray);
+    if (!hit) continue;
+    Sampler sampler(1, static_cast<std::uint64_t>(pixel));
+    const PathVertex vertex(*hit, -ray.direction, models);
+    const Vector3f wi = vertex.sample(sampler);
+    all.push_back({vertex.start_toward(wi, sampler), wi});
+  }
+  return all;
+}
+
+template <class Meet>
+void time_rays(benchmark::State& state, const Meet& meet) {
+  const std::vector<Ray> rays = rays_of(state.range(0));
+  std::size_t met = 0;
+  for (auto _ : state) {
+    met = 0;
+    for (const Ray& ray : rays) met += meet(ray);
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(rays.size()));
+  state.counters["met"] = static_cast<double>(met) / static_cast<double>(rays.size());
+}
+
+void bare_embree(benchmark::State& state) {
+  const CurveScene scene = plain_weave_scene();
+  const CurveSet& curves = scene.scene.curves.front();
+  const RTCDevice device = rtcNewDevice(nullptr);
+  const RTCScene embree = rtcNewScene(device);
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_BSPLINE_CURVE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, curves.control_points.data(), 0,
+                             sizeof(Eigen::Vector4f), curves.control_points.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, curves.segments.data(), 0,
+                             sizeof(std::uint32_t), curves.segments.size());
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(embree, geometry);
+  rtcCommitScene(embree);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  time_rays(state, [&](const Ray& ray) {
+    RTCRayHit query{};
+    query.ray.org_x = ray.origin.x(), query.ray.org_y = ray.origin.y(), query.ray.org_z = ray.origin.z();
+    query.ray.dir_x = ray.direction.x(), query.ray.dir_y = ray.direction.y(), query.ray.dir_z = ray.direction.z();
+    query.ray.tfar = std::numeric_limits<float>::infinity();
+    query.ray.mask = ~0u;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(embree, &context, &query);
+    return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+  });
+  rtcReleaseGeometry(geometry);
+  rtcReleaseScene(embree);
+  rtcReleaseDevice(device);
+}
+BENCHMARK(bare_embree)->ArgName("scattered")->Arg(0)->Arg(1);
+
+void bare_grid(benchmark::State& state) {
+  const CurveScene scene = plain_weave_cloth();
+  const YarnPatch& patch = scene.scene.cloths[0].patch;
+  const YarnGrid grid({{cell_curves_of(patch, 0), 0}}, {patch.period_x_mm, patch.period_y_mm});
+  const float half = 0.31f;  // of the cloth's thickness
+  time_rays(state, [&](const Ray& ray) {
+    // Between the planes that bound the cloth, as a shell cell would have it.
+    const float up = (half - ray.origin.z()) / ray.direction.z(), down = (-half - ray.origin.z()) / ray.direction.z();
+    const float begin = std::max(0.0f, std::min(up, down)), end = std::min(100.0f, std::max(up, down));
+    return end > begin && grid.nearest((ray.origin + begin * ray.direction).cast<double>(),
+                                       ray.direction.cast<double>(), end - begin)
+                              .has_value();
+  });
+  state.counters["bytes"] = static_cast<double>(grid.bytes());
+  state.counters["groups_per_cell"] = grid.groups_per_cell();
+}
+BENCHMARK(bare_grid)->ArgName("scattered")->Arg(0)->Arg(1);
+
+void in_the_world(benchmark::State& state) {
+  const RayScene scene(state.range(1) ? plain_weave_cloth().scene : plain_weave_scene().scene);
+  time_rays(state, [&](const Ray& ray) {
+    const auto hit = scene.intersect(ray);
+    benchmark::DoNotOptimize(hit);
+    return hit.has_value();
+  });
+}
+BENCHMARK(in_the_world)->ArgNames({"scattered", "two_scale"})->ArgsProduct({{0, 1}, {0, 1}});
+
+}  // namespace
+}  // namespace renderer

@@ -1,0 +1,281 @@
+#include "light_tracer.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "renderer/path_vertex.h"
+#include "renderer/ray_scene.h"
+
+namespace renderer {
+namespace {
+
+using Eigen::Array3d;
+using Eigen::Matrix3f;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr float kStartHeight = 5e-3f;  // radii above the surface: Embree finds round curves to 0.002 radii
+constexpr double kUniformShare = 0.1;  // of directions, so that no direction is left out
+constexpr int kMostCopies = 64;
+constexpr int kBatches = 32;  // of particles, for the error
+
+void refuse_front_sides(const RTCFilterFunctionNArguments* arguments) {
+  const auto* ray = reinterpret_cast<const RTCRay*>(arguments->ray);
+  const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
+  if (hit->Ng_x * ray->dir_x + hit->Ng_y * ray->dir_y + hit->Ng_z * ray->dir_z < 0) arguments->valid[0] = 0;
+}
+
+// Where rays leave curves: the surfaces that RayScene lets pass.
+class ExitScene {
+ public:
+  explicit ExitScene(const CurveSet& curves)
+      : curves_(curves),
+        device_(rtcNewDevice(nullptr), rtcReleaseDevice),
+        scene_(rtcNewScene(device_.get()), rtcReleaseScene) {
+    const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_ROUND_BSPLINE_CURVE);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, curves.control_points.data(), 0,
+                               sizeof(Eigen::Vector4f), curves.control_points.size());
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, curves.segments.data(), 0,
+                               sizeof(std::uint32_t), curves.segments.size());
+    rtcSetGeometryIntersectFilterFunction(geometry, refuse_front_sides);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_.get(), geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene_.get());
+  }
+
+  std::optional<SurfaceHit> first_exit(const Ray& ray) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit query{};
+    query.ray.org_x = ray.origin.x(), query.ray.org_y = ray.origin.y(), query.ray.org_z = ray.origin.z();
+    query.ray.dir_x = ray.direction.x(), query.ray.dir_y = ray.direction.y(), query.ray.dir_z = ray.direction.z();
+    query.ray.tfar = std::numeric_limits<float>::infinity();
+    query.ray.mask = ~0u;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene_.get(), &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    return SurfaceHit{query.ray.tfar, point_at(query, ray)};
+  }
+
+ private:
+  CurvePoint point_at(const RTCRayHit& query, const Ray& ray) const {
+    const Eigen::Vector4f* p = &curves_.control_points[curves_.segments[query.hit.primID]];
+    const float u = query.hit.u, w = 1 - u;
+    const Eigen::Vector4f center =
+        (w * w * w * p[0] + (4 + 3 * u * u * (u - 2)) * p[1] + (4 + 3 * w * w * (w - 2)) * p[2] + u * u * u * p[3]) /
+        6;
+    CurvePoint point{};
+    point.tangent =
+        (-w * w * p[0] + u * (3 * u - 4) * p[1] - w * (3 * w - 4) * p[2] + u * u * p[3]).head<3>().normalized();
+    const Vector3f from_center = ray.origin + query.ray.tfar * ray.direction - center.head<3>();
+    point.normal = (from_center - from_center.dot(point.tangent) * point.tangent).normalized();
+    point.radius = center.w() * (1 - 1e-3f);
+    point.position = center.head<3>() + point.radius * point.normal;
+    return point;
+  }
+
+  const CurveSet& curves_;
+  std::shared_ptr<RTCDeviceTy> device_;
+  std::shared_ptr<RTCSceneTy> scene_;
+};
+
+struct Particle {
+  Vector3f origin, direction;
+  Array3d weight;  // power
+  int vertices;    // scattering events so far
+};
+
+struct Film {
+  double width_mm, height_mm, distance_mm;  // of the frame at z = 0
+  Vector3d eye;
+};
+
+class LightTracer {
+ public:
+  LightTracer(const Scene& scene, const Camera& camera, const Eigen::Vector2d& aim_mm, int most_vertices)
+      : rays_(scene),
+        exits_(rays_.scene().curves.front()),
+        models_(prepare_curve_models(scattering_models(scene))),
+        light_(scene.lights.front()),
+        aim_mm_(aim_mm),
+        most_vertices_(most_vertices) {
+    film_.eye = camera.world_from_camera.translation();
+    film_.distance_mm = film_.eye.z();
+    film_.width_mm = camera.width * film_.distance_mm / camera.fx;
+    film_.height_mm = camera.height * film_.distance_mm / camera.fy;
+  }
+
+  // Adds what one particle brings to the picture, by the number of vertices of its path less one.
+  void add_particle(Sampler& sampler, std::vector<Array3d>& sums) const {
+    std::vector<Particle> open{emitted(sampler)};
+    const double reference = open.front().weight.maxCoeff();
+    while (!open.empty()) {
+      const Particle particle = open.back();
+      open.pop_back();
+      scatter(particle, reference, sampler, open, sums);
+    }
+  }
+
+ private:
+  Particle emitted(Sampler& sampler) const {
+    const Eigen::Vector2d u = sampler.next_2d().cast<double>(), v = sampler.next_2d().cast<double>();
+    const Eigen::AlignedBox3d& bounds = rays_.bounds();
+    const Vector3d at(aim_mm_.x() * (2 * u.x() - 1), aim_mm_.y() * (2 * u.y() - 1), bounds.max().z() + 0.01);
+    const Vector3d axis = (light_.center - at).normalized();
+    const double sin2 = light_.radius_mm * light_.radius_mm / (light_.center - at).squaredNorm();
+    const double one_minus_cos_most = sin2 / (1 + std::sqrt(1 - sin2)), one_minus_cos = v.x() * one_minus_cos_most;
+    const double sine = std::sqrt(one_minus_cos * (2 - one_minus_cos)), phi = 2 * kPi * v.y();
+    const Vector3d side = axis.unitOrthogonal();
+    const Vector3d towards =
+        axis * (1 - one_minus_cos) + sine * (std::cos(phi) * side + std::sin(phi) * axis.cross(side));
+    const double measure = 4 * aim_mm_.prod() * std::abs(towards.z()) * 2 * kPi * one_minus_cos_most;
+    return {at.cast<float>(), (-towards).cast<float>(), light_.radiance.array() * measure, 0};
+  }
+
+  // The places where the particle can be scattered.
+  std::vector<SurfaceHit> places(const Particle& particle) const {
+    const Ray ray{particle.origin, particle.direction};
+    const std::optional<SurfaceHit> exit = exits_.first_exit(ray);
+    std::vector<SurfaceHit> found;
+    Ray rest = ray;
+    float gone = 0;
+    for (;;) {
+      const std::optional<SurfaceHit> entry = rays_.intersect(rest);
+      if (!entry) break;
+      gone += entry->distance;
+      if (exit && gone > exit->distance) break;
+      found.push_back(*entry);
+      // Just below the surface that it entered: the way on from there meets other surfaces only.
+      rest.origin = std::get<CurvePoint>(entry->point).position;
+      if (found.size() > 16) break;
+    }
+    if (exit) found.push_back(*exit);
+    return found;
+  }
+
+  static const CurvePoint& point(const SurfaceHit& hit) { return std::get<CurvePoint>(hit.point); }
+
+  // f_cos |n . wo| / |n . wi| for light that leaves along wo.
+  Array3d adjoint(const CurvePoint& at, const Vector3f& wo, const Vector3f& wi) const {
+    const float leaving = at.normal.dot(wo);
+    if (!(leaving > 0)) return Array3d::Zero();
+    const Matrix3f local = local_from_world(at);
+    const Vector3f wo_local = local * wo;
+    const auto lobes =
+        std::visit([&](const auto& model) { return model.lobes_at(viewing_offset(wo_local), wo_local); }, models_[0]);
+    const float arriving = std::max(std::abs(at.normal.dot(wi)), 1e-6f);
+    return lobes.evaluate(local * wi).f_cos.template cast<double>() * static_cast<double>(leaving / arriving);
+  }
+
+  void connect(const Particle& particle, const std::vector<SurfaceHit>& hits, std::vector<Array3d>& sums) const {
+    for (const SurfaceHit& hit : hits) {
+      const CurvePoint& at = point(hit);
+      const Vector3d position = at.position.cast<double>(), to_eye = film_.eye - position;
+      const double scale = film_.distance_mm / to_eye.z();
+      if (std::abs(position.x() * scale) > film_.width_mm / 2 || std::abs(position.y() * scale) > film_.height_mm / 2)
+        continue;
+      const double distance = to_eye.norm(), cosine = to_eye.z() / distance;
+      const Vector3f wo = (to_eye / distance).cast<float>();
+      const Array3d scattered = adjoint(at, wo, -particle.direction);
+      if (!(scattered.maxCoeff() > 0) || rays_.occluded({at.position, wo}, static_cast<float>(distance))) continue;
+      const double importance = film_.distance_mm * film_.distance_mm /
+                                (film_.width_mm * film_.height_mm * distance * distance * cosine * cosine * cosine);
+      sums[static_cast<std::size_t>(particle.vertices)] += particle.weight * scattered * importance;
+    }
+  }
+
+  void scatter(const Particle& particle, double reference, Sampler& sampler, std::vector<Particle>& open,
+               std::vector<Array3d>& sums) const {
+    const std::vector<SurfaceHit> hits = places(particle);
+    if (hits.empty()) return;
+    connect(particle, hits, sums);
+    if (particle.vertices + 1 == most_vertices_) return;
+    const Vector3f wi = -particle.direction;
+    CurvePoint facing = point(hits.front());
+    if (facing.normal.dot(wi) < 0) facing.normal = -facing.normal;
+    const Matrix3f local = local_from_world(facing);
+    const Vector3f wi_local = local * wi;
+    const auto lobes =
+        std::visit([&](const auto& model) { return model.lobes_at(viewing_offset(wi_local), wi_local); }, models_[0]);
+    const double arriving = std::max(static_cast<double>(std::abs(facing.normal.dot(wi))), 1e-6);
+    const double copies = std::min(particle.weight.maxCoeff() / (reference * arriving), double{kMostCopies});
+    const int count = static_cast<int>(copies + static_cast<double>(sampler.next_1d()));
+    for (int copy = 0; copy < count; ++copy) {
+      const Eigen::Vector2f choose = sampler.next_2d(), u = sampler.next_2d(), v = sampler.next_2d();
+      Vector3f wo;
+      if (static_cast<double>(choose.x()) < kUniformShare) {
+        const float z = 1 - 2 * u.x(), radius = std::sqrt(std::max(0.0f, 1 - z * z)),
+                    phi = static_cast<float>(2 * kPi) * u.y();
+        wo = {radius * std::cos(phi), radius * std::sin(phi), z};
+      } else {
+        wo = (local.transpose() * lobes.sample(choose.y(), u.x(), u.y(), v.x())).normalized();
+      }
+      const double pdf = (1 - kUniformShare) * static_cast<double>(lobes.evaluate(local * wo).pdf) +
+                         kUniformShare / (4 * kPi);
+      Array3d all = Array3d::Zero();
+      std::vector<Array3d> each;
+      for (const SurfaceHit& hit : hits) all += each.emplace_back(adjoint(point(hit), wo, wi));
+      if (!(all.sum() > 0)) continue;
+      double left = static_cast<double>(v.y()) * all.sum();
+      std::size_t chosen = 0;
+      while (chosen + 1 < each.size() && (left -= each[chosen].sum()) >= 0) ++chosen;
+      if (!(each[chosen].sum() > 0)) continue;  // rounding
+      const double chance = each[chosen].sum() / all.sum();
+      const CurvePoint& from = point(hits[chosen]);
+      open.push_back({from.position + 2 * kStartHeight * from.radius * from.normal, wo,
+                      particle.weight * each[chosen] / (chance * pdf * copies), particle.vertices + 1});
+    }
+  }
+
+  RayScene rays_;
+  ExitScene exits_;
+  std::vector<CurveModel> models_;
+  SphereLight light_;
+  Eigen::Vector2d aim_mm_;
+  int most_vertices_;
+  Film film_;
+};
+
+}  // namespace
+
+TracedLight trace_light(const Scene& scene, const Camera& camera, const Eigen::Vector2d& aim_mm, int most_vertices,
+                        std::int64_t particles, std::uint64_t seed) {
+  const LightTracer tracer(scene, camera, aim_mm, most_vertices);
+  const auto lengths = static_cast<std::size_t>(most_vertices);
+  std::vector<std::vector<Array3d>> batches(kBatches, std::vector<Array3d>(lengths, Array3d::Zero()));
+  const std::int64_t each = particles / kBatches;
+  std::atomic<int> next{0};
+  const auto work = [&] {
+    for (int batch = next++; batch < kBatches; batch = next++) {
+      auto& sums = batches[static_cast<std::size_t>(batch)];
+      for (std::int64_t i = 0; i < each; ++i) {
+        Sampler sampler(seed, static_cast<std::uint64_t>(batch * each + i));
+        sampler.start_sample(0);
+        tracer.add_particle(sampler, sums);
+      }
+      for (std::size_t k = 0; k < lengths; ++k) {
+        sums[k] /= static_cast<double>(each);
+        if (k > 0) sums[k] += sums[k - 1];
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> workers;
+    for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i) workers.emplace_back(work);
+  }
+  TracedLight result{.mean = std::vector<Array3d>(lengths, Array3d::Zero()), .standard_error = {}};
+  for (std::size_t k = 0; k < lengths; ++k) {
+    Array3d squares = Array3d::Zero();
+    for (const auto& batch : batches) result.mean[k] += batch[k] / kBatches, squares += batch[k].square() / kBatches;
+    result.standard_error.push_back(((squares - result.mean[k].square()).max(0.0) / (kBatches - 1)).sqrt());
+  }
+  return result;
+}
+
+}  // namespace renderer
