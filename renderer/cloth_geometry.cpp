@@ -123,7 +123,7 @@ CurvePoint ClothGeometry::point_at(const ClothHit& hit) const {
   const ColumnYarns& yarns = yarns_[hit.yarns];
   CurvePoint point = point_on_curve(yarns.curves, hit.segment, hit.u, hit.hit_normal, hit.ray, hit.distance);
   const Vector3d patch = point.position.cast<double>() + hit.tile;
-  const Vector3d world = cell.world_from_patch * patch.homogeneous();
+  const Vector3d world = world_from_patch(cell, patch);
   const Eigen::Matrix3f frame = frame_at(shell_, cell, world).cast<float>();
   point.curve_set = first_curve_set_ + yarns.thread;
   point.position = world.cast<float>();
