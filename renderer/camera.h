@@ -1,4 +1,5 @@
-// A camera with the OpenCV lens model, as the renderer traces it: a pinhole, or a thin lens that blurs what is out of focus.
+// A camera with the OpenCV lens model, as the renderer traces it: a pinhole, or a thin lens that blurs what is out of
+// focus.
 //
 // Frames: OpenCV camera axes (+z forward, +x right, +y down); the centre of the first pixel is at (0, 0).
 // Units: millimetres for poses, pixels for intrinsics.
@@ -16,8 +17,8 @@ struct Camera {
   double cx = 299.5, cy = 199.5;       // principal point, pixels
   std::array<double, 5> distortion{};  // k1 k2 p1 p2 k3 (OpenCV order); zeros = ideal pinhole
   Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
-  // A thin lens at the camera's origin, round and of this diameter; 0: a pinhole. The plane z = focus_mm of the camera's
-  // frame is as sharp, and lies where, a pinhole has it.
+  // A thin lens at the camera's origin, round and of this diameter; 0: a pinhole. The plane z = focus_mm of the
+  // camera's frame is as sharp, and lies where, a pinhole has it.
   double aperture_mm = 0.0;
   double focus_mm = 1000.0;
 };
@@ -30,8 +31,8 @@ struct CameraRay {
 // Ray through the continuous pixel position (column, row); (0, 0) is the centre of the first pixel.
 CameraRay ray_through(const Camera& camera, double column, double row);
 
-// The ray from the point of the lens at `lens` (unit disc) that meets `pinhole`, the ray through the middle of the lens,
-// in the plane of focus.
+// The ray from the point of the lens at `lens` (unit disc) that meets `pinhole`, the ray through the middle of the
+// lens, in the plane of focus.
 CameraRay ray_through_lens(const Camera& camera, const CameraRay& pinhole, const Eigen::Vector2d& lens);
 
 // Diameter of the disc, in pixels, over which a point at z = depth_mm of the camera's frame is spread: the circle of

@@ -11,8 +11,8 @@ int tiles_along(int pixels) {
   return (pixels + kTile - 1) / kTile;
 }
 
-// Whole batches after which the error of a tile should be down to `noise`, at least one more than `samples` where it is not
-// yet: it falls with the root of their number.
+// Whole batches after which the error of a tile should be down to `noise`, at least one more than `samples` where it is
+// not yet: it falls with the root of their number.
 int wanted_samples(int samples, double error, double noise) {
   if (error <= noise) return samples;
   const double ratio = std::min(error / noise, 1e3);
@@ -70,7 +70,8 @@ double relative_error(const Film& film, const cv::Rect& pixels, double least_bri
       if (count == 0) continue;
       if (batches == 1) return std::numeric_limits<double>::infinity();
       const double sum = cv::norm(film.sums(row, column)), mean = sum / count;
-      // Batches of n samples have variances of sum that are in proportion to n, also the last one, which may be smaller.
+      // Batches of n samples have variances of sum that are in proportion to n, also the last one, which may be
+      // smaller.
       error2 += std::max(0.0, film.squares(row, column) - sum * mean) / (batches - 1.0) / count;
       brightness += mean;
       ++seen;

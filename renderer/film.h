@@ -1,9 +1,9 @@
 // What a rendering has gathered so far, pixel by pixel: enough to show it, to go on with it and to know its noise.
 //
 // Samples of a pixel are numbered from 0 and are always added in that order, so that the sums are the same bit for bit
-// whoever draws them, in however many passes. The noise is judged by batches of kBatch neighbouring samples, each a small
-// low-discrepancy set of its own (sampler.h): the spread of their means knows what their even spacing has gained. What is
-// gained beyond a batch it leaves out, so the error is rather smaller than it says.
+// whoever draws them, in however many passes. The noise is judged by batches of kBatch neighbouring samples, each a
+// small low-discrepancy set of its own (sampler.h): the spread of their means knows what their even spacing has gained.
+// What is gained beyond a batch it leaves out, so the error is rather smaller than it says.
 #pragma once
 
 #include <cstdint>
@@ -33,16 +33,16 @@ cv::Mat3f mean_radiance(const Film& film);
 std::uint64_t samples_in(const Film& film);
 std::size_t bytes_of(const Film& film);
 
-// Standard error of a pixel's mean radiance, root mean square over the given pixels and with the three colours together as
-// one vector, over the pixels' mean brightness |RGB|, but over `least_brightness` where they are darker. Pixels without
-// samples are left out; infinite where one has a single batch, which says nothing of itself.
+// Standard error of a pixel's mean radiance, root mean square over the given pixels and with the three colours together
+// as one vector, over the pixels' mean brightness |RGB|, but over `least_brightness` where they are darker. Pixels
+// without samples are left out; infinite where one has a single batch, which says nothing of itself.
 double relative_error(const Film& film, const cv::Rect& pixels, double least_brightness = 0);
 // A tile that is darker than a twentieth of the picture is judged as if it had that brightness.
 std::vector<double> relative_errors_of_tiles(const Film& film);
 
 // Sets goals of the next pass, none above `most_samples`; false when there is none, because every tile has reached what
-// it is to have: all samples or, where `noise` is above 0, a relative error of `noise`. The samples of a pixel double from
-// pass to pass, so that a first picture is there soon.
+// it is to have: all samples or, where `noise` is above 0, a relative error of `noise`. The samples of a pixel double
+// from pass to pass, so that a first picture is there soon.
 //
 // No tile is judged before it has kLeastJudged samples per pixel, and all pixels of a tile get the same number: to stop
 // because of what the samples themselves show favours those that happened to be even, and that is the less, the more of

@@ -1,5 +1,5 @@
-// What the pixels of a picture show first, beside the light from there: for denoising, for compositing, and to look a yarn
-// up. Means are over those camera rays of a pixel that meet a surface.
+// What the pixels of a picture show first, beside the light from there: for denoising, for compositing, and to look a
+// yarn up. Means are over those camera rays of a pixel that meet a surface.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -20,8 +20,8 @@ struct PictureLayers {
   cv::Mat1i yarn;   // packed_yarn()
 };
 
-// As one number that is never 0: bits 27-31 the group, bit 26 set for weft, below it the yarn's number + 2^25. Groups and
-// yarns beyond 32 and 2^25 begin again.
+// As one number that is never 0: bits 27-31 the group, bit 26 set for weft, below it the yarn's number + 2^25. Groups
+// and yarns beyond 32 and 2^25 begin again.
 std::uint32_t packed_yarn(const YarnPlace& yarn);
 
 // The camera rays are the first samples of a rendering with that seed (sampler.h). `models` are those of the scene.

@@ -1,7 +1,7 @@
 // All lights of a scene as one emitter: its spheres and rectangles, and behind them its surroundings.
 //
-// A direction is drawn from the spheres, from the rectangles or from the surroundings in proportion to luminance times solid angle; `pdf` is the
-// density of that mixture, so lights may overlap and hide each other.
+// A direction is drawn from the spheres, from the rectangles or from the surroundings in proportion to luminance times
+// solid angle; `pdf` is the density of that mixture, so lights may overlap and hide each other.
 #pragma once
 
 #include <optional>

@@ -45,9 +45,10 @@ class PathTracer {
   // Mean radiance per pixel (RGB, box filter), height x width. Throws std::runtime_error when stopped by `progress`.
   cv::Mat3f render(const Camera& camera, const RenderOptions& options) const;
 
-  // The same in passes over a film (empty_film() of the camera's size to begin with), which is good for a picture at any
-  // time: goes on until the film has all samples, or returns false when stopped by `progress`. Called again with the same
-  // scene, camera and options, it ends with the picture that render() gives, bit for bit. `statistics` are of this call.
+  // The same in passes over a film (empty_film() of the camera's size to begin with), which is good for a picture at
+  // any time: goes on until the film has all samples, or returns false when stopped by `progress`. Called again with
+  // the same scene, camera and options, it ends with the picture that render() gives, bit for bit. `statistics` are of
+  // this call.
   bool refine(const Camera& camera, const RenderOptions& options, Film& film) const;
 
   // Of the first samples of such a rendering, at most 16 per pixel: far cheaper than its light.

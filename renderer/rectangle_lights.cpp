@@ -9,8 +9,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A light whose area over its squared distance is less than this is seen under the same angle all over to 1e-6; the angles of
-// its outline, whose sum is the solid angle, begin to suffer from rounding there.
+// A light whose area over its squared distance is less than this is seen under the same angle all over to 1e-6; the
+// angles of its outline, whose sum is the solid angle, begin to suffer from rounding there.
 constexpr double kFar = 1e-6;
 
 Vector3d normal_of(const RectangleLight& light) {
@@ -45,7 +45,8 @@ std::optional<double> distance_along(const RectangleLight& light, const Vector3d
   return distance;
 }
 
-// The rectangle seen from a point before it, in axes along its edges with z away from the viewer: x0..x1, y0..y1, z > 0.
+// The rectangle seen from a point before it, in axes along its edges with z away from the viewer: x0..x1, y0..y1, z >
+// 0.
 struct SphericalRectangle {
   Vector3d x, y, z;
   double x0, x1, y0, y1, depth;

@@ -1,10 +1,10 @@
-// All rectangular lights of a scene as one emitter, beside sphere_lights.h: flat, bright on one side, black and in nobody's
-// way from the other.
+// All rectangular lights of a scene as one emitter, beside sphere_lights.h: flat, bright on one side, black and in
+// nobody's way from the other.
 //
-// A direction is drawn by choosing a light in proportion to its luminance times solid angle, and then uniformly within that
-// solid angle [Ureña et al. 2013, "An Area-Preserving Parametrization for Spherical Rectangles", doi 10.1111/cgf.12151];
-// where it is so small that rounding would spoil that, uniformly over the area instead, which then is as good. `pdf` is the
-// density of that mixture, so lights may overlap and hide each other.
+// A direction is drawn by choosing a light in proportion to its luminance times solid angle, and then uniformly within
+// that solid angle [Ureña et al. 2013, "An Area-Preserving Parametrization for Spherical Rectangles", doi
+// 10.1111/cgf.12151]; where it is so small that rounding would spoil that, uniformly over the area instead, which then
+// is as good. `pdf` is the density of that mixture, so lights may overlap and hide each other.
 #pragma once
 
 #include <optional>
@@ -22,7 +22,8 @@ class RectangleLights {
  public:
   explicit RectangleLights(const std::vector<RectangleLight>& lights) : lights_(lights) {}
 
-  // Nearest light whose bright side is met along a unit direction; `for_camera` leaves out those that cameras do not see.
+  // Nearest light whose bright side is met along a unit direction; `for_camera` leaves out those that cameras do not
+  // see.
   std::optional<LightHit> intersect(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                     bool for_camera) const;
   // Unit direction towards a light, u in [0, 1)^3; none where no light is seen.

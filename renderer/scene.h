@@ -79,8 +79,8 @@ struct SphereLight {
 
 double beam_factor(const SphereLight& light, const Eigen::Vector3d& point);
 
-// Emitting rectangle, bright on the side from which edge_x turns counter-clockwise to edge_y; irradiance far away on its
-// axis: radiance * area / d^2.
+// Emitting rectangle, bright on the side from which edge_x turns counter-clockwise to edge_y; irradiance far away on
+// its axis: radiance * area / d^2.
 struct RectangleLight {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   Eigen::Vector3d edge_x = Eigen::Vector3d::UnitX(),

@@ -44,11 +44,11 @@ struct RenderReport {
   double noisy = 0;  // share of the tiles that have more than the noise asked for
 };
 
-// Writes EXR (linear camera RGB, radiance) or PNG (display), by the ending of `out`. Now and then, and when ctrl-C stops
-// it, it leaves a checkpoint (render/checkpoint.h) and a preview beside `out`; asked for the same again it goes on from
-// there and ends with the picture that it would have made in one go, bit for bit. Both go away when the picture is done.
-// Errors: std::runtime_error with one line: a bad scene (scene_file.h), an ending that is neither, a file that cannot be
-// written, another rendering's checkpoint, stopped.
+// Writes EXR (linear camera RGB, radiance) or PNG (display), by the ending of `out`. Now and then, and when ctrl-C
+// stops it, it leaves a checkpoint (render/checkpoint.h) and a preview beside `out`; asked for the same again it goes
+// on from there and ends with the picture that it would have made in one go, bit for bit. Both go away when the picture
+// is done. Errors: std::runtime_error with one line: a bad scene (scene_file.h), an ending that is neither, a file that
+// cannot be written, another rendering's checkpoint, stopped.
 RenderReport render_scene(const RenderRequest& request);
 
 // "1%" or "0.01": a relative error from 0.01 % to 100 %; none for anything else.

@@ -32,10 +32,10 @@ std::vector<RoundYarns> round_yarns_of(const YarnPatch& patch);
 // [0, tiles_x period_x] x [0, tiles_y period_y] to the other and ends there; curves have no end caps.
 CurveSet curves_of(const YarnPatch& patch, int tiles_x, int tiles_y, int thread);
 
-// For the two-scale renderer: every segment, of whichever periodic image, whose surface can reach the column
-// [-margin, period_x + margin] x [-margin, period_y + margin]. A ray that stays inside the column meets exactly what
-// it would meet in the infinite cloth. Segments are tested by the box of their control points plus the radius. `origins`,
-// when given, gets one entry per segment.
+// For the two-scale renderer: every segment, of whichever periodic image, whose surface can reach the column [-margin,
+// period_x + margin] x [-margin, period_y + margin]. A ray that stays inside the column meets exactly what it would
+// meet in the infinite cloth. Segments are tested by the box of their control points plus the radius. `origins`, when
+// given, gets one entry per segment.
 struct SegmentOrigin {
   int yarn;   // of the patch
   int image;  // periods that it is moved across the yarn

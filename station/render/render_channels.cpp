@@ -7,7 +7,8 @@
 namespace station {
 namespace {
 
-// The scene's thread for each scattering model of to_scene(): curves of brute force first, then the cloths in two scales.
+// The scene's thread for each scattering model of to_scene(): curves of brute force first, then the cloths in two
+// scales.
 std::vector<int> threads_of_models(const SceneFile& scene) {
   std::vector<int> threads, of_cloths;
   for (const SceneCloth& cloth : scene.cloths) {

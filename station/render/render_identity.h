@@ -17,8 +17,8 @@ struct RenderIdentity {
   double noise = 0;  // that ends it earlier; 0: none
 };
 
-// Files are those whose names stand in the scene's document as texts, relative to its folder, and in the documents (.json,
-// .gltf) that it names. Errors: std::runtime_error that names a file which cannot be read.
+// Files are those whose names stand in the scene's document as texts, relative to its folder, and in the documents
+// (.json, .gltf) that it names. Errors: std::runtime_error that names a file which cannot be read.
 std::string sha256_of_scene(const std::filesystem::path& scene);
 
 nlohmann::json to_json(const RenderIdentity& identity);

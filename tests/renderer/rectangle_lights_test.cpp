@@ -28,7 +28,8 @@ std::array<Vector3d, 4> corners(const RectangleLight& light) {
   return {light.center - x - y, light.center + x - y, light.center + x + y, light.center - x + y};
 }
 
-// Lambert's closed form for a polygon above the horizon [Lambert 1760; Arvo 1994]: on a surface with unit normal `normal`.
+// Lambert's closed form for a polygon above the horizon [Lambert 1760; Arvo 1994]: on a surface with unit normal
+// `normal`.
 double irradiance(const RectangleLight& light, const Vector3d& point, const Vector3d& normal) {
   const std::array<Vector3d, 4> at = corners(light);
   double sum = 0;
