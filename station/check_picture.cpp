@@ -91,7 +91,7 @@ double edge_width_px(const cv::Mat1f& grey, const calibration::TagObservation& s
 
 std::vector<rig::ContractRow> check_picture(const RigDevices& devices, const RigFile& rig,
                                             const RigCalibration& calibration) {
-  if (rig.operator_driver == "simulated") devices.person->arrange({.room_light = true});
+  if (devices.bench) rig::make_simulated_operator(*devices.bench)->arrange({.room_light = true});
   devices.turntable->home();
   std::optional<calibration::SensorPicture> picture;
   const ExposureAim aim{.level = rig.target_level};

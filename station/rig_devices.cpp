@@ -3,10 +3,12 @@
 #include <chrono>
 #include <iostream>
 #include <stdexcept>
+#include <utility>
 
 #include "rig/cameras/camera_process.h"
 #include "rig/console_operator.h"
 #include "rig/manual_turntable.h"
+#include "rig/practice_operator.h"
 #include "rig/turntables/serial_line.h"
 #include "station/bench/bench_picture.h"
 
@@ -121,10 +123,12 @@ RigDevices open_rig(const RigFile& rig, const std::optional<Spool>& spool, bool 
     devices.bench = std::make_unique<rig::SimulatedBench>(rig.simulation->truth, make_bench_picture(rig, spool));
   devices.camera = make_camera(rig, devices);
   devices.turntable = make_turntable(rig, devices);
-  if (rig.operator_driver == "simulated")
-    devices.person = rig::make_simulated_operator(*devices.bench);
-  else
-    devices.person = rig::make_console_operator(std::cin, std::cout);
+  if (rig.operator_driver == "console") devices.person = rig::make_console_operator(std::cin, std::cout);
+  if (devices.bench) {
+    auto hand = rig::make_simulated_operator(*devices.bench);
+    devices.person = devices.person ? rig::make_practice_operator(std::move(devices.person), std::move(hand))
+                                    : std::move(hand);
+  }
   return devices;
 }
 

@@ -4,6 +4,9 @@
 
 #include <sstream>
 
+#include "rig/practice_operator.h"
+#include "rig/simulated_bench.h"
+
 namespace {
 
 const rig::Arrangement kFront{.lamp = rig::Lamp::front};
@@ -41,6 +44,19 @@ TEST(ConsoleOperator, ThrowsWhenThePersonDeclinesAndSaysEverythingTheNextTime) {
   out.str("");
   person->arrange(kBack);
   EXPECT_TRUE(out.str().starts_with(rig::full_instruction(kBack)));
+}
+
+TEST(PracticeOperator, AsksAndThenTheSimulatedHandDoesIt) {
+  rig::SimulatedBench bench({}, [](const rig::BenchState&) { return cv::Mat3f(); });
+  std::istringstream in("\nq\n");
+  std::ostringstream out;
+  const auto person =
+      rig::make_practice_operator(rig::make_console_operator(in, out), rig::make_simulated_operator(bench));
+  person->arrange(kFront);
+  EXPECT_TRUE(out.str().starts_with(rig::full_instruction(kFront)));
+  EXPECT_EQ(bench.state().arrangement.lamp, rig::Lamp::front);
+  EXPECT_THROW(person->arrange(kBack), std::runtime_error);
+  EXPECT_EQ(bench.state().arrangement.lamp, rig::Lamp::front) << "who declines has changed nothing";
 }
 
 TEST(ConsoleOperator, ThrowsWhenNobodyIsThere) {

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <iostream>
+#include <sstream>
+
 #include "station/documents/reader.h"
 #include "station/rig_devices.h"
 #include "tests/places.h"
@@ -31,6 +34,21 @@ std::string said_without(json document, const std::string& object, const std::st
 }
 
 }  // namespace
+
+TEST(OpenRig, OnASimulatedBenchAPersonMayPractise) {
+  json document = rig_document("simulated");
+  document["operator"] = "console";
+  std::istringstream in("\n");
+  std::ostringstream out;
+  std::streambuf *const terminal_in = std::cin.rdbuf(in.rdbuf()), *const terminal_out = std::cout.rdbuf(out.rdbuf());
+  const RigDevices devices = open_rig(parse_rig(document, "rig.json"), {}, false);
+  devices.person->arrange({.lamp = rig::Lamp::back});
+  std::cin.rdbuf(terminal_in);
+  std::cout.rdbuf(terminal_out);
+  EXPECT_THAT(out.str(), HasSubstr("Put the flashlight behind the platform and switch it on."));
+  EXPECT_EQ(devices.bench->state().arrangement.lamp, rig::Lamp::back);
+  EXPECT_THAT(refusal([&] { open_rig(parse_rig(document, "rig.json"), {}, true); }), HasSubstr("needs a person"));
+}
 
 TEST(RigFileDevices, AreReadWithTheirUnits) {
   const RigFile rig = parse_rig(rig_document("grbl_sony_usb"), "rig.json");

@@ -41,18 +41,17 @@ void take_pictures(rig::Camera& camera, const WiredCamera& wired) {
   }
 }
 
-// The port stands in the command as well: the process of one camera is told from the others' by it. No process hangs
-// here, and under load none may be taken for one that does.
+// The port stands in the command as well: the process of one camera is told from the others' by it.
 std::unique_ptr<rig::Camera> open_camera(const WiredCamera& wired) {
   return rig::make_process_camera({.command = {"/proc/self/exe", "camera-process", wired.port()},
                                    .camera = {.port = wired.port(), .width_px = 60, .height_px = 40},
-                                   .answer_timeout_s = 600});
+                                   .answer_timeout_s = 40 * kPatience});
 }
 
-void crash_its_process(const WiredCamera& wired) {
+void crash_process_of(const std::string& port) {
   for (const pid_t child : children()) {
     std::ifstream file("/proc/" + std::to_string(child) + "/cmdline");
-    if (std::string(std::istreambuf_iterator<char>(file), {}).find(wired.port()) != std::string::npos) {
+    if (std::string(std::istreambuf_iterator<char>(file), {}).find(port) != std::string::npos) {
       kill(child, SIGSEGV);
     }
   }
@@ -166,13 +165,15 @@ TEST(CameraFaults, NoiseInTheAnswerCostsNoPicture) {
 // The library's process dies right when the camera hears its Nth question.
 TEST(CameraFaults, AProcessThatCrashesAtAnyQuestionCostsNoPicture) {
   const auto said = at_each_operation([](int at) {
-    WiredCamera wired;
     std::atomic<int> heard = 0;
-    wired.before_answer = [&] {
+    std::promise<std::string> port;  // is known when the server has begun
+    const auto before_answer = [&, known = port.get_future().share()] {
       if (++heard == at) {
-        crash_its_process(wired);
+        crash_process_of(known.get());
       }
     };
+    WiredCamera wired({}, before_answer);
+    port.set_value(wired.port());
     const std::string message = try_work(wired);
     EXPECT_GE(heard, at);
     return message;
@@ -180,8 +181,8 @@ TEST(CameraFaults, AProcessThatCrashesAtAnyQuestionCostsNoPicture) {
   EXPECT_THAT(said, testing::IsEmpty());
 }
 
-// Row 15: another program (a file manager) holds the camera when the Nth question of the first one is answered; the first
-// one is not disturbed, the second is told what to close, and gets the camera when the first has let it go.
+// Row 15: another program (a file manager) holds the camera when the Nth question of the first one is answered; the
+// first one is not disturbed, the second is told what to close, and gets the camera when the first has let it go.
 TEST(CameraFaults, ACameraThatAnotherProgramHoldsIsSaidWithWhatToClose) {
   WiredCamera wired;
   std::set<std::string> said;

@@ -24,6 +24,14 @@ inline std::string refusal(const std::function<void()>& action) {
   return "(accepted)";
 }
 
+// Programs with a sanitizer in them take so many times longer, and under load none of their processes may be taken for
+// one that hangs.
+#ifdef THREADSTATION_SANITIZED
+inline constexpr double kPatience = 15;
+#else
+inline constexpr double kPatience = 1;
+#endif
+
 // The processes that this program started and that live.
 inline std::vector<pid_t> children() {
   std::vector<pid_t> found;
@@ -42,7 +50,7 @@ inline std::size_t open_descriptors() {
 }
 
 struct GphotoCamera : testing::Test {
-  std::unique_ptr<rig::Camera> open(double answer_timeout_s = 40) const {
+  std::unique_ptr<rig::Camera> open(double answer_timeout_s = 40 * kPatience) const {
     return rig::make_process_camera({.command = {"/proc/self/exe", "camera-process"},
                                      .camera = {.port = wired.port(), .width_px = 60, .height_px = 40},
                                      .answer_timeout_s = answer_timeout_s});

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 
 #include "rig/cameras/ptpip_server.h"
 #include "rig/cameras/simulated_sony.h"
@@ -47,8 +48,8 @@ class RecordingCamera final : public rig::Camera {
 // Lets a test act when the camera hears a question.
 class WatchedSony final : public rig::SimulatedSony {
  public:
-  WatchedSony(rig::SimulatedSony& sony, const std::function<void()>& before_answer)
-      : sony_(sony), before_answer_(before_answer) {}
+  WatchedSony(rig::SimulatedSony& sony, std::function<void()> before_answer)
+      : sony_(sony), before_answer_(std::move(before_answer)) {}
   rig::PtpAnswer handle(const rig::PtpRequest& request) override {
     if (before_answer_) {
       before_answer_();
@@ -60,11 +61,13 @@ class WatchedSony final : public rig::SimulatedSony {
 
  private:
   rig::SimulatedSony& sony_;
-  const std::function<void()>& before_answer_;
+  const std::function<void()> before_answer_;
 };
 
 struct WiredCamera {
-  explicit WiredCamera(rig::CameraFaultPlan plan = {}) : faults(std::move(plan)) {}
+  // `before_answer`: called in the server's thread, which begins here.
+  explicit WiredCamera(rig::CameraFaultPlan plan = {}, std::function<void()> before_answer = {})
+      : faults(std::move(plan)), watched(*sony, std::move(before_answer)) {}
   static cv::Mat3f draw(const rig::BenchState& state) {
     cv::Mat3f picture(state.lens.height_px, state.lens.width_px);
     for (int row = 0; row < picture.rows; ++row) {
@@ -85,7 +88,6 @@ struct WiredCamera {
   std::unique_ptr<rig::Camera> camera = rig::make_simulated_camera(bench, clock);
   RecordingCamera recorded{*camera};
   std::unique_ptr<rig::SimulatedSony> sony = rig::make_simulated_sony(recorded);
-  std::function<void()> before_answer;  // set before anybody is connected
-  WatchedSony watched{*sony, before_answer};
+  WatchedSony watched;
   std::unique_ptr<rig::PtpipServer> server = rig::serve_on_ptpip(watched, 0, faults);
 };

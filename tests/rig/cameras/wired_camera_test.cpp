@@ -117,7 +117,7 @@ TEST_F(GphotoCamera, NobodyThereIsSaidWithWhatToCheck) {
 }
 
 TEST_F(GphotoCamera, AProcessThatHangsIsEndedAndStartedAgain) {
-  const auto camera = open(20);  // s; a process under load starts in less
+  const auto camera = open(6 * kPatience);  // s; a process starts in less
   camera->capture();
   for (const pid_t child : children()) {
     kill(child, SIGSTOP);
