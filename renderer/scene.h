@@ -28,7 +28,8 @@ struct CurveSet {
   std::vector<Eigen::Vector4f> control_points{};  // x, y, z, radius (mm)
   std::vector<std::uint32_t> segments{};          // index of the first of each segment's four control points
   ScatteringModel scattering = FiberParameters{};
-  Eigen::Affine3f placed = Eigen::Affine3f::Identity();  // world from the curves: stretched, they have elliptical sections
+  // World from the curves; stretched, they have elliptical sections.
+  Eigen::Affine3f placed = Eigen::Affine3f::Identity();
 
   // Appends one curve of at least two points. Its end points are mirrored outwards, so that the B-spline starts at
   // the first point and ends at the last with a tangent that is not zero; n points make n - 1 segments.

@@ -10,8 +10,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr double kCellRadii = 1.0;      // size of a cell, in mean radii of the yarns
-constexpr int kMostCells = 512;         // along each side
+constexpr double kCellRadii = 1.0;       // size of a cell, in mean radii of the yarns
+constexpr int kMostCells = 512;          // along each side
 constexpr double kMostDeviation = 0.05;  // of a piece from its axis, in radii
 constexpr double kMostTilt = 0.4;        // of a piece from its axis, rad
 constexpr int kMostParts = 64;           // of a segment
@@ -49,7 +49,7 @@ struct Piece {
   double from = 0, to = 1;
   Vector3d base = Vector3d::Zero(), axis = Vector3d::UnitX();
   double radius = 0, low = 0, high = 0;
-  double length = 1;  // of its chord
+  double length = 1;               // of its chord
   double deviation = 0, lean = 0;  // of the line from the axis; of the discs along it
   double taper = 0;                // radius times the widening
   double thickest = 0, tilt = 0;
@@ -87,7 +87,8 @@ std::vector<Piece> pieces_of(const Cubic& line, std::uint32_t segment) {
     for (int i = 0; i < parts; ++i) {
       pieces.push_back(piece_of(line, static_cast<double>(i) / parts, static_cast<double>(i + 1) / parts));
       pieces.back().segment = segment;
-      straight &= pieces.back().deviation <= kMostDeviation * pieces.back().thickest && pieces.back().tilt <= kMostTilt;
+      straight &=
+          pieces.back().deviation <= kMostDeviation * pieces.back().thickest && pieces.back().tilt <= kMostTilt;
     }
     if (straight || parts >= kMostParts) return pieces;
   }
@@ -152,8 +153,7 @@ YarnGrid::YarnGrid(const std::vector<ColumnYarns>& yarns, const Vector2d& period
       const Cubic line(&curves.control_points[curves.segments[s]]);
       const auto number = static_cast<std::uint32_t>(segments_.size());
       YarnSegment& segment = segments_.emplace_back();
-      for (int k = 0; k < 4; ++k)
-        Eigen::Map<Eigen::Vector4f>(segment.power[k]) = line.power[k].cast<float>();
+      for (int k = 0; k < 4; ++k) Eigen::Map<Eigen::Vector4f>(segment.power[k]) = line.power[k].cast<float>();
       origins_.push_back({part, s});
       for (const Piece& piece : pieces_of(line, number)) {
         const Eigen::AlignedBox2d box = box_of(piece, stretch);
@@ -203,7 +203,8 @@ YarnGridRay grid_ray(const Vector3d& origin, const Vector3d& direction, float le
 
 }  // namespace
 
-std::optional<YarnGrid::Hit> YarnGrid::nearest(const Vector3d& origin, const Vector3d& direction, float length) const {
+std::optional<YarnGrid::Hit> YarnGrid::nearest(const Vector3d& origin, const Vector3d& direction,
+                                               float length) const {
   YarnGridHit hit;
   if (!kernel_->nearest(data(), grid_ray(origin, direction, length), hit)) return std::nullopt;
   return Hit{.yarns = origins_[hit.segment].yarns,

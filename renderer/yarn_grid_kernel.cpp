@@ -211,7 +211,8 @@ INLINE unsigned candidates(const YarnPieces& p, LocalRay ray, float most, Float8
   Int8 possible = (disc >= 0.0f) & (b <= load8(p.slack) + load8(p.axial_slack) * size);
   if (!bits8(possible)) return 0;
   const Float8 root = sqrt8(max8(disc, Float8{})), inv_a = 1.0f / a;
-  const Float8 speed = da < 0.0f ? min8(da, Float8{} - 1e-20f) : max8(da, Float8{} + 1e-20f), inv_speed = 1.0f / speed;
+  const Float8 speed = da < 0.0f ? min8(da, Float8{} - 1e-20f) : max8(da, Float8{} + 1e-20f),
+               inv_speed = 1.0f / speed;
   const Float8 t_low = (load8(p.low) - oa) * inv_speed, t_high = (load8(p.high) - oa) * inv_speed;
   near = max8(max8((-b - root) * inv_a, min8(t_low, t_high)), Float8{});
   const Float8 end = min8(min8((root - b) * inv_a, max8(t_low, t_high)), Float8{} + most);
@@ -224,7 +225,8 @@ INLINE unsigned candidates(const YarnPieces& p, LocalRay ray, float most, Float8
 // Walks the cells; `any`: the first hit found will do.
 template <bool any>
 INLINE bool walk(const YarnGridData& grid, const YarnGridRay& ray, YarnGridHit* hit) {
-  double tile_x = __builtin_floor(ray.origin[0] / grid.period_x), tile_y = __builtin_floor(ray.origin[1] / grid.period_y);
+  double tile_x = __builtin_floor(ray.origin[0] / grid.period_x),
+         tile_y = __builtin_floor(ray.origin[1] / grid.period_y);
   double wrap = 0;  // distance of the local origin along the ray
   Float4 o = {static_cast<float>(ray.origin[0] - tile_x * grid.period_x),
               static_cast<float>(ray.origin[1] - tile_y * grid.period_y), static_cast<float>(ray.origin[2]), 0};

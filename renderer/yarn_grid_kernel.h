@@ -16,9 +16,9 @@ struct alignas(32) YarnPieces {
   float axis_x[kGridLanes], axis_y[kGridLanes], axis_z[kGridLanes];  // unit
   float radius2[kGridLanes], low[kGridLanes], high[kGridLanes];      // ends, along the axis from the base
   float slack[kGridLanes], axial_slack[kGridLanes], inverse_length[kGridLanes];
-  std::uint32_t segment[kGridLanes];  // of the grid
+  std::uint32_t segment[kGridLanes];       // of the grid
   float from[kGridLanes], to[kGridLanes];  // parameters on the segment
-  float unstretch_x, unstretch_y;  // the pieces are round where space is multiplied by this
+  float unstretch_x, unstretch_y;          // the pieces are round where space is multiplied by this
 };
 
 // A cubic in powers of its parameter: x, y, z and radius, where it is round.
@@ -28,9 +28,9 @@ struct alignas(16) YarnSegment {
 
 struct YarnGridData {
   int cells_x, cells_y;
-  float cell_x, cell_y;         // mm
-  double period_x, period_y;    // cells_x cell_x, cells_y cell_y
-  const std::uint32_t* first;   // of each cell's pieces, row by row, and one more
+  float cell_x, cell_y;        // mm
+  double period_x, period_y;   // cells_x cell_x, cells_y cell_y
+  const std::uint32_t* first;  // of each cell's pieces, row by row, and one more
   const YarnPieces* pieces;
   const YarnSegment* segments;
 };
@@ -43,11 +43,11 @@ struct YarnGridRay {
 struct YarnGridHit {
   std::uint32_t segment;
   float u;
-  float distance;     // from the ray's origin
-  float from_wrap;    // the same from the last border of the cell that repeats
+  float distance;         // from the ray's origin
+  float from_wrap;        // the same from the last border of the cell that repeats
   double tile_x, tile_y;  // whole periods between the endless patch and the cell
-  float origin[3];    // at that border, in the cell
-  float normal[3];    // where the yarn is round, not unit
+  float origin[3];        // at that border, in the cell
+  float normal[3];        // where the yarn is round, not unit
 };
 
 struct YarnGridKernel {

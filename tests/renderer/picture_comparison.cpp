@@ -35,7 +35,9 @@ PictureComparison compare_pictures(const Scene& first, const Scene& second, cons
   cv::Vec3d level(0, 0, 0);
   for (int i = 0; i < pictures; ++i) {
     const RenderOptions options{.samples_per_pixel = samples_per_pixel, .seed = static_cast<std::uint64_t>(i + 1)};
-    const cv::Mat3f a = one.render(camera, options), b = other.render(camera, options), difference = a - b;
+    const cv::Mat3f a = one.render(camera, options), b = other.render(camera, options);
+    cv::Mat3f difference;
+    cv::subtract(a, b, difference);
     const cv::Scalar mean = cv::mean(difference), of_b = cv::mean(b);
     for (int c = 0; c < 3; ++c) {
       differences[static_cast<std::size_t>(c)].add(mean[c]);

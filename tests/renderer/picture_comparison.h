@@ -19,7 +19,7 @@ struct PictureComparison {
 };
 
 // `pictures` of each scene, with seeds 1, 2, ...
-PictureComparison compare_pictures(const Scene& first, const Scene& second, const Camera& camera, int samples_per_pixel,
-                                   int pictures = 16);
+PictureComparison compare_pictures(const Scene& first, const Scene& second, const Camera& camera,
+                                   int samples_per_pixel, int pictures = 16);
 
 }  // namespace renderer

@@ -39,8 +39,8 @@ YarnPatch flattened(YarnPatch patch) {
 YarnPatch slubbed(YarnPatch patch) {
   for (Yarn& yarn : patch.yarns)
     for (std::size_t k = 0; k < yarn.control_points.size(); ++k)
-      yarn.thickness.push_back(1 + 0.15 * std::sin(2 * kPi * static_cast<double>(k) /
-                                                   static_cast<double>(yarn.control_points.size())));
+      yarn.thickness.push_back(
+          1 + 0.15 * std::sin(2 * kPi * static_cast<double>(k) / static_cast<double>(yarn.control_points.size())));
   return patch;
 }
 
@@ -140,7 +140,8 @@ TEST(YarnGridTest, ACylinderIsMetWhereItIsUpToItsSilhouette) {
       ASSERT_EQ(hit.has_value(), std::abs(h) < 1) << h << ' ' << slant;
       if (!hit) continue;
       EXPECT_NEAR(hit->distance, way, 2e-5 * way + 2e-5 / (0.01 + std::sqrt(1 - h * h))) << h << ' ' << slant;
-      EXPECT_LT((hit->normal.normalized() - Vector3f(0, static_cast<float>(h), static_cast<float>(4 * z))).norm(), 1e-3f);
+      EXPECT_LT((hit->normal.normalized() - Vector3f(0, static_cast<float>(h), static_cast<float>(4 * z))).norm(),
+                1e-3f);
       EXPECT_EQ(hit->tile.y(), -8);
     }
   }
