@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 
+#include "tests/places.h"
 #include "tests/station/program.h"
 
 namespace {
