@@ -13,6 +13,7 @@
 #include "renderer/weave/woven_patch.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/scene_file.h"
+#include "tests/places.h"
 #include "tests/renderer/cloth_scenes.h"
 #include "tests/renderer/picture_comparison.h"
 
