@@ -62,12 +62,17 @@ TEST(WovenPatchTest, FlattenedYarnsAreDrawnAsEllipsesOfTheRoundYarnsArea) {
   }
 }
 
-TEST(WovenPatchTest, FlattenedYarnsAreRefusedByBruteForceInOneLine) {
+TEST(WovenPatchTest, BruteForceStretchesFlattenedYarnsOnSwatchesAndRefusesToBendThem) {
   Draft draft = plain_draft();
   draft.warp.flatness = 2;
   const std::vector<ScatteringModel> threads{ThreadParameters{}};
-  EXPECT_THROW(explicit_curves(SwatchShape{6, 6}, initial_patch(draft), threads, Eigen::Isometry3d::Identity()),
-               std::runtime_error);
+  const YarnPatch patch = initial_patch(draft);
+  const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
+  int stretched = 0;
+  for (const CurveSet& curves : explicit_curves(SwatchShape{6, 6}, patch, threads, here))
+    if (!curves.placed.linear().isIdentity(1e-6F)) ++stretched;
+  EXPECT_EQ(stretched, 1) << "the warp";
+  EXPECT_THROW(explicit_curves(CylinderShape{}, patch, threads, here), std::runtime_error);
 }
 
 TEST(WovenPatchTest, YarnsFlattenTheMoreTheSofterTheyAreAndKeepTheirArea) {
