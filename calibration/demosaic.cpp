@@ -19,7 +19,7 @@ struct Mixed {
 };
 
 // `inside`: all neighbours exist.
-template <bool inside>
+template <bool inside, bool with_variance>
 Mixed mix(const LinearMosaic& raw, int row, int column, const std::vector<MosaicTap>& taps) {
   Mixed sum;
   float weights = 0;
@@ -29,23 +29,38 @@ Mixed mix(const LinearMosaic& raw, int row, int column, const std::vector<Mosaic
       if (r < 0 || c < 0 || r >= raw.radiance.rows || c >= raw.radiance.cols) continue;
     weights += tap.weight;
     sum.radiance += tap.weight * raw.radiance(r, c);
-    if (!raw.variance.empty()) sum.variance += tap.weight * tap.weight * raw.variance(r, c);
+    if constexpr (with_variance) sum.variance += tap.weight * tap.weight * raw.variance(r, c);
     sum.saturated |= raw.saturated(r, c) != 0;
   }
   if (weights > 0) sum.radiance /= weights, sum.variance /= weights * weights;
   return sum;
 }
 
-template <bool inside>
+template <bool inside, bool with_variance>
 void fill(const LinearMosaic& raw, int row, int column, const MosaicTaps& taps, Developed& out) {
   bool saturated = false;
   for (int c = 0; c < 3; ++c) {
-    const Mixed mixed = mix<inside>(raw, row, column, taps[cell_of(row, column)][static_cast<std::size_t>(c)]);
+    const Mixed mixed =
+        mix<inside, with_variance>(raw, row, column, taps[cell_of(row, column)][static_cast<std::size_t>(c)]);
     out.radiance(row, column)[c] = mixed.radiance;
-    if (!out.variance.empty()) out.variance(row, column)[c] = mixed.variance;
+    if constexpr (with_variance) out.variance(row, column)[c] = mixed.variance;
     saturated |= mixed.saturated;
   }
   out.saturated(row, column) = saturated ? 255 : 0;
+}
+
+template <bool with_variance>
+void fill_rows(const LinearMosaic& raw, const cv::Range& rows, Developed& out) {
+  const MosaicTaps taps = mosaic_taps(raw.channel);
+  const int last_row = raw.radiance.rows - 1, last_column = raw.radiance.cols - 1;
+  for (int row = rows.start; row < rows.end; ++row) {
+    const bool inner_row = row > 0 && row < last_row;
+    for (int column = 0; column <= last_column; ++column)
+      if (inner_row && column > 0 && column < last_column)
+        fill<true, with_variance>(raw, row, column, taps, out);
+      else
+        fill<false, with_variance>(raw, row, column, taps, out);
+  }
 }
 
 }  // namespace
@@ -67,16 +82,10 @@ MosaicTaps mosaic_taps(const std::array<int, 4>& channel) {
 }
 
 void demosaic_rows(const LinearMosaic& raw, const cv::Range& rows, Developed& out) {
-  const MosaicTaps taps = mosaic_taps(raw.channel);
-  const int last_row = raw.radiance.rows - 1, last_column = raw.radiance.cols - 1;
-  for (int row = rows.start; row < rows.end; ++row) {
-    const bool inner_row = row > 0 && row < last_row;
-    for (int column = 0; column <= last_column; ++column)
-      if (inner_row && column > 0 && column < last_column)
-        fill<true>(raw, row, column, taps, out);
-      else
-        fill<false>(raw, row, column, taps, out);
-  }
+  if (raw.variance.empty())
+    fill_rows<false>(raw, rows, out);
+  else
+    fill_rows<true>(raw, rows, out);
 }
 
 }  // namespace calibration

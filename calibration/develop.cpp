@@ -1,10 +1,12 @@
 #include "calibration/develop.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "calibration/demosaic.h"
 #include "calibration/picture_stack.h"
@@ -16,13 +18,18 @@ std::string size_text(const cv::Size& size) {
   return std::to_string(size.width) + " x " + std::to_string(size.height);
 }
 
-void require_same_size(const SensorPicture& raw, const DevelopOptions& options) {
+void require_fitting(const SensorPicture& raw, const DevelopOptions& options) {
   const cv::Size size = raw.mosaic.size();
   if (options.lens && cv::Size(options.lens->width_px, options.lens->height_px) != size) {
     throw std::runtime_error("develop: the lens was calibrated at " +
                              size_text({options.lens->width_px, options.lens->height_px}) + " px, the picture is " +
                              size_text(size) + ": calibrate this camera");
   }
+  if (options.part &&
+      (options.lens || options.part->empty() || (*options.part & cv::Rect({}, size)) != *options.part))
+    throw std::runtime_error("develop: a part of " + size_text(options.part->size()) +
+                             " px was asked for, the picture is " + size_text(size) +
+                             ": ask for a part inside it, without a lens to straighten it by");
 }
 
 constexpr int kBand = 64;  // rows: large enough to be worth a call, small enough to stay in the processor's memory
@@ -36,11 +43,12 @@ void for_each_band(int rows, const Work& work) {
   });
 }
 
-void take_out(const Vignetting& vignetting, LinearMosaic& mosaic) {
+// `mosaic`: the sensor of this size from `origin` on.
+void take_out(const Vignetting& vignetting, const cv::Point& origin, const cv::Size& sensor, LinearMosaic& mosaic) {
   for_each_band(mosaic.radiance.rows, [&](const cv::Range& rows) {
     for (int row = rows.start; row < rows.end; ++row) {
       for (int column = 0; column < mosaic.radiance.cols; ++column) {
-        const auto gain = static_cast<float>(vignetting.gain(column, row, mosaic.radiance.size()));
+        const auto gain = static_cast<float>(vignetting.gain(origin.x + column, origin.y + row, sensor));
         mosaic.radiance(row, column) /= gain;
         if (!mosaic.variance.empty()) mosaic.variance(row, column) /= gain * gain;
       }
@@ -53,6 +61,31 @@ Developed pictures_like(const LinearMosaic& raw) {
   return {.radiance = cv::Mat3f(size),
           .variance = raw.variance.empty() ? cv::Mat3f() : cv::Mat3f(size),
           .saturated = cv::Mat1b(size)};
+}
+
+// What demosaicing and the repair of bad pixels need of the sensor for this part, from a whole cell on.
+cv::Rect needed_for(const cv::Rect& part, const cv::Size& sensor) {
+  constexpr int kReach = 4;
+  const int left = std::max(0, part.x - kReach) / 2 * 2, top = std::max(0, part.y - kReach) / 2 * 2;
+  return cv::Rect({left, top}, part.br() + cv::Point(kReach, kReach)) & cv::Rect({}, sensor);
+}
+
+std::vector<SensorPicture> cut(std::vector<SensorPicture> bracket, const cv::Rect& part) {
+  for (SensorPicture& raw : bracket) raw.mosaic = raw.mosaic(part);
+  return bracket;
+}
+
+SensorResponse cut(SensorResponse response, const cv::Rect& part) {
+  SensorMaps& maps = response.maps;
+  for (cv::Mat* map : std::initializer_list<cv::Mat*>{&maps.bias_dn, &maps.dark_dn_per_s, &maps.flat, &maps.bad})
+    if (!map->empty()) *map = (*map)(part);
+  return response;
+}
+
+Developed cut(const Developed& developed, const cv::Rect& part) {
+  return {.radiance = developed.radiance(part),
+          .variance = developed.variance.empty() ? cv::Mat3f() : developed.variance(part),
+          .saturated = developed.saturated(part)};
 }
 
 // Straightens the picture and keeps the intrinsic matrix; pixels that the sensor did not see become 0.
@@ -101,12 +134,17 @@ Developed develop(const std::vector<SensorPicture>& bracket, const DevelopOption
     response.maps.bias_dn = *options.dark_dn;
     response.maps.dark_dn_per_s = {};
   }
-  LinearMosaic mosaic = merge_exposures(bracket, response, options.dark_offset_dn);
-  require_same_size(bracket.front(), options);
-  if (options.vignetting) take_out(*options.vignetting, mosaic);
+  require_mergeable(bracket, response);
+  require_fitting(bracket.front(), options);
+  const cv::Size sensor = bracket.front().mosaic.size();
+  const cv::Rect part = options.part.value_or(cv::Rect({}, sensor)), needed = needed_for(part, sensor);
+  LinearMosaic mosaic =
+      merge_exposures(cut(bracket, needed), cut(std::move(response), needed), options.dark_offset_dn);
+  if (options.vignetting) take_out(*options.vignetting, needed.tl(), sensor, mosaic);
   Developed seen = pictures_like(mosaic);
   for_each_band(mosaic.radiance.rows, [&](const cv::Range& rows) { demosaic_rows(mosaic, rows, seen); });
   mosaic = {};
+  if (options.part) return cut(seen, part - needed.tl());
   return options.lens ? undistorted(seen, *options.lens) : seen;
 }
 

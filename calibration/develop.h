@@ -26,6 +26,7 @@ struct DevelopOptions {
   double dark_offset_dn = 0.0;             // on the dark level, as merge_exposures
   std::optional<Vignetting> vignetting{};  // absent: not flat-fielded
   std::optional<Lens> lens{};              // absent: not undistorted
+  std::optional<cv::Rect> part{};          // absent: the whole picture; not together with a lens
 };
 
 struct Developed {
@@ -34,7 +35,7 @@ struct Developed {
   cv::Mat1b saturated;  // 255 where any of the raw values that a pixel was made from is above 0.98 of the range
 };
 
-// Throws std::runtime_error when sizes do not match or the picture has no levels or exposure.
+// Throws std::runtime_error when sizes do not match, the picture has no levels or exposure, or the part is not in it.
 Developed develop(const SensorPicture& raw, const DevelopOptions& options);
 Developed develop(const std::vector<SensorPicture>& bracket, const DevelopOptions& options);
 

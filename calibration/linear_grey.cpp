@@ -26,6 +26,18 @@ std::array<Weights, 4> grey_weights(const std::array<int, 4>& channel) {
   return weights;
 }
 
+// Of a row's pixels from an odd column on: columns alternate, so a run of them is one loop that the compiler makes wide.
+constexpr int kRun = 8;
+using RunWeights = std::array<std::array<float, kRun>, 9>;
+
+RunWeights run_weights(const std::array<Weights, 4>& weights, int row) {
+  RunWeights run{};
+  for (std::size_t i = 0; i < kRun; ++i)
+    for (std::size_t tap = 0; tap < 9; ++tap)
+      run[tap][i] = weights[static_cast<std::size_t>(2 * (row & 1)) + (i + 1) % 2][tap];
+  return run;
+}
+
 float mean_of_colours(const SensorPicture& picture, int row, int column,
                       const std::array<std::vector<MosaicTap>, 3>& taps) {
   float grey = 0;
@@ -67,14 +79,18 @@ cv::Mat1f linear_grey(const SensorPicture& picture) {
       at_border(0);
       at_border(last_column);
       const std::array<const ushort*, 3> in{picture.mosaic[row - 1], picture.mosaic[row], picture.mosaic[row + 1]};
-      for (int column = 1; column < last_column; ++column) {
-        const Weights& w = weights[static_cast<std::size_t>(2 * (row & 1) + (column & 1))];
-        float sum = 0;
+      const RunWeights run = run_weights(weights, row);
+      int column = 1;
+      for (; column + kRun <= last_column; column += kRun) {
+        std::array<float, kRun> sums{};
         for (std::size_t r = 0; r < 3; ++r)
           for (std::size_t c = 0; c < 3; ++c)
-            sum += w[3 * r + c] * (static_cast<float>(in[r][column - 1 + static_cast<int>(c)]) - black);
-        out[column] = std::max(0.F, sum * per_dn);
+            for (std::size_t i = 0; i < kRun; ++i)
+              sums[i] +=
+                  run[3 * r + c][i] * (static_cast<float>(in[r][column - 1 + static_cast<int>(c + i)]) - black);
+        for (std::size_t i = 0; i < kRun; ++i) out[column + static_cast<int>(i)] = std::max(0.F, sums[i] * per_dn);
       }
+      for (; column < last_column; ++column) at_border(column);
     }
   });
   return grey;

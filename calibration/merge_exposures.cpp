@@ -18,29 +18,6 @@ std::string size_text(const cv::Size& size) {
   return std::to_string(size.width) + " x " + std::to_string(size.height);
 }
 
-void check(const std::vector<SensorPicture>& bracket, const SensorResponse& response) {
-  if (bracket.empty()) throw std::runtime_error("develop: no picture was given");
-  const SensorPicture& first = bracket.front();
-  for (const SensorPicture& raw : bracket) {
-    require_developable(raw);
-    if (raw.mosaic.size() != first.mosaic.size() || raw.iso != first.iso || raw.channel != first.channel ||
-        raw.black_level_dn != first.black_level_dn || raw.white_level_dn != first.white_level_dn) {
-      throw std::runtime_error(
-          "develop: the exposures of a bracket differ in size, ISO or levels: take them with one camera, changing "
-          "the "
-          "shutter time alone");
-    }
-  }
-  const cv::Size size = first.mosaic.size();
-  for (const cv::Size& map : {response.maps.bias_dn.size(), response.maps.dark_dn_per_s.size(),
-                              response.maps.flat.size(), response.maps.bad.size()}) {
-    if (map.area() > 0 && map != size) {
-      throw std::runtime_error("develop: a dark, flat or bad-pixel map is " + size_text(map) + " px, the picture " +
-                               size_text(size) + ": take dark frames and calibrate with the same camera");
-    }
-  }
-}
-
 struct Exposure {
   const SensorPicture* raw;
   double time_s;
@@ -73,9 +50,32 @@ void require_developable(const SensorPicture& raw) {
                                " in the mosaic, only red, green and blue are known");
 }
 
+void require_mergeable(const std::vector<SensorPicture>& bracket, const SensorResponse& response) {
+  if (bracket.empty()) throw std::runtime_error("develop: no picture was given");
+  const SensorPicture& first = bracket.front();
+  for (const SensorPicture& raw : bracket) {
+    require_developable(raw);
+    if (raw.mosaic.size() != first.mosaic.size() || raw.iso != first.iso || raw.channel != first.channel ||
+        raw.black_level_dn != first.black_level_dn || raw.white_level_dn != first.white_level_dn) {
+      throw std::runtime_error(
+          "develop: the exposures of a bracket differ in size, ISO or levels: take them with one camera, changing "
+          "the "
+          "shutter time alone");
+    }
+  }
+  const cv::Size size = first.mosaic.size();
+  for (const cv::Size& map : {response.maps.bias_dn.size(), response.maps.dark_dn_per_s.size(),
+                              response.maps.flat.size(), response.maps.bad.size()}) {
+    if (map.area() > 0 && map != size) {
+      throw std::runtime_error("develop: a dark, flat or bad-pixel map is " + size_text(map) + " px, the picture " +
+                               size_text(size) + ": take dark frames and calibrate with the same camera");
+    }
+  }
+}
+
 LinearMosaic merge_exposures(const std::vector<SensorPicture>& bracket, const SensorResponse& response,
                              double dark_offset_dn) {
-  check(bracket, response);
+  require_mergeable(bracket, response);
   const std::vector<Exposure> exposures = by_time(bracket, response);
   const SensorPicture& first = bracket.front();
   const double range = first.white_level_dn - first.black_level_dn;

@@ -21,8 +21,11 @@ struct LinearMosaic {
   std::array<int, 4> channel{};  // colours of the 2 x 2 cell
 };
 
+// Throws std::runtime_error when sizes, ISO, levels or mosaics differ, or a map has another size.
+void require_mergeable(const std::vector<SensorPicture>& bracket, const SensorResponse& response);
+
 // `dark_offset_dn`: added to every dark level (a drift of the bias that dark frames of the day showed). Throws
-// std::runtime_error when sizes, ISO, levels or mosaics differ, or a map has another size.
+// as require_mergeable.
 LinearMosaic merge_exposures(const std::vector<SensorPicture>& bracket, const SensorResponse& response,
                              double dark_offset_dn = 0.0);
 

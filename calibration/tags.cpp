@@ -72,21 +72,23 @@ float percentile(const cv::Mat1f& grey, double fraction) {
   return *nth;
 }
 
+constexpr int kReach = 31;  // blocks
+
 // The brightest value within a sixteenth of the picture (31 px at least), smoothed: wider than a code cell, so that
-// every neighbourhood holds some paper. Large pictures are looked at in blocks. Nothing counts as brighter than
-// `limit`.
-cv::Mat1f white_of_surroundings(const cv::Mat1f& grey, float limit) {
-  constexpr int kReach = 31;
-  const int block = std::max(1, std::min(grey.rows, grey.cols) / (16 * kReach));
+// every neighbourhood holds some paper. A pixel of it is a block of the picture. Nothing counts as brighter than `limit`.
+cv::Mat1f white_of_surroundings(const cv::Mat1f& grey, int block, float limit) {
   cv::Mat1f white((grey.rows + block - 1) / block, (grey.cols + block - 1) / block, 0.F);
-  for (int row = 0; row < grey.rows; ++row)
-    for (int column = 0; column < grey.cols; ++column) {
-      float& brightest = white(row / block, column / block);
-      brightest = std::max(brightest, std::min(grey(row, column), limit));
+  cv::parallel_for_({0, white.rows}, [&](const cv::Range& rows) {
+    for (int row = rows.start * block; row < std::min(rows.end * block, grey.rows); ++row) {
+      const float* values = grey[row];
+      float* brightest = white[row / block];
+      for (int left = 0; left < grey.cols; left += block, ++brightest)
+        for (int column = left; column < std::min(left + block, grey.cols); ++column)
+          *brightest = std::max(*brightest, std::min(values[column], limit));
     }
+  });
   cv::dilate(white, white, cv::Mat1b::ones(2 * kReach + 1, 2 * kReach + 1));
   cv::blur(white, white, {2 * kReach + 1, 2 * kReach + 1});
-  if (block > 1) cv::resize(white, white, grey.size(), 0, 0, cv::INTER_LINEAR);
   return white;
 }
 
@@ -98,13 +100,18 @@ cv::Mat1b encode(const cv::Mat1f& grey) {
   const float white = percentile(grey, 0.995);
   if (!(white > 0.0F)) return cv::Mat1b(grey.size(), uchar{0});
   constexpr float kDarkestPaper = 0.04F;  // of the picture's white; paper below that is not worth finding
-  const cv::Mat1f local_white = white_of_surroundings(grey, white);
+  const int block = std::max(1, std::min(grey.rows, grey.cols) / (16 * kReach));
+  const cv::Mat1f of_blocks = white_of_surroundings(grey, block, white);
   cv::Mat1b encoded(grey.size());
-  cv::parallel_for_({0, grey.rows}, [&](const cv::Range& rows) {
-    for (int row = rows.start; row < rows.end; ++row)
-      for (int column = 0; column < grey.cols; ++column)
-        encoded(row, column) = cv::saturate_cast<uchar>(
-            230.F * std::min(grey(row, column), white) / std::max(local_white(row, column), kDarkestPaper * white));
+  cv::parallel_for_({0, of_blocks.rows}, [&](const cv::Range& blocks) {
+    cv::Mat1f local_white;
+    for (int from = blocks.start; from < blocks.end; ++from) {
+      cv::resize(of_blocks.row(from), local_white, {grey.cols, 1}, 0, 0, cv::INTER_LINEAR);
+      for (int row = from * block; row < std::min((from + 1) * block, grey.rows); ++row)
+        for (int column = 0; column < grey.cols; ++column)
+          encoded(row, column) = cv::saturate_cast<uchar>(230.F * std::min(grey(row, column), white) /
+                                                          std::max(local_white(0, column), kDarkestPaper * white));
+    }
   });
   return encoded;
 }

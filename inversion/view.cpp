@@ -13,6 +13,8 @@ constexpr int kLargestHole_px = 5;
 // Photographs mix a pixel with its neighbours (demosaicing, undistortion, half a pixel of calibration): at its border
 // a dark thread takes over the lit frame beside it. A mask's border of this width is left out.
 constexpr int kBorder_px = 2;
+// That are looked at: at 24 MP one in 36 pixels, and a fit's blocks are twice as wide as the border is then.
+constexpr int kMostColumns = 1024;
 constexpr std::uint64_t kMaskSeed = 20250801;
 
 }  // namespace
@@ -37,6 +39,13 @@ renderer::Scene view_scene(const WrappedSpool& spool, const renderer::Scattering
 
 cv::Mat1b thread_mask(const WrappedSpool& spool, const renderer::Camera& camera, const NearLight& light,
                       int samples_per_pixel) {
+  const int factor = (camera.width + kMostColumns - 1) / kMostColumns;
+  if (factor > 1) {
+    cv::Mat1b mask;
+    const renderer::Camera larger = renderer::with_larger_pixels(camera, factor);
+    cv::resize(thread_mask(spool, larger, light, samples_per_pixel), mask, {}, factor, factor, cv::INTER_NEAREST);
+    return mask(cv::Rect(0, 0, camera.width, camera.height)).clone();
+  }
   // A white, rough thread scatters into every direction, so wherever a lit thread is seen the rendering is not zero.
   const renderer::FiberParameters white{.beta_m = 0.5, .beta_n = 0.5};
   const renderer::PathTracer tracer(view_scene(spool, white, light));

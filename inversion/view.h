@@ -41,7 +41,8 @@ renderer::Scene view_scene(const WrappedSpool& spool, const renderer::Scattering
 
 // Mask of the threads: the non-zero region of a rendering of the threads from this view before anything is fitted
 // [Xia 2025, section 4], less a border of two pixels where photographs mix threads with what is beside them. 255
-// inside. `samples_per_pixel` rays per pixel decide.
+// inside. `samples_per_pixel` rays per pixel decide; pictures wider than 1024 pixels are looked at, and lose their border, in
+// pixels of two by two, three by three, and so on.
 cv::Mat1b thread_mask(const WrappedSpool& spool, const renderer::Camera& camera, const NearLight& light,
                       int samples_per_pixel);
 

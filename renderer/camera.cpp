@@ -75,6 +75,21 @@ Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point_world
   return {camera.fx * plane.x() + camera.cx, camera.fy * plane.y() + camera.cy};
 }
 
+Camera with_larger_pixels(const Camera& camera, int factor) {
+  Camera larger = camera;
+  larger.width = (camera.width + factor - 1) / factor, larger.height = (camera.height + factor - 1) / factor;
+  larger.fx /= factor, larger.fy /= factor;
+  larger.cx = (camera.cx + 0.5) / factor - 0.5, larger.cy = (camera.cy + 0.5) / factor - 0.5;
+  return larger;
+}
+
+Camera cut(const Camera& camera, int left, int top, int width, int height) {
+  Camera part = camera;
+  part.width = width, part.height = height;
+  part.cx -= left, part.cy -= top;
+  return part;
+}
+
 Camera look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Eigen::Vector3d& up) {
   const Eigen::Vector3d forward = (target - eye).normalized();
   const Eigen::Vector3d right = forward.cross(up).normalized();

@@ -42,6 +42,12 @@ double circle_of_confusion_px(const Camera& camera, double depth_mm);
 // Pixel position of a world point in front of the camera, distortion included.
 Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point_world);
 
+// The same camera with pixels that are `factor` by `factor` of it; the last ones may reach beyond its picture.
+Camera with_larger_pixels(const Camera& camera, int factor);
+
+// The same camera for the part of its picture that begins at (left, top) and has this size, in pixels.
+Camera cut(const Camera& camera, int left, int top, int width, int height);
+
 // A camera at `eye` looking at `target`; `up` shows upwards in the picture. Intrinsics are left at their defaults.
 Camera look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Eigen::Vector3d& up);
 

@@ -1,6 +1,7 @@
 #include "station/exposure.h"
 
 #include <algorithm>
+#include <opencv2/imgproc.hpp>
 #include <vector>
 
 namespace station {
@@ -8,9 +9,11 @@ namespace station {
 double bright_level(const calibration::SensorPicture& picture, const cv::Mat1b& region, double percentile) {
   std::vector<int> counts(1 << 16, 0);
   int all = 0;
-  for (int row = 0; row < picture.mosaic.rows; ++row)
-    for (int column = 0; column < picture.mosaic.cols; ++column)
-      if (region.empty() || region(row, column)) ++counts[picture.mosaic(row, column)], ++all;
+  const bool everywhere = region.empty();
+  const cv::Rect box = everywhere ? cv::Rect({}, picture.mosaic.size()) : cv::boundingRect(region);
+  for (int row = box.y; row < box.br().y; ++row)
+    for (int column = box.x; column < box.br().x; ++column)
+      if (everywhere || region(row, column)) ++counts[picture.mosaic(row, column)], ++all;
   if (all == 0) return 0.0;
   const auto rank = static_cast<int>(percentile / 100.0 * (all - 1));
   std::size_t value = 0;

@@ -50,16 +50,24 @@ Eigen::Isometry3d holder_from_patch(const ReferencePatch& patch, const inversion
   return pose;
 }
 
+std::array<Eigen::Vector2d, 4> patch_outline(const renderer::Camera& camera, const ReferencePatch& patch,
+                                             const inversion::WrappedSpool& spool, rig::Mounting mounting) {
+  const Eigen::Isometry3d pose = holder_from_patch(patch, spool, mounting);
+  const double half = kUsedFraction * patch.edge_mm / 2;
+  std::array<Eigen::Vector2d, 4> outline{{{-half, -half}, {half, -half}, {half, half}, {-half, half}}};
+  for (Eigen::Vector2d& corner : outline)
+    corner = renderer::project(camera, pose * Eigen::Vector3d(corner.x(), corner.y(), 0));
+  return outline;
+}
+
 std::optional<PatchReading> read_patch(const cv::Mat3f& radiance, const cv::Mat1b& saturated,
                                        const renderer::Camera& camera, const ReferencePatch& patch,
                                        const inversion::WrappedSpool& spool, rig::Mounting mounting,
                                        const inversion::NearLight& light, const Eigen::Vector2d& droop) {
   const Eigen::Isometry3d pose = holder_from_patch(patch, spool, mounting);
-  const double half = kUsedFraction * patch.edge_mm / 2;
   std::vector<cv::Point2f> outline;
   const cv::Rect frame(0, 0, radiance.cols, radiance.rows);
-  for (const auto& [x, y] : {std::pair{-half, -half}, {half, -half}, {half, half}, {-half, half}}) {
-    const Eigen::Vector2d pixel = renderer::project(camera, pose * Eigen::Vector3d(x, y, 0));
+  for (const Eigen::Vector2d& pixel : patch_outline(camera, patch, spool, mounting)) {
     outline.emplace_back(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
     if (!frame.contains(cv::Point(cvRound(pixel.x()), cvRound(pixel.y())))) return std::nullopt;
   }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <vector>
@@ -24,6 +25,11 @@ struct ReferencePatch {
 // Centre of the chip that is up in this mounting, +z its normal; holder frame, mm.
 Eigen::Isometry3d holder_from_patch(const ReferencePatch& patch, const inversion::WrappedSpool& spool,
                                     rig::Mounting mounting);
+
+// Corners of what is read of that chip, away from its border, in the picture of `camera` (holder frame), pixels; they may lie
+// outside of it.
+std::array<Eigen::Vector2d, 4> patch_outline(const renderer::Camera& camera, const ReferencePatch& patch,
+                                             const inversion::WrappedSpool& spool, rig::Mounting mounting);
 
 struct PatchReading {
   double strength = 0.0;  // measured / expected of the calibrated lamp

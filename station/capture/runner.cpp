@@ -165,16 +165,17 @@ class CaptureRun {
       const rig::Picture delivered = devices_.camera.capture();
       turn_ahead(step);
       record.verdict = judge(step, record, delivered);
-      ahead_.wait();
       if (options_.judged) {
         options_.judged(step, record.verdict);
       }
       if (record.verdict.grade() != Grade::bad) {
         recorder_.keep(record, delivered);
+        ahead_.wait();
         order_.push_back(step.id);
         return;
       }
       recorder_.refused(step, record.verdict, delivered);
+      ahead_.wait();
       withdraw_doubted(record.verdict);
       if (!record.verdict.may_pass_again() || attempt >= options_.most_attempts) {
         throw std::runtime_error(record.verdict.reason());

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 
 #include <algorithm>
+#include <future>
 #include <stdexcept>
 
 #include "station/capture/sha256.h"
@@ -55,11 +56,13 @@ std::string write_problem(const fs::path& file, const std::error_code& code) {
 
 std::string store_file(FileSystem& file_system, const fs::path& file, std::span<const std::byte> bytes) {
   const fs::path temporary = temporary_name(file);
-  std::string hash = sha256_hex(bytes);
+  std::future<std::string> hashed = std::async(std::launch::async, [bytes] { return sha256_hex(bytes); });
+  std::string hash;
   std::error_code ignored;
   bool renamed = false;
   try {
     write_temporary(file_system, temporary, bytes);
+    hash = hashed.get();
     if (sha256_of_file(temporary) != hash) {
       throw std::runtime_error("wrote '" + file.string() +
                                "' and read back other bytes; the disk may be failing: check it, then go on");

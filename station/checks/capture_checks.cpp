@@ -136,7 +136,7 @@ class CaptureChecks::Work {
     const auto holder_from_world =
         turned_holder(step.mounting, calibration_.platform.scale * step.platform_angle_rad);
     if (!holder_from_world) return std::nullopt;
-    return lamp_.read(step, developed_of(raw), camera_in(*holder_from_world), *holder_from_world);
+    return lamp_.read(step, developer_of(raw), camera_in(*holder_from_world), *holder_from_world);
   }
 
  private:
@@ -247,7 +247,7 @@ class CaptureChecks::Work {
     return Eigen::AngleAxisd(Eigen::Matrix3d(wanted.linear().transpose() * mounted.linear())).angle();
   }
 
-  void check_view(Seen& seen) {
+  void check_view(const Seen& seen) {
     const std::string name = "'" + seen.step.id + "'";
     const cv::Mat1b region = window(seen.step);
     const double saturated = saturated_fraction(seen.raw, region);
@@ -261,9 +261,8 @@ class CaptureChecks::Work {
                     " s: more than 5 % of the threads' window is saturated; move the lamp away, then resume"
               : name + " has " + percent_text(saturated) + " of the threads' window saturated; look at its bracket");
     check_focus(seen, region);
-    seen.grey.release();  // a large picture's lamp takes as much
     // A soft picture of the small patch says nothing of the lamp.
-    if (verdict_.findings.back().grade != Grade::bad) check_lamp(seen, developed_of(seen.raw));
+    if (verdict_.findings.back().grade != Grade::bad) check_lamp(seen);
     const double level = bright_level(seen.raw, region, ExposureAim{}.percentile);
     found("exposure", level < kUnderExposed ? Grade::bad : Grade::good, 100 * level,
           name + " is dark: the brightest threads reach " + percent_text(level) + " of the range at " +
@@ -294,10 +293,14 @@ class CaptureChecks::Work {
     if (focus != nullptr && focus->value) sharpness_[{lamp, mounting}].push_back(*focus->value);
   }
 
-  calibration::Developed developed_of(const calibration::SensorPicture& raw) const {
+  // Of this picture, which must outlive what is returned.
+  DevelopPart developer_of(const calibration::SensorPicture& raw) const {
     calibration::DevelopOptions options{.vignetting = calibration_.light.vignetting};
     if (calibration_.sensor) options.response = &calibration_.sensor->response;
-    return calibration::develop(raw, options);
+    return [&raw, options](const cv::Rect& part) mutable {
+      options.part = part;
+      return calibration::develop(raw, options);
+    };
   }
 
   // holder_from_world; nothing where no pose picture shows the holder.
@@ -312,13 +315,13 @@ class CaptureChecks::Work {
     return camera_of(calibration_.lens.lens, holder_from_world * calibration_.platform.world_from_camera, false);
   }
 
-  void check_lamp(const Seen& seen, const calibration::Developed& developed) {
+  void check_lamp(const Seen& seen) {
     const double angle_rad =
         seen.bench.angle ? seen.bench.angle->angle_rad : calibration_.platform.scale * seen.reading_rad;
     const auto holder_from_world = turned_holder(seen.step.mounting, angle_rad);
     if (!holder_from_world) return;
     for (const Finding& finding :
-         lamp_.judge(seen.step, developed, camera_in(*holder_from_world), *holder_from_world))
+         lamp_.judge(seen.step, developer_of(seen.raw), camera_in(*holder_from_world), *holder_from_world))
       verdict_.findings.push_back(finding);
   }
 

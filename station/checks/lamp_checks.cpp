@@ -27,16 +27,28 @@ struct TagLight {
   bool saturated = false;  // the light is at least that
 };
 
-std::optional<TagLight> tag_light(const calibration::Developed& developed,
-                                  const std::array<Eigen::Vector2d, 4>& corners_px) {
-  const cv::Mat3f& radiance = developed.radiance;
-  const cv::Mat1b inside = calibration::polygon_mask(radiance.size(), corners_px);
-  const cv::Rect box = cv::boundingRect(inside);
+// What a quadrangle covers of the picture, and a pixel around it.
+cv::Rect box_of(const std::array<Eigen::Vector2d, 4>& corners_px, const renderer::Camera& camera) {
+  std::vector<cv::Point2f> outline;
+  for (const Eigen::Vector2d& corner : corners_px)
+    outline.emplace_back(static_cast<float>(corner.x()), static_cast<float>(corner.y()));
+  const cv::Rect covered = cv::boundingRect(outline);
+  return cv::Rect(covered.tl() - cv::Point(1, 1), covered.br() + cv::Point(1, 1)) &
+         cv::Rect(0, 0, camera.width, camera.height);
+}
+
+std::optional<TagLight> tag_light(const DevelopPart& develop, const renderer::Camera& camera,
+                                  std::array<Eigen::Vector2d, 4> corners_px) {
+  const cv::Rect box = box_of(corners_px, camera);
+  if (box.empty()) return std::nullopt;
+  const calibration::Developed developed = develop(box);
+  for (Eigen::Vector2d& corner : corners_px) corner -= Eigen::Vector2d(box.x, box.y);
+  const cv::Mat1b inside = calibration::polygon_mask(box.size(), corners_px);
   std::vector<TagLight> pixels;
-  for (int row = box.y; row < box.y + box.height; ++row)
-    for (int column = box.x; column < box.x + box.width; ++column)
+  for (int row = 0; row < box.height; ++row)
+    for (int column = 0; column < box.width; ++column)
       if (inside(row, column) != 0) {
-        const cv::Vec3f& pixel = radiance(row, column);
+        const cv::Vec3f& pixel = developed.radiance(row, column);
         pixels.push_back({(pixel[0] + pixel[1] + pixel[2]) / 3.0, developed.saturated(row, column) != 0});
       }
   if (pixels.size() < kFewestPixels) return std::nullopt;
@@ -50,11 +62,11 @@ std::optional<TagLight> tag_light(const calibration::Developed& developed,
 LampChecks::LampChecks(const SessionFile& asked, const RigCalibration& calibration)
     : asked_(asked), calibration_(calibration) {}
 
-std::vector<Finding> LampChecks::judge(const PlanStep& step, const calibration::Developed& developed,
+std::vector<Finding> LampChecks::judge(const PlanStep& step, const DevelopPart& develop,
                                        const renderer::Camera& camera, const Eigen::Isometry3d& holder_from_world) {
   if (asked_.spool.fabric) return {};  // nothing on the cylinder says anything of the lamp
-  const std::optional<Finding> on_side = side(step, developed, camera, holder_from_world);
-  const std::optional<double> part = strength(step, developed, camera, holder_from_world);
+  const std::optional<Finding> on_side = side(step, develop, camera, holder_from_world);
+  const std::optional<double> part = strength(step, develop, camera, holder_from_world);
   // The calibrated lamp is the one on the right side; a lamp that is off is on no side.
   const bool wrong_side = on_side && on_side->grade == Grade::bad && (!part || *part >= kLampOff);
   std::vector<Finding> findings;
@@ -70,11 +82,11 @@ std::vector<Finding> LampChecks::judge(const PlanStep& step, const calibration::
   return findings;
 }
 
-std::optional<double> LampChecks::read(const PlanStep& step, const calibration::Developed& developed,
+std::optional<double> LampChecks::read(const PlanStep& step, const DevelopPart& develop,
                                        const renderer::Camera& camera,
                                        const Eigen::Isometry3d& holder_from_world) const {
   if (asked_.spool.fabric) return std::nullopt;
-  const std::optional<double> part = strength(step, developed, camera, holder_from_world);
+  const std::optional<double> part = strength(step, develop, camera, holder_from_world);
   return part && *part >= kLampOff ? part : std::nullopt;
 }
 
@@ -83,13 +95,18 @@ inversion::NearLight LampChecks::lamp(rig::Lamp side, const Eigen::Isometry3d& h
 }
 
 // Measured / expected at the reference patch; nothing where it cannot be read.
-std::optional<double> LampChecks::strength(const PlanStep& step, const calibration::Developed& developed,
+std::optional<double> LampChecks::strength(const PlanStep& step, const DevelopPart& develop,
                                            const renderer::Camera& camera,
                                            const Eigen::Isometry3d& holder_from_world) const {
   if (!asked_.rig.reference_patch) return std::nullopt;
+  const cv::Rect box =
+      box_of(patch_outline(camera, *asked_.rig.reference_patch, asked_.spool.wrapping, step.mounting), camera);
+  if (box.empty()) return std::nullopt;
+  const calibration::Developed developed = develop(box);
   const auto reading =
-      read_patch(developed.radiance, developed.saturated, camera, *asked_.rig.reference_patch, asked_.spool.wrapping,
-                 step.mounting, lamp(step.lamp, holder_from_world), calibration_.light.droop);
+      read_patch(developed.radiance, developed.saturated, renderer::cut(camera, box.x, box.y, box.width, box.height),
+                 *asked_.rig.reference_patch, asked_.spool.wrapping, step.mounting,
+                 lamp(step.lamp, holder_from_world), calibration_.light.droop);
   return reading ? std::optional(reading->strength) : std::nullopt;
 }
 
@@ -109,7 +126,7 @@ std::string LampChecks::problem(const PlanStep& step, double strength) const {
 }
 
 // The holder's tags are on its front: bright under the lamp in front, dark under the one behind.
-std::optional<Finding> LampChecks::side(const PlanStep& step, const calibration::Developed& developed,
+std::optional<Finding> LampChecks::side(const PlanStep& step, const DevelopPart& develop,
                                         const renderer::Camera& camera,
                                         const Eigen::Isometry3d& holder_from_world) const {
   const inversion::NearLight front = lamp(rig::Lamp::front, holder_from_world);
@@ -126,7 +143,7 @@ std::optional<Finding> LampChecks::side(const PlanStep& step, const calibration:
     std::ranges::transform(corners, corners_px.begin(),
                            [&](const Eigen::Vector3d& corner) { return renderer::project(camera, corner); });
     const double white = front.intensity.mean() * cosine / to_lamp.squaredNorm() / M_PI;
-    if (const auto light = tag_light(developed, corners_px)) {
+    if (const auto light = tag_light(develop, camera, corners_px)) {
       parts.push_back(light->radiance / white);
       saturated += light->saturated;
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,9 @@
 
 namespace station {
 
+// A part of the picture that is looked at, developed: large pictures are dear, and little of them is asked for.
+using DevelopPart = std::function<calibration::Developed(const cv::Rect& part)>;
+
 // Findings:
 //   lamp         % of the calibrated lamp at the reference patch: below 50 it is off or covered, 10 from the calibration other
 //                light shines or it has changed, 2 from this run's last view under the same lamp and mounting it jumped (after
@@ -26,13 +30,13 @@ class LampChecks {
   // Both must outlive the checks.
   LampChecks(const SessionFile& asked, const RigCalibration& calibration);
 
-  // `camera`: in the holder's frame, as the picture was developed for. Nothing about what cannot be looked at.
-  std::vector<Finding> judge(const PlanStep& step, const calibration::Developed& developed,
-                             const renderer::Camera& camera, const Eigen::Isometry3d& holder_from_world);
+  // `camera`: of the whole picture, in the holder's frame, as it is developed for. Nothing about what cannot be looked at.
+  std::vector<Finding> judge(const PlanStep& step, const DevelopPart& develop, const renderer::Camera& camera,
+                             const Eigen::Isometry3d& holder_from_world);
 
   // Measured / calibrated strength; nothing where there is no patch, it cannot be read or the lamp is off.
-  std::optional<double> read(const PlanStep& step, const calibration::Developed& developed,
-                             const renderer::Camera& camera, const Eigen::Isometry3d& holder_from_world) const;
+  std::optional<double> read(const PlanStep& step, const DevelopPart& develop, const renderer::Camera& camera,
+                             const Eigen::Isometry3d& holder_from_world) const;
 
  private:
   struct LastView {
@@ -40,11 +44,11 @@ class LampChecks {
     rig::Mounting mounting;
     double strength;
   };
-  std::optional<double> strength(const PlanStep& step, const calibration::Developed& developed,
-                                 const renderer::Camera& camera, const Eigen::Isometry3d& holder_from_world) const;
+  std::optional<double> strength(const PlanStep& step, const DevelopPart& develop, const renderer::Camera& camera,
+                                 const Eigen::Isometry3d& holder_from_world) const;
   std::string problem(const PlanStep& step, double strength) const;
-  std::optional<Finding> side(const PlanStep& step, const calibration::Developed& developed,
-                              const renderer::Camera& camera, const Eigen::Isometry3d& holder_from_world) const;
+  std::optional<Finding> side(const PlanStep& step, const DevelopPart& develop, const renderer::Camera& camera,
+                              const Eigen::Isometry3d& holder_from_world) const;
   inversion::NearLight lamp(rig::Lamp side, const Eigen::Isometry3d& holder_from_world) const;
 
   const SessionFile& asked_;

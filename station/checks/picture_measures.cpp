@@ -94,9 +94,10 @@ std::optional<double> motion_px(const calibration::TagObservation& before, const
 
 double saturated_fraction(const calibration::SensorPicture& picture, const cv::Mat1b& region) {
   const double limit_dn = picture.black_level_dn + kSaturated * (picture.white_level_dn - picture.black_level_dn);
+  const cv::Rect box = cv::boundingRect(region);
   int inside = 0, saturated = 0;
-  for (int row = 0; row < picture.mosaic.rows; ++row)
-    for (int column = 0; column < picture.mosaic.cols; ++column) {
+  for (int row = box.y; row < box.br().y; ++row)
+    for (int column = box.x; column < box.br().x; ++column) {
       if (region(row, column) == 0) continue;
       ++inside;
       saturated += picture.mosaic(row, column) > limit_dn;

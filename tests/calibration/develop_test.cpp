@@ -150,6 +150,34 @@ TEST(Develop, RowsMayBeDemosaicedInAnyParts) {
 }
 
 // The variance of a mean of values with the same variance is that over their number.
+// Odd corners and odd sizes, with a bad pixel outside that mends one inside, maps, vignetting and a saturated value.
+TEST(Develop, APartIsWhatTheWholePictureHasThere) {
+  const Scene scene = [](double column, double row, int c) { return 0.2 + 0.01 * column + 0.02 * row + 0.05 * c; };
+  SensorPicture raw = photographed(scene, {40, 30});
+  raw.mosaic(13, 9) = 16383;
+  SensorResponse response;
+  response.gain_dn_per_e = 0.3, response.read_noise_e = 5;
+  response.maps.bias_dn = cv::Mat1f(raw.mosaic.size());
+  cv::randu(response.maps.bias_dn, 508, 516);
+  response.maps.flat = cv::Mat1f(raw.mosaic.size());
+  cv::randu(response.maps.flat, 0.98, 1.02);
+  response.maps.bad = cv::Mat1b(raw.mosaic.size(), uchar{0});
+  for (const cv::Point& at : {cv::Point(9, 10), cv::Point(7, 10), cv::Point(20, 21), cv::Point(22, 23)})
+    response.maps.bad(at) = 255;
+  DevelopOptions options{.response = &response, .vignetting = Vignetting{.v0 = 0.1, .v1 = 0.02}};
+  const Developed whole = develop(raw, options);
+  for (const cv::Rect& part : {cv::Rect(9, 11, 13, 10), cv::Rect(0, 0, 5, 3), cv::Rect(33, 27, 7, 3)}) {
+    options.part = part;
+    const Developed cut = develop(raw, options);
+    ASSERT_EQ(cut.radiance.size(), part.size());
+    EXPECT_EQ(cv::norm(cut.radiance, whole.radiance(part), cv::NORM_INF), 0) << part;
+    EXPECT_EQ(cv::norm(cut.variance, whole.variance(part), cv::NORM_INF), 0) << part;
+    EXPECT_EQ(cv::norm(cut.saturated, whole.saturated(part), cv::NORM_INF), 0) << part;
+  }
+  options.part = cv::Rect(30, 20, 11, 10);
+  EXPECT_THROW(develop(raw, options), std::runtime_error);
+}
+
 TEST(Develop, WhatAColourIsMadeFromMakesItsVariance) {
   LinearMosaic mosaic = merge_exposures({noise({8, 8}, {0, 1, 1, 2})}, {});
   mosaic.variance = cv::Mat1f(mosaic.radiance.size(), 0.4F);

@@ -53,6 +53,26 @@ TEST(ViewTest, TheMaskIsTheSheetWithoutItsBorder) {
   EXPECT_EQ(cv::countNonZero(view.mask), box.area());
 }
 
+TEST(ViewTest, AWidePicturesMaskIsANarrowOnesButForItsBorder) {
+  const WrappedSpool spool;
+  const View narrow = unlit_view(spool, six_standpoints()[1], 210);
+  const cv::Rect few = cv::boundingRect(narrow.mask);
+  renderer::Camera camera = narrow.camera;  // pixels of a tenth
+  camera.width *= 10, camera.height *= 10, camera.fx *= 10, camera.fy *= 10;
+  camera.cx = 10 * (camera.cx + 0.5) - 0.5, camera.cy = 10 * (camera.cy + 0.5) - 0.5;
+  const int top = 10 * few.y - 100;
+  const cv::Mat1b mask = thread_mask(spool, renderer::cut(camera, 0, top, camera.width, 200), narrow.light, 8);
+  ASSERT_EQ(mask.size(), cv::Size(2100, 200));
+  const cv::Rect threads = cv::boundingRect(mask);
+  // Looked at in pixels of three by three, of which two are left out, as of the narrow picture's ten by ten: 1.4 of those
+  // apart, and a pixel counts or does not.
+  EXPECT_EQ(threads.x % 3, 0);
+  EXPECT_EQ(threads.width % 3, 0);
+  EXPECT_NEAR(threads.x / 10.0, few.x - 1.4, 1);
+  EXPECT_NEAR(threads.br().x / 10.0, few.br().x + 1.4, 1);
+  EXPECT_NEAR((top + threads.y) / 10.0, few.y - 1.4, 1);
+}
+
 TEST(ViewTest, LitFromBehindTheMaskIsTheWindowOnly) {
   const WrappedSpool spool;
   const View view = unlit_view(spool, {"through", 0, 0, 180, 0}, 90);

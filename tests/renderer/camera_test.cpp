@@ -41,6 +41,18 @@ TEST(CameraTest, ProjectionIsOpenCvsProjection) {
   EXPECT_NEAR(pixel.y(), expected[0].y, 1e-9);
 }
 
+TEST(CameraTest, APartOfThePictureAndLargerPixelsSeeTheSamePoint) {
+  const Camera camera = distorted_camera();
+  const Eigen::Vector3d point(12, -30, 70);
+  const Eigen::Vector2d pixel = project(camera, point);
+  const Camera part = cut(camera, 21, 40, 300, 200), larger = with_larger_pixels(camera, 7);
+  EXPECT_LT((project(part, point) - (pixel - Eigen::Vector2d(21, 40))).norm(), 1e-9);
+  EXPECT_EQ(part.height, 200);
+  // The first large pixel's centre is the fourth small one's.
+  EXPECT_LT((project(larger, point) - (pixel - Eigen::Vector2d(3, 3)) / 7).norm(), 1e-9);
+  EXPECT_EQ(larger.width, 86);  // 600 / 7, rounded up
+}
+
 TEST(CameraTest, LookAtCentresTheTargetWithUpUpwards) {
   Camera camera = look_at({500, 40, 120}, {0, 0, 60}, {0, 0, 1});
   const Eigen::Vector2d target = project(camera, {0, 0, 60});

@@ -28,8 +28,11 @@ std::optional<Finding> lamp_side(const std::string& step_id, double part, bool s
   calibration::Developed developed;
   developed.radiance = cv::Mat3f(camera.height, camera.width, cv::Vec3f::all(static_cast<float>(part * white)));
   developed.saturated = cv::Mat1b(camera.height, camera.width, static_cast<uchar>(saturated ? 255 : 0));
+  const DevelopPart develop = [&](const cv::Rect& box) -> calibration::Developed {
+    return {.radiance = developed.radiance(box), .variance = {}, .saturated = developed.saturated(box)};
+  };
   for (const Finding& finding :
-       LampChecks(asked, calibration).judge(step, developed, camera, world_from_holder.inverse()))
+       LampChecks(asked, calibration).judge(step, develop, camera, world_from_holder.inverse()))
     if (finding.check == "lamp_side") return finding;
   return std::nullopt;
 }
