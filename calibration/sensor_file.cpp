@@ -46,7 +46,12 @@ cv::Mat1w visible_mosaic(const LibRaw& raw) {
   const auto& sizes = raw.imgdata.rawdata.sizes;
   const cv::Mat1w all(sizes.raw_height, sizes.raw_width, raw.imgdata.rawdata.raw_image, sizes.raw_pitch);
   const cv::Rect visible(sizes.left_margin, sizes.top_margin, sizes.width, sizes.height);
-  return all(visible & cv::Rect(0, 0, all.cols, all.rows)).clone();
+  const cv::Mat1w seen = all(visible & cv::Rect(0, 0, all.cols, all.rows));
+  cv::Mat1w mosaic(seen.size());
+  cv::parallel_for_({0, seen.rows}, [&](const cv::Range& rows) {
+    seen.rowRange(rows).copyTo(mosaic.rowRange(rows));
+  });
+  return mosaic;
 }
 
 // In its own frame, as LibRaw objects are too large for the stack.

@@ -37,7 +37,8 @@ void ProgressDisplay::show(int done, int total, const std::string& label, double
   if (style_ == ProgressStyle::quiet) return;
   const std::lock_guard lock(mutex_);
   const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  if (seconds_left < 0 && done > 0) seconds_left = elapsed / done * (total - done);
+  if (!first_) first_ = done;
+  if (seconds_left < 0 && done > *first_) seconds_left = elapsed / (done - *first_) * (total - done);
   if (style_ == ProgressStyle::json) {
     nlohmann::json line{{"task", task_}, {"done", done}, {"total", total}, {"label", label}};
     if (seconds_left >= 0) line["seconds_left"] = seconds_left;

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <string>
 
 namespace station {
@@ -16,8 +17,8 @@ class ProgressDisplay {
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
-  // `done` of `total` units are finished; `label` says what comes now. The time left is guessed from the pace so far
-  // unless it is given.
+  // `done` of `total` units are finished; `label` says what comes now. The time left is guessed from the pace since the first
+  // call (what goes on from an earlier run does not begin at 0) unless it is given.
   void show(int done, int total, const std::string& label, double seconds_left = -1);
   // A line that stays, from any thread.
   void note(const std::string& text);
@@ -29,6 +30,7 @@ class ProgressDisplay {
   bool terminal_;
   std::mutex mutex_;
   bool open_line_ = false;
+  std::optional<int> first_;  // units that were done when this run began
   std::chrono::steady_clock::time_point start_;
 };
 
