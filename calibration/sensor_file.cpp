@@ -48,9 +48,8 @@ cv::Mat1w visible_mosaic(const LibRaw& raw) {
   const cv::Rect visible(sizes.left_margin, sizes.top_margin, sizes.width, sizes.height);
   const cv::Mat1w seen = all(visible & cv::Rect(0, 0, all.cols, all.rows));
   cv::Mat1w mosaic(seen.size());
-  cv::parallel_for_({0, seen.rows}, [&](const cv::Range& rows) {
-    seen.rowRange(rows).copyTo(mosaic.rowRange(rows));
-  });
+  cv::parallel_for_({0, seen.rows},
+                    [&](const cv::Range& rows) { seen.rowRange(rows).copyTo(mosaic.rowRange(rows)); });
   return mosaic;
 }
 

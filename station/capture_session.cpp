@@ -111,8 +111,8 @@ std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
 }  // namespace
 
 CalibrationFiles calibration_files(const std::filesystem::path& place, const RigCalibration& calibration) {
-  const std::filesystem::path folder = std::filesystem::is_directory(place) ? place : place.parent_path();
-  const std::string text = read_json_file(folder / "calibration.json").dump(2) + "\n";
+  const std::filesystem::path document = calibration_document(place), folder = document.parent_path();
+  const std::string text = read_json_file(document).dump(2) + "\n";
   const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
   CalibrationFiles files{{"calibration.json", {bytes, bytes + text.size()}}};
   if (calibration.sensor) {

@@ -257,9 +257,12 @@ RigCalibration parse_calibration(const json& document, const std::string& source
   return calibration;
 }
 
+std::filesystem::path calibration_document(const std::filesystem::path& folder_or_file) {
+  return std::filesystem::is_directory(folder_or_file) ? folder_or_file / "calibration.json" : folder_or_file;
+}
+
 RigCalibration read_calibration(const std::filesystem::path& folder_or_file) {
-  const bool folder = std::filesystem::is_directory(folder_or_file);
-  const std::filesystem::path file = folder ? folder_or_file / "calibration.json" : folder_or_file;
+  const std::filesystem::path file = calibration_document(folder_or_file);
   return parse_calibration(read_json_file(file), file.string());
 }
 

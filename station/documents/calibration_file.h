@@ -44,7 +44,8 @@ std::vector<calibration::Gate> all_gates(const RigCalibration& calibration);
 
 nlohmann::json to_json(const RigCalibration& calibration);
 RigCalibration parse_calibration(const nlohmann::json& document, const std::string& source);
-// `folder_or_file`: calibration.json or the folder that holds it.
+// `folder_or_file`: a calibration's document, or the folder that holds it as calibration.json.
+std::filesystem::path calibration_document(const std::filesystem::path& folder_or_file);
 RigCalibration read_calibration(const std::filesystem::path& folder_or_file);
 
 }  // namespace station

@@ -2,7 +2,12 @@
 
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
 #include <stdexcept>
+
+#include "station/capture_session.h"
+#include "station/documents/reader.h"
+#include "tests/places.h"
 
 namespace station {
 namespace {
@@ -101,6 +106,18 @@ TEST(CalibrationValidity, AFailedGateIsRefusedWithItsReasonUnlessItIsAccepted) {
   c.calibration.platform.gates.push_back(calibration::at_most("corners, px", 0.9, 0.5, "press the prints flat"));
   EXPECT_THAT(refusal(c), HasSubstr("corners, px: 0.9, limit 0.5 (press the prints flat)"));
   EXPECT_EQ(refusal(c, "2026-11-21T08:00:00Z", true), "");
+}
+
+// Not always called calibration.json.
+TEST(CalibrationFiles, AreThoseOfTheDocumentThatWasGiven) {
+  const std::string document = std::string(FIXTURES_DIR) + "/calibrations/simulated.json";
+  RigCalibration calibration = read_calibration(document);
+  calibration.sensor.reset();  // its maps are not beside the document
+  const CalibrationFiles files = calibration_files(document, calibration);
+  ASSERT_EQ(files.size(), 1U);
+  const auto& bytes = files.at("calibration.json");
+  const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  EXPECT_EQ(nlohmann::json::parse(text), read_json_file(document));
 }
 
 }  // namespace
