@@ -282,9 +282,9 @@ class CaptureChecks::Work {
       grade = ratio < kLeastSharpness ? Grade::bad : ratio < kLittleSharpness ? Grade::doubtful : Grade::good;
     }
     found("focus", grade, here,
-          "'" + seen.step.id + "' shows " + percent_text(ratio) +
-              " of the detail of the views before it; see that nothing touched the lens or stands before it, then "
-              "resume");
+          "'" + seen.step.id + "' shows " + percent_text(ratio) + " of the detail of the views before it; " +
+              (grade == Grade::bad ? "see that nothing touched the lens or stands before it, then resume"
+                                   : "look at it, and take it again with --reshoot if it is soft"));
     if (grade != Grade::bad) before.push_back(here);
   }
 
