@@ -68,16 +68,16 @@ cv::Mat1f linear_grey(const SensorPicture& picture) {
   cv::parallel_for_({0, grey.rows}, [&](const cv::Range& rows) {
     for (int row = rows.start; row < rows.end; ++row) {
       float* out = grey[row];
-      const auto at_border = [&](int column) {
+      const auto one_pixel = [&](int column) {
         const auto cell = static_cast<std::size_t>(2 * (row & 1) + (column & 1));
         out[column] = std::max(0.F, mean_of_colours(picture, row, column, taps[cell]) * per_dn);
       };
       if (row == 0 || row == last_row) {
-        for (int column = 0; column <= last_column; ++column) at_border(column);
+        for (int column = 0; column <= last_column; ++column) one_pixel(column);
         continue;
       }
-      at_border(0);
-      at_border(last_column);
+      one_pixel(0);
+      one_pixel(last_column);
       const std::array<const ushort*, 3> in{picture.mosaic[row - 1], picture.mosaic[row], picture.mosaic[row + 1]};
       const RunWeights run = run_weights(weights, row);
       int column = 1;
@@ -90,7 +90,7 @@ cv::Mat1f linear_grey(const SensorPicture& picture) {
                   run[3 * r + c][i] * (static_cast<float>(in[r][column - 1 + static_cast<int>(c + i)]) - black);
         for (std::size_t i = 0; i < kRun; ++i) out[column + static_cast<int>(i)] = std::max(0.F, sums[i] * per_dn);
       }
-      for (; column < last_column; ++column) at_border(column);
+      for (; column < last_column; ++column) one_pixel(column);
     }
   });
   return grey;

@@ -149,7 +149,6 @@ TEST(Develop, RowsMayBeDemosaicedInAnyParts) {
   EXPECT_EQ(cv::norm(once.saturated, parts.saturated, cv::NORM_INF), 0);
 }
 
-// The variance of a mean of values with the same variance is that over their number.
 // Odd corners and odd sizes, with a bad pixel outside that mends one inside, maps, vignetting and a saturated value.
 TEST(Develop, APartIsWhatTheWholePictureHasThere) {
   const Scene scene = [](double column, double row, int c) { return 0.2 + 0.01 * column + 0.02 * row + 0.05 * c; };
@@ -178,6 +177,7 @@ TEST(Develop, APartIsWhatTheWholePictureHasThere) {
   EXPECT_THROW(develop(raw, options), std::runtime_error);
 }
 
+// The variance of a mean of values with the same variance is that over their number.
 TEST(Develop, WhatAColourIsMadeFromMakesItsVariance) {
   LinearMosaic mosaic = merge_exposures({noise({8, 8}, {0, 1, 1, 2})}, {});
   mosaic.variance = cv::Mat1f(mosaic.radiance.size(), 0.4F);
