@@ -323,6 +323,13 @@ ViewFit fit_best_yarn(const WrappedSpool& spool, const std::vector<View>& views,
 
 }  // namespace
 
+FitOptions first_rounds(FitOptions options, std::size_t rounds) {
+  options.solver = Solver::levenberg_marquardt;
+  options.other_starts.clear();
+  if (rounds < options.paths_per_block.size()) options.paths_per_block.resize(rounds);
+  return options;
+}
+
 double ViewFit::loss() const {
   const auto last =
       std::find_if(rounds.rbegin(), rounds.rend(), [](const FitRound& round) { return !round.bias_free; });

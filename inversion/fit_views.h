@@ -54,6 +54,9 @@ struct FitOptions {
   std::function<bool(const std::string&, double)> progress{};
 };
 
+// Levenberg-Marquardt from `start` alone, its first `rounds` alone (as many as there are when fewer).
+FitOptions first_rounds(FitOptions options, std::size_t rounds);
+
 struct FitRound {
   int paths_per_block = 0;
   int steps = 0;

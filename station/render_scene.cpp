@@ -11,6 +11,7 @@
 #include "station/documents/scene_file.h"
 #include "station/documents/session_file.h"
 #include "station/interrupt.h"
+#include "station/picture_destination.h"
 #include "station/render/checkpoint.h"
 #include "station/render/render_channels.h"
 #include "station/render/render_progress.h"
@@ -25,20 +26,11 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Before the work, not after it.
 void check_destination(const RenderRequest& request) {
-  const std::filesystem::path& out = request.out;
-  const std::string ending = out.extension().string();
-  if (ending != ".exr" && ending != ".png")
-    throw std::runtime_error("cannot write " + out.string() + ": found the ending \"" + ending +
-                             "\", expected .exr (linear) or .png (display)");
-  if (ending != ".exr" && (request.layers || request.half))
-    throw std::runtime_error("cannot write " + out.string() +
+  check_picture_destination(request.out);
+  if (request.out.extension() != ".exr" && (request.layers || request.half))
+    throw std::runtime_error("cannot write " + request.out.string() +
                              ": --layers and --half are for EXR files; give --out a name that ends in .exr");
-  const std::filesystem::path folder = out.has_parent_path() ? out.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder))
-    throw std::runtime_error("cannot write " + out.string() + ": there is no folder " + folder.string() +
-                             "; make it first");
 }
 
 double exposure_of(const RenderRequest& request, const SceneFile& scene, const cv::Mat3f& image) {

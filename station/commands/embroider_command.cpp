@@ -17,7 +17,7 @@ void add_embroider_command(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   EmbroiderRequest& request = arguments->request;
   CLI::App* command = app.add_subcommand("embroider", "a machine embroidery motif in a digitized thread");
-  command->add_option("motif", request.motif, "Tajima .dst or Brother .pes file")->required();
+  command->add_option("motif", request.motif, "Tajima .dst, Brother .pes or line art as .svg")->required();
   command->add_option("--thread", request.thread, "thread file; each colour changes its absorption alone")
       ->required();
   command->add_option("--out", request.out, "picture: .exr (linear) or .png (display)")->required();

@@ -8,6 +8,7 @@
 
 #include "station/documents/dst_file.h"
 #include "station/documents/pes_file.h"
+#include "station/documents/svg_file.h"
 
 namespace station {
 
@@ -15,9 +16,9 @@ renderer::Motif read_motif(const std::filesystem::path& file) {
   constexpr std::uintmax_t kMostBytes = 64U << 20U;
   std::string ending = file.extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (ending != ".dst" && ending != ".pes")
+  if (ending != ".dst" && ending != ".pes" && ending != ".svg")
     throw std::runtime_error(file.string() + ": found the ending \"" + file.extension().string() +
-                             "\", expected .dst (Tajima) or .pes (Brother)");
+                             "\", expected .dst (Tajima), .pes (Brother) or .svg (line art)");
   if (!std::filesystem::is_regular_file(file))
     throw std::runtime_error(file.string() + ": no such file; check the path");
   if (std::filesystem::file_size(file) > kMostBytes)
@@ -25,6 +26,7 @@ renderer::Motif read_motif(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
   if (!stream) throw std::runtime_error(file.string() + ": cannot be read; check its permissions");
+  if (ending == ".svg") return parse_svg(bytes, file.string());
   return ending == ".dst" ? parse_dst(bytes, file.string()) : parse_pes(bytes, file.string());
 }
 

@@ -1,4 +1,4 @@
-// Embroidery files by their ending: .dst (Tajima), .pes (Brother).
+// Embroidery files by their ending: .dst (Tajima), .pes (Brother), .svg (line art).
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace station {
 
-// Errors: std::runtime_error, one line: no such file, another ending, more than 64 MiB, those of dst_file.h and pes_file.h.
+// Errors: std::runtime_error, one line: no such file, another ending, more than 64 MiB, those of dst_file.h, pes_file.h and svg_file.h.
 renderer::Motif read_motif(const std::filesystem::path& file);
 
 }  // namespace station

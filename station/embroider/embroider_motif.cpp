@@ -16,6 +16,7 @@
 #include "station/documents/session_file.h"
 #include "station/documents/thread_file.h"
 #include "station/interrupt.h"
+#include "station/picture_destination.h"
 #include "station/report/display.h"
 
 namespace station {
@@ -110,13 +111,6 @@ std::array<inversion::AbsorptionCurve, 3> curves_of(const renderer::ThreadParame
       kCount);
 }
 
-void check_destination(const std::filesystem::path& out) {
-  const std::string ending = out.extension().string();
-  if (ending != ".exr" && ending != ".png")
-    throw std::runtime_error("cannot write " + out.string() + ": found the ending \"" + ending +
-                             "\", expected .exr (linear) or .png (display)");
-}
-
 }  // namespace
 
 Srgb8 parse_colour(const std::string& text) {
@@ -129,7 +123,7 @@ Srgb8 parse_colour(const std::string& text) {
 
 Embroidery embroider(const EmbroiderRequest& request) {
   watch_interrupts();
-  check_destination(request.out);
+  check_picture_destination(request.out);
   const renderer::Motif motif = read_motif(request.motif);
   const ThreadFile digitized = read_thread(request.thread);
   const renderer::MotifMeasures measures = renderer::measure(motif);

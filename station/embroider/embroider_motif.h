@@ -45,7 +45,7 @@ struct Embroidery {
 };
 
 // Threads whose colour neither file nor request says keep the digitized thread's own. Ctrl-C stops it. Errors:
-// std::runtime_error with one line: those of motif_file.h, thread_file.h and stitch_curves.h, an ending that is neither, a
+// std::runtime_error with one line: those of motif_file.h, thread_file.h, stitch_curves.h and picture_destination.h, a
 // picture of more than 100 million pixels.
 Embroidery embroider(const EmbroiderRequest& request);
 

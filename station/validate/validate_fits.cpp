@@ -77,24 +77,34 @@ cv::Mat3b comparison_row(const View& view, const std::vector<cv::Mat3f>& renderi
   return row;
 }
 
-// The thread model by either solver on all views, with the defaults of each.
+// The thread model by either solver on all views, with the defaults of each, and by the fewest of Levenberg-Marquardt's rounds
+// that get as far as Adam.
 std::vector<ComparedSolver> compare_solvers(const ValidateRequest& request, const Spool& spool,
                                             const std::vector<View>& views,
                                             const std::function<void(const std::string&, double)>& step) {
   constexpr int kPaths = 4096, kRepetitions = 4;
+  const inversion::FitOptions whole{.seed = request.seed},
+      adam{.solver = inversion::Solver::adam, .seed = request.seed};
   std::vector<ComparedSolver> compared;
-  for (inversion::Solver solver : {inversion::Solver::levenberg_marquardt, inversion::Solver::adam}) {
-    inversion::FitOptions options{.solver = solver, .seed = request.seed};
+  const auto compare = [&](const std::string& name, inversion::FitOptions options) -> const ComparedSolver& {
     options.progress = [&](const std::string& what, double share) {
-      step("solver " + name_of(solver) + ", " + what, 0.5 * (static_cast<double>(compared.size()) + share));
+      step("solver " + name + ", " + what, std::min(1.0, 0.4 * (static_cast<double>(compared.size()) + share)));
       return !interrupted();
     };
     const auto started = std::chrono::steady_clock::now();
     const inversion::ViewFit fit = inversion::fit_views(spool.wrapping, views, options);
-    compared.push_back({.solver = solver,
+    compared.push_back({.name = name,
                         .seconds = seconds_since(started),
                         .loss = inversion::independent_loss(spool.wrapping, views, fit, kPaths, kRepetitions,
                                                             request.seed + 77777)});
+    return compared.back();
+  };
+  compare(name_of(whole.solver), whole);
+  const double by_adam = compare(name_of(adam.solver), adam).loss.mean;
+  for (std::size_t rounds = 1; rounds <= whole.paths_per_block.size(); ++rounds) {
+    const std::string name = name_of(whole.solver) + ", " + std::to_string(rounds) + " of " +
+                             std::to_string(whole.paths_per_block.size()) + " rounds";
+    if (compare(name, inversion::first_rounds(whole, rounds)).loss.mean <= by_adam) break;
   }
   return compared;
 }
@@ -225,13 +235,14 @@ std::vector<ValidatedSpool> validate_fits(const ValidateRequest& request) {
   ProgressDisplay progress("validate", request.progress_style);
   std::vector<ValidatedSpool> spools;
   int shown = -1;
-  for (std::size_t i = 0; i < request.spools.size(); ++i)
+  for (std::size_t i = 0; i < request.spools.size(); ++i) {
     spools.push_back(validate_spool(request, rig, request.spools[i], [&](const std::string& what, double share) {
       const auto percent =
           static_cast<int>(100 * (static_cast<double>(i) + share) / static_cast<double>(request.spools.size()));
       if (percent != shown) progress.show(shown = percent, 100, request.spools[i].stem().string() + ": " + what);
     }));
-  write_json_file(request.out / "validation.json", to_json(spools));
+    write_json_file(request.out / "validation.json", to_json(spools));
+  }
   progress.finish(std::to_string(spools.size()) + " spools");
   return spools;
 }
@@ -255,8 +266,8 @@ std::string describe(const std::vector<ValidatedSpool>& spools) {
       by_model[label_of(m)].push_back(m.relative_rmse);
     }
     for (const ComparedSolver& of : spool.solvers) {
-      std::snprintf(line, sizeof line, "%-25s  %6d  solver %-4s  loss on other paths %.4g +- %.1g, %.1f s\n",
-                    spool.name.c_str(), spool.fibers_per_thread, name_of(of.solver).c_str(), of.loss.mean,
+      std::snprintf(line, sizeof line, "%-25s  %6d  %-18s  loss on other paths %.4g +- %.1g, %.1f s\n",
+                    spool.name.c_str(), spool.fibers_per_thread, of.name.c_str(), of.loss.mean,
                     of.loss.standard_error, of.seconds);
       text += line;
     }
@@ -288,7 +299,7 @@ nlohmann::json to_json(const std::vector<ValidatedSpool>& spools) {
     }
     nlohmann::json solvers = nlohmann::json::object();
     for (const ComparedSolver& of : spool.solvers)
-      solvers[name_of(of.solver)] = {
+      solvers[of.name] = {
           {"seconds", of.seconds}, {"loss", of.loss.mean}, {"loss_standard_error", of.loss.standard_error}};
     document.push_back({{"spool", spool.name},
                         {"fibers_per_thread", spool.fibers_per_thread},

@@ -5,7 +5,8 @@
 //   photograph     | two of each view with paths of their own, with a 14-bit sensor's noise; fits see their mean
 //   left out       | two views a fold, one reflection and one transmission; three folds
 //   another draw   | a second spool of the same thread, its fibers placed anew: what no fit of the thread can know
-//   solvers        | optional: Levenberg-Marquardt and Adam on all views, by eq. 6's loss on other paths, and by time
+//   solvers        | optional: Levenberg-Marquardt and Adam on all views, by eq. 6's loss on other paths, and by time; and as many
+//                  | of Levenberg-Marquardt's first rounds, from one start, as get at least as far as Adam
 //   agreement      | relative RMSE over 8 x 8-block averages without the noise of either side (inversion/agreement.h)
 #pragma once
 
@@ -52,7 +53,7 @@ struct ValidatedModel {
 };
 
 struct ComparedSolver {
-  inversion::Solver solver;
+  std::string name;
   double seconds = 0;
   inversion::IndependentLoss loss;
 };
@@ -68,7 +69,7 @@ struct ValidatedSpool {
 };
 
 // Photographs are kept in OUT/<spool>/photographs and used again when nothing that they depend on has changed; pictures of
-// the left-out views (photograph, models, differences) and validation.json are written beside them. Ctrl-C stops it.
+// the left-out views (photograph, models, differences) are written beside them, and validation.json after every spool. Ctrl-C stops it.
 // Errors: std::runtime_error of files and of spools without simulated fibers.
 std::vector<ValidatedSpool> validate_fits(const ValidateRequest& request);
 

@@ -1,4 +1,5 @@
-// Samples per second of cloth in two scales beside the same cloth as explicit curves: flat, and round a cylinder.
+// Samples per second of cloth in two scales beside the same cloth as explicit curves: flat, and round a cylinder; and against
+// the cloth's area and the yarns of a patch, which should cost nothing.
 #include <benchmark/benchmark.h>
 
 #include "../renderer/cloth_scenes.h"
@@ -30,6 +31,29 @@ CLOTH(swatch_two_scale, (SwatchShape{110, 110}), true);
 CLOTH(swatch_brute_force, (SwatchShape{110, 110}), false);
 CLOTH(cylinder_two_scale, (CylinderShape{41, 171}), true);
 CLOTH(cylinder_brute_force, (CylinderShape{41, 171}), false);
+
+// The same 80 mm of a swatch whose side is range 0 mm, of a patch of range 1 ends and as many picks.
+void size_of_cloth_and_patch(benchmark::State& state) {
+  const auto side = static_cast<double>(state.range(0));
+  Draft draft = plain_draft();
+  draft.warp.threads.assign(static_cast<std::size_t>(state.range(1)), 0);
+  draft.weft.threads.assign(static_cast<std::size_t>(state.range(1)), 1);
+  const YarnPatch patch = initial_patch(draft);
+  Scene scene = two_scale_scene(SwatchShape{side, side}, patch, red_and_blue_threads());
+  scene.lights = {{.center = {300, -200, 400}, .radius_mm = 30, .radiance = {100, 100, 100}, .visible = false}};
+  const Camera camera = camera_on({20, 0, 400}, {0, 0, 0}, {0, 1, 0}, 80, 128, 128);
+  const PathTracer tracer(scene);
+  for (auto _ : state) benchmark::DoNotOptimize(tracer.render(camera, {.samples_per_pixel = kSamples}));
+  state.SetItemsProcessed(state.iterations() * kSamples * camera.width * camera.height);
+  state.counters["yarns"] = static_cast<double>(patch.yarns.size());
+  state.counters["bytes"] = static_cast<double>(tracer.memory().all());
+}
+BENCHMARK(size_of_cloth_and_patch)
+    ->ArgNames({"side_mm", "ends"})
+    ->ArgsProduct({{100, 300, 1000, 3000}, {2}})
+    ->ArgsProduct({{300}, {8, 24, 48}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
 
 }  // namespace
 }  // namespace renderer

@@ -6,7 +6,8 @@ Needs Debian 12's `blender` (3.4; apt-get install --no-install-recommends blende
 
 SCENE is a or b, VERTICES the scattering vertices allowed. `defaults` leaves Blender's clamping and glossy filter on, which
 change the picture. Prints one line: scene, vertices, mean R G B, seconds of rendering without the building of the scene
-(a second picture with one sample per pixel is subtracted), million samples per second.
+(a second picture with one sample per pixel is subtracted), million samples per second, relative error of a pixel of SPP
+samples (root mean square over the picture's mean, from two more pictures).
 """
 
 import math
@@ -143,7 +144,18 @@ def render(scene, spp):
     image.colorspace_settings.name = "Linear"
     pixels = image.pixels[:]
     os.remove(file)
-    return [sum(pixels[channel::4]) / (WIDTH * HEIGHT) for channel in range(3)], seconds
+    channels = [pixels[channel::4] for channel in range(3)]
+    return [sum(channel) / (WIDTH * HEIGHT) for channel in channels], seconds, channels
+
+
+def noise(scene, spp):
+    pictures = []
+    for seed in (1, 2):
+        scene.cycles.seed = seed
+        pictures.append(render(scene, spp))
+    squares = sum((x - y) ** 2 for a, b in zip(pictures[0][2], pictures[1][2]) for x, y in zip(a, b))
+    mean = (sum(pictures[0][0]) + sum(pictures[1][0])) / 6
+    return math.sqrt(squares / (2 * 3 * WIDTH * HEIGHT)) / mean
 
 
 def main():
@@ -154,10 +166,11 @@ def main():
     name, vertices, spp = arguments[0], int(arguments[1]), int(arguments[2])
     threads = int(arguments[3]) if len(arguments) > 3 else os.cpu_count()
     scene = build(name, vertices, threads, "defaults" in arguments)
-    _, setting_up = render(scene, 1)
-    mean, seconds = render(scene, spp + 1)
+    _, setting_up, _ = render(scene, 1)
+    mean, seconds, _ = render(scene, spp + 1)
     rate = WIDTH * HEIGHT * spp / (seconds - setting_up) / 1e6
-    print("cycles,%s,%d,%.4f,%.4f,%.4f,%.2f s,%.3f million samples/s" % (name, vertices, *mean, seconds - setting_up, rate))
+    print("cycles,%s,%d,%.4f,%.4f,%.4f,%.2f s,%.3f million samples/s,noise %.4f" %
+          (name, vertices, *mean, seconds - setting_up, rate, noise(scene, spp)))
 
 
 main()

@@ -1,0 +1,421 @@
+#include "station/documents/svg_file.h"
+
+#include <2geom/pathvector.h>
+#include <2geom/svg-path-parser.h>
+#include <2geom/transforms.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <pugixml.hpp>
+#include <set>
+#include <stdexcept>
+
+#include "renderer/embroidery/stitch_curves.h"
+
+namespace station {
+namespace {
+
+using Colour = std::array<unsigned char, 3>;
+using Eigen::Vector2d;
+
+constexpr double kPixel_mm = 25.4 / 96;
+constexpr double kLongestStitch_mm = 2.4, kMostSag_mm = 0.12;  // up to kDense_mm longer
+constexpr double kSatinFrom_mm = 0.8, kSatinPitch_mm = 0.35;
+constexpr double kDense_mm = 0.1;  // between the points by which lines are followed
+constexpr double kCornerCosine = 0.9;
+constexpr double kFarthest_mm = 1e4;
+constexpr int kDeepest = 200;
+
+std::string trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r\n"), last = text.find_last_not_of(" \t\r\n");
+  return first == std::string_view::npos ? "" : std::string(text.substr(first, last - first + 1));
+}
+
+// Numbers of a list, apart by spaces and commas; none where something else stands between.
+std::optional<std::vector<double>> numbers(std::string_view text) {
+  std::vector<double> found;
+  const char *at = text.data(), *end = at + text.size();
+  for (;;) {
+    while (at != end && (std::isspace(static_cast<unsigned char>(*at)) || *at == ',')) ++at;
+    if (at == end) return found;
+    if (*at == '+') ++at;
+    double value = 0;
+    const auto [rest, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
+    found.push_back(value), at = rest;
+  }
+}
+
+std::string digits(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+class Drawing {
+ public:
+  explicit Drawing(const std::string& source) : source_(source) {}
+
+  renderer::Motif read(std::string_view text) {
+    pugi::xml_document document;
+    const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
+    const pugi::xml_node root = document.child("svg");
+    if (!parsed || !root)
+      fail("no drawing (" + (parsed ? "found no <svg> element" : std::string(parsed.description())) +
+           "); export the motif as plain SVG");
+    motif_.name = trimmed(root.child("title").text().get());
+    read_rules(root, 0);
+    walk(root, {}, Geom::Affine(Geom::Scale(unit_mm(root))), 0);
+    if (motif_.runs.empty()) fail("has no line to sew; give paths a stroke");
+    return motif_;
+  }
+
+ private:
+  using Style = std::map<std::string, std::string>;  // what is inherited
+
+  [[noreturn]] void fail(const std::string& what) const { throw std::runtime_error(source_ + ": " + what); }
+
+  [[noreturn]] void fail_at(const pugi::xml_node& node, const std::string& what) const {
+    const std::string id = node.attribute("id").value();
+    fail("<" + std::string(node.name()) + (id.empty() ? "" : " id=\"" + id.substr(0, 40) + "\"") + ">: " + what);
+  }
+
+  // Of a length with its unit, millimetres; percentages have none.
+  std::optional<double> length_mm(const std::string& text) const {
+    static const std::map<std::string, double> units{{"", kPixel_mm},  {"px", kPixel_mm}, {"mm", 1},
+                                                     {"cm", 10},       {"in", 25.4},      {"pt", 25.4 / 72},
+                                                     {"pc", 25.4 / 6}, {"Q", 0.25}};
+    const std::string length = trimmed(text);
+    double value = 0;
+    const auto [rest, error] = std::from_chars(length.data(), length.data() + length.size(), value);
+    const auto unit = units.find(std::string(rest, length.data() + length.size()));
+    if (error != std::errc() || unit == units.end() || !std::isfinite(value)) return std::nullopt;
+    return value * unit->second;
+  }
+
+  // Of one user unit of the whole drawing.
+  double unit_mm(const pugi::xml_node& root) const {
+    const auto box = numbers(root.attribute("viewBox").value());
+    if (!root.attribute("viewBox")) return kPixel_mm;
+    if (!box || box->size() != 4 || !((*box)[2] > 0) || !((*box)[3] > 0))
+      fail("found the viewBox \"" + std::string(root.attribute("viewBox").value()).substr(0, 60) +
+           "\", expected left, top, width and height");
+    std::optional<double> unit;
+    for (const auto& [name, size] : {std::pair("width", (*box)[2]), std::pair("height", (*box)[3])})
+      if (const auto length = length_mm(root.attribute(name).value()); length && *length > 0)
+        unit = std::min(unit.value_or(*length / size), *length / size);
+    return unit.value_or(kPixel_mm);
+  }
+
+  static void declare(std::string_view declarations, Style& style) {
+    while (!declarations.empty()) {
+      const std::size_t end = std::min(declarations.find(';'), declarations.size());
+      const std::string_view one = declarations.substr(0, end);
+      if (const auto colon = one.find(':'); colon != std::string_view::npos)
+        style[trimmed(one.substr(0, colon))] = trimmed(one.substr(colon + 1));
+      declarations.remove_prefix(std::min(end + 1, declarations.size()));
+    }
+  }
+
+  // ".a, .b { stroke: red }" of every <style>.
+  void read_rules(const pugi::xml_node& node, int depth) {
+    if (depth > kDeepest) fail("groups lie within more than 200 others; flatten the drawing");
+    for (const pugi::xml_node& child : node.children()) {
+      if (std::string_view(child.name()) != "style") {
+        read_rules(child, depth + 1);
+        continue;
+      }
+      std::string rules;
+      for (const pugi::xml_node& text : child.children()) rules += text.value();
+      for (std::size_t at = 0;;) {
+        const std::size_t open = rules.find('{', at), close = rules.find('}', open);
+        if (close == std::string::npos) break;
+        std::string_view selectors = std::string_view(rules).substr(at, open - at);
+        while (!selectors.empty()) {
+          const std::size_t end = std::min(selectors.find(','), selectors.size());
+          const std::string selector = trimmed(selectors.substr(0, end));
+          if (selector.starts_with('.'))
+            declare(std::string_view(rules).substr(open + 1, close - open - 1), rules_[selector.substr(1)]);
+          selectors.remove_prefix(std::min(end + 1, selectors.size()));
+        }
+        at = close + 1;
+      }
+    }
+  }
+
+  Style style_of(const pugi::xml_node& node, Style style) const {
+    style.erase("display");  // is not inherited, but a group that is not shown is not walked
+    for (const char* name : {"stroke", "stroke-width", "fill", "color", "display", "visibility"})
+      if (node.attribute(name)) style[name] = trimmed(node.attribute(name).value());
+    std::string_view classes = node.attribute("class").value();
+    for (std::size_t at = 0; at < classes.size();) {
+      const std::size_t end = std::min(classes.find_first_of(" \t\r\n", at), classes.size());
+      if (const auto rule = rules_.find(std::string(classes.substr(at, end - at))); rule != rules_.end())
+        for (const auto& [name, value] : rule->second) style[name] = value;
+      at = end + 1;
+    }
+    declare(node.attribute("style").value(), style);
+    return style;
+  }
+
+  Geom::Affine transform_of(const pugi::xml_node& node) const {
+    std::string_view text = node.attribute("transform").value();
+    Geom::Affine whole = Geom::identity();
+    const auto refuse = [&] {
+      fail_at(node, "found the transform \"" + std::string(node.attribute("transform").value()).substr(0, 60) +
+                        "\", expected matrix, translate, scale, rotate, skewX or skewY");
+    };
+    for (;;) {
+      const auto first = text.find_first_not_of(" \t\r\n,");
+      if (first == std::string_view::npos) return whole;
+      const std::size_t open = text.find('(', first), close = text.find(')', first);
+      if (open == std::string_view::npos || close == std::string_view::npos || close < open) refuse();
+      const std::string name = trimmed(text.substr(first, open - first));
+      const auto found = numbers(text.substr(open + 1, close - open - 1));
+      if (!found) refuse();
+      const std::vector<double>& v = *found;
+      const std::size_t n = v.size();
+      constexpr double kDegree = M_PI / 180;
+      Geom::Affine one = Geom::identity();
+      if (name == "matrix" && n == 6)
+        one = Geom::Affine(v[0], v[1], v[2], v[3], v[4], v[5]);
+      else if (name == "translate" && (n == 1 || n == 2))
+        one = Geom::Translate(v[0], n == 2 ? v[1] : 0);
+      else if (name == "scale" && (n == 1 || n == 2))
+        one = Geom::Affine(v[0], 0, 0, n == 2 ? v[1] : v[0], 0, 0);
+      else if (name == "rotate" && n == 1)
+        one = Geom::Rotate(v[0] * kDegree);
+      else if (name == "rotate" && n == 3)
+        one = Geom::Translate(-v[1], -v[2]) * Geom::Rotate(v[0] * kDegree) * Geom::Translate(v[1], v[2]);
+      else if (name == "skewX" && n == 1)
+        one = Geom::Affine(1, 0, std::tan(v[0] * kDegree), 1, 0, 0);
+      else if (name == "skewY" && n == 1)
+        one = Geom::Affine(1, std::tan(v[0] * kDegree), 0, 1, 0, 0);
+      else
+        refuse();
+      whole = one * whole;  // the last one written comes first
+      text.remove_prefix(close + 1);
+    }
+  }
+
+  std::optional<Colour> colour_of(const pugi::xml_node& node, const Style& style, const std::string& key) const {
+    const auto found = style.find(key);
+    std::string text = found == style.end() ? (key == "fill" ? "black" : "none") : found->second;
+    if (text == "currentColor") text = style.contains("color") ? style.at("color") : "black";
+    if (text == "none" || text == "transparent") return std::nullopt;
+    static const std::map<std::string, Colour> names{
+        {"black", {0, 0, 0}},       {"silver", {192, 192, 192}}, {"gray", {128, 128, 128}}, {"grey", {128, 128, 128}},
+        {"white", {255, 255, 255}}, {"maroon", {128, 0, 0}},     {"red", {255, 0, 0}},      {"purple", {128, 0, 128}},
+        {"fuchsia", {255, 0, 255}}, {"green", {0, 128, 0}},      {"lime", {0, 255, 0}},     {"olive", {128, 128, 0}},
+        {"yellow", {255, 255, 0}},  {"navy", {0, 0, 128}},       {"blue", {0, 0, 255}},     {"teal", {0, 128, 128}},
+        {"aqua", {0, 255, 255}},    {"orange", {255, 165, 0}}};
+    if (const auto name = names.find(text); name != names.end()) return name->second;
+    std::string hex = text.starts_with('#') ? text.substr(1) : "";
+    if (hex.size() == 3) hex = {hex[0], hex[0], hex[1], hex[1], hex[2], hex[2]};
+    unsigned int rgb = 0;
+    if (hex.size() == 6 && std::from_chars(hex.data(), hex.data() + 6, rgb, 16).ptr == hex.data() + 6)
+      return Colour{static_cast<unsigned char>(rgb >> 16), static_cast<unsigned char>(rgb >> 8 & 255),
+                    static_cast<unsigned char>(rgb & 255)};
+    if (text.starts_with("rgb(") && text.ends_with(')'))
+      if (const auto v = numbers(std::string_view(text).substr(4, text.size() - 5)); v && v->size() == 3) {
+        Colour colour{};
+        for (std::size_t c = 0; c < 3; ++c)
+          colour[c] = static_cast<unsigned char>(std::lround(std::clamp((*v)[c], 0.0, 255.0)));
+        return colour;
+      }
+    fail_at(node, "found the " + key + " \"" + text.substr(0, 40) +
+                      "\", which is no colour of one thread; write it like #c01830");
+  }
+
+  double number(const pugi::xml_node& node, const char* name) const {
+    const pugi::xml_attribute attribute = node.attribute(name);
+    if (!attribute) return 0;
+    const auto found = length_mm(attribute.value());
+    if (!found)
+      fail_at(node, "found " + std::string(name) + "=\"" + std::string(attribute.value()).substr(0, 40) +
+                        "\", expected a number");
+    return *found / kPixel_mm;
+  }
+
+  // The outline as path data; empty where the element has none.
+  std::string data_of(const pugi::xml_node& node) const {
+    const std::string kind = node.name();
+    const auto n = [&](const char* name) { return number(node, name); };
+    const auto at = [](double x, double y) { return digits(x) + "," + digits(y) + " "; };
+    if (kind == "path") return node.attribute("d").value();
+    if (kind == "line") return "M" + at(n("x1"), n("y1")) + "L" + at(n("x2"), n("y2"));
+    if (kind == "polyline" || kind == "polygon") {
+      const auto points = numbers(node.attribute("points").value());
+      if (!points || points->size() % 2 != 0) fail_at(node, "its points are not pairs of numbers");
+      std::string data;
+      for (std::size_t i = 0; i < points->size(); i += 2)
+        data += (i == 0 ? "M" : "L") + at((*points)[i], (*points)[i + 1]);
+      return data.empty() || kind == "polyline" ? data : data + "Z";
+    }
+    if (kind == "rect") {
+      const double x = n("x"), y = n("y"), w = n("width"), h = n("height");
+      if (!(w > 0) || !(h > 0)) return "";
+      double rx = n(node.attribute("rx") ? "rx" : "ry"), ry = n(node.attribute("ry") ? "ry" : "rx");
+      rx = std::clamp(rx, 0.0, w / 2), ry = std::clamp(ry, 0.0, h / 2);
+      if (rx == 0 || ry == 0) return "M" + at(x, y) + "h" + digits(w) + "v" + digits(h) + "h" + digits(-w) + "Z";
+      const std::string arc = "a" + at(rx, ry) + "0 0 1 ";
+      return "M" + at(x + rx, y) + "h" + digits(w - 2 * rx) + arc + at(rx, ry) + "v" + digits(h - 2 * ry) + arc +
+             at(-rx, ry) + "h" + digits(2 * rx - w) + arc + at(-rx, -ry) + "v" + digits(2 * ry - h) + arc +
+             at(rx, -ry) + "Z";
+    }
+    if (kind == "circle" || kind == "ellipse") {
+      const double rx = n(kind == "circle" ? "r" : "rx"), ry = n(kind == "circle" ? "r" : "ry");
+      if (!(rx > 0) || !(ry > 0)) return "";
+      const std::string arc = "a" + at(rx, ry) + "0 0 1 ";
+      return "M" + at(n("cx") - rx, n("cy")) + arc + at(2 * rx, 0) + arc + at(-2 * rx, 0) + "Z";
+    }
+    return "";
+  }
+
+  void walk(const pugi::xml_node& node, const Style& inherited, const Geom::Affine& outer, int depth) {
+    static const std::set<std::string> without_lines{"text", "image", "use", "foreignObject", "switch"};
+    static const std::set<std::string> groups{"svg", "g", "a"};
+    static const std::set<std::string> shapes{"path", "line", "polyline", "polygon", "rect", "circle", "ellipse"};
+    const std::string kind = node.name();
+    const Style style = style_of(node, inherited);
+    if (const auto shown = style.find("display"); shown != style.end() && shown->second == "none") return;
+    if (without_lines.contains(kind)) fail_at(node, "has no lines of its own; convert it to paths");
+    if (groups.contains(kind)) {
+      const Geom::Affine mm = transform_of(node) * outer;
+      for (const pugi::xml_node& child : node.children()) walk(child, style, mm, depth + 1);
+    } else if (shapes.contains(kind)) {
+      const auto visible = style.find("visibility");
+      if (visible == style.end() || visible->second == "visible") sew(node, style, transform_of(node) * outer);
+    }
+  }
+
+  void sew(const pugi::xml_node& node, const Style& style, const Geom::Affine& mm) {
+    const std::optional<Colour> stroke = colour_of(node, style, "stroke");
+    const std::optional<Colour> colour = stroke ? stroke : colour_of(node, style, "fill");
+    if (!colour) return;
+    double width_mm = 0;
+    if (stroke) {
+      const auto given = style.find("stroke-width");
+      const auto width = given == style.end() ? std::optional(kPixel_mm) : length_mm(given->second);
+      if (!width || !(*width >= 0))
+        fail_at(node, "found the stroke-width \"" + given->second + "\", expected a length");
+      width_mm = *width / kPixel_mm * std::sqrt(std::abs(mm.det()));
+    }
+    const std::string data = data_of(node);
+    Geom::PathVector paths;
+    try {
+      paths = Geom::parse_svg_path(data.c_str()) * mm;
+    } catch (const std::exception&) {  // those of lib2geom have no other base in common
+      fail_at(node, "its path data cannot be read; export the drawing again");
+    }
+    for (const Geom::Path& path : paths) {
+      const std::vector<Vector2d> line = followed(node, path);
+      if (line.size() < 2) continue;
+      if (motif_.threads.empty() || motif_.threads.back().srgb != colour) motif_.threads.push_back({.srgb = colour});
+      std::vector<Vector2d> points = width_mm < kSatinFrom_mm ? running(line) : satin(line, width_mm);
+      stitches_ += points.size();
+      if (stitches_ > static_cast<std::size_t>(renderer::kMostStitches))
+        fail("would have more than a million stitches; make it smaller, or its lines fewer");
+      motif_.runs.push_back(
+          {.thread = static_cast<int>(motif_.threads.size()) - 1, .needle_points = std::move(points)});
+    }
+  }
+
+  // Points of the path close by each other, y up.
+  std::vector<Vector2d> followed(const pugi::xml_node& node, const Geom::Path& path) {
+    constexpr std::size_t kMostPoints = 20'000'000;
+    std::vector<Vector2d> line;
+    const auto add = [&](const Geom::Point& p) {
+      if (!(std::abs(p.x()) < kFarthest_mm && std::abs(p.y()) < kFarthest_mm))
+        fail_at(node, "lies more than 10 m from the origin; check the drawing's size");
+      line.emplace_back(p.x(), -p.y());
+    };
+    add(path.initialPoint());
+    for (std::size_t i = 0; i < path.size_default(); ++i) {
+      const Geom::Curve& curve = path[i];
+      double length_mm = 0;  // of a polygon, which no curve exceeds by much
+      Geom::Point before = curve.initialPoint();
+      for (int k = 1; k <= 16; ++k) {
+        const Geom::Point next = curve.pointAt(k / 16.0);
+        length_mm += Geom::distance(before, next), before = next;
+      }
+      const double wanted = std::ceil(length_mm / kDense_mm);
+      if (!(wanted < 1e6)) fail_at(node, "has a line of more than 100 m; check the drawing's size");
+      const int parts = std::max(1, static_cast<int>(wanted));
+      if ((followed_ += static_cast<std::size_t>(parts)) > kMostPoints)
+        fail("has more than 2 km of lines; make it smaller, or its lines fewer");
+      if (length_mm > 0)
+        for (int k = 1; k <= parts; ++k) add(curve.pointAt(static_cast<double>(k) / parts));
+    }
+    line.erase(std::unique(line.begin(), line.end()), line.end());
+    return line;
+  }
+
+  static bool corner(const std::vector<Vector2d>& line, std::size_t i) {
+    if (i == 0 || i + 1 >= line.size()) return false;
+    return (line[i] - line[i - 1]).normalized().dot((line[i + 1] - line[i]).normalized()) < kCornerCosine;
+  }
+
+  // Of point k from the straight stitch a - b.
+  static double sag(const Vector2d& a, const Vector2d& b, const Vector2d& k) {
+    const Vector2d along = b - a;
+    const double length = along.norm();
+    return length > 0 ? std::abs(along.x() * (k - a).y() - along.y() * (k - a).x()) / length : (k - a).norm();
+  }
+
+  // Stitches of a like length from corner to corner.
+  static std::vector<Vector2d> running(const std::vector<Vector2d>& line) {
+    std::vector<Vector2d> points{line.front()};
+    for (std::size_t from = 0; from + 1 < line.size();) {
+      std::size_t end = from + 1;
+      double length = (line[end] - line[from]).norm();
+      for (; end + 1 < line.size() && !corner(line, end); ++end) length += (line[end + 1] - line[end]).norm();
+      const double most = length / std::ceil(length / kLongestStitch_mm) + kDense_mm;
+      while (from < end) {
+        std::size_t to = from + 1;
+        for (bool fits = true; fits && to < end;) {
+          fits = (line[to + 1] - line[from]).norm() <= most;
+          for (std::size_t k = from + 1; fits && k <= to; ++k)
+            fits = sag(line[from], line[to + 1], line[k]) <= kMostSag_mm;
+          if (fits) ++to;
+        }
+        points.push_back(line[from = to]);
+      }
+    }
+    return points;
+  }
+
+  static std::vector<Vector2d> satin(const std::vector<Vector2d>& line, double width_mm) {
+    std::vector<Vector2d> points;
+    double gone = 0, next = 0;
+    double side = 1;
+    const auto put = [&](const Vector2d& at, const Vector2d& along) {
+      points.emplace_back(at + side * width_mm / 2 * Vector2d(-along.y(), along.x()));
+      side = -side;
+    };
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+      const Vector2d step = line[i + 1] - line[i];
+      const double length = step.norm();
+      for (; next <= gone + length; next += kSatinPitch_mm / 2)
+        put(line[i] + step * ((next - gone) / length), step / length);
+      gone += length;
+    }
+    if (points.size() < 2) put(line.back(), (line.back() - line[line.size() - 2]).normalized());
+    return points;
+  }
+
+  std::string source_;
+  renderer::Motif motif_;
+  std::map<std::string, Style> rules_;
+  std::size_t stitches_ = 0, followed_ = 0;
+};
+
+}  // namespace
+
+renderer::Motif parse_svg(std::string_view text, const std::string& source) {
+  return Drawing(source).read(text);
+}
+
+}  // namespace station

@@ -1,0 +1,250 @@
+#include "station/serve/job.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <deque>
+#include <fstream>
+#include <iterator>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+
+extern char** environ;
+
+namespace station {
+namespace {
+
+constexpr std::size_t kMostLines = 200, kMostText = 4000;
+constexpr auto kBetweenSignals = std::chrono::milliseconds(20), kBetweenLooks = std::chrono::milliseconds(100);
+constexpr std::string_view kQuestion = "or q and Enter to end: ";  // how every question to a person ends
+
+std::filesystem::path with_ending(std::filesystem::path file, const char* ending) {
+  return file += ending;
+}
+
+// A file that grows, as far as it has been read.
+class Growing {
+ public:
+  explicit Growing(std::filesystem::path file) : file_(std::move(file)) {}
+
+  std::string more() {
+    std::ifstream stream(file_, std::ios::binary);
+    stream.seekg(read_);
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    read_ += static_cast<std::streamoff>(text.size());
+    return text;
+  }
+
+ private:
+  std::filesystem::path file_;
+  std::streamoff read_ = 0;
+};
+
+}  // namespace
+
+class Job::Process {
+ public:
+  Process(const JobRequest& request, std::function<void()> changed)
+      : title_(request.title),
+        changed_(std::move(changed)),
+        output_(with_ending(request.said, ".out")),
+        progress_(with_ending(request.said, ".progress")) {
+    start(request);
+    follower_ = std::jthread([this](const std::stop_token& stop) { follow(stop); });
+  }
+
+  ~Process() {
+    follower_.request_stop();
+    if (follower_.joinable()) follower_.join();
+    close(input_);
+  }
+
+  bool running() const {
+    const std::scoped_lock lock(mutex_);
+    return !status_;
+  }
+
+  nlohmann::json state() const {
+    const std::scoped_lock lock(mutex_);
+    nlohmann::json state{{"title", title_},         {"running", !status_}, {"status", nullptr},
+                         {"done", done_},           {"total", total_},     {"label", label_},
+                         {"seconds_left", nullptr}, {"question", nullptr}, {"lines", lines_}};
+    if (status_) state["status"] = *status_;
+    if (seconds_left_ >= 0) state["seconds_left"] = seconds_left_;
+    if (question_) state["question"] = *question_;
+    return state;
+  }
+
+  void answer(bool done) {
+    const std::string line = done ? "\n" : "q\n";
+    const std::scoped_lock lock(mutex_);
+    if (!question_ || gone_) return;
+    question_.reset();
+    // Shorter than a pipe holds; a process that has gone is seen by the follower.
+    [[maybe_unused]] const ssize_t written = write(input_, line.data(), line.size());
+  }
+
+  void signal(int times) {
+    const std::scoped_lock lock(mutex_);
+    for (int i = 0; i < times && !gone_; ++i) {
+      if (i > 0) std::this_thread::sleep_for(kBetweenSignals);
+      kill(process_, SIGINT);
+    }
+  }
+
+ private:
+  void start(const JobRequest& request) {
+    std::vector<std::string> words = request.arguments;
+    words.insert(words.begin(), "threadstation");
+    words.emplace_back("--json");
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0)
+      throw std::runtime_error("cannot start " + request.title + ": " + std::strerror(errno));
+    const std::filesystem::path out = with_ending(request.said, ".out"),
+                                progress = with_ending(request.said, ".progress");
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, progress.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // ctrl-C in the server's terminal is not the run's
+    const int failed =
+        posix_spawn(&process_, request.program.c_str(), &actions, &attributes, arguments.data(), environ);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&actions);
+    close(ends[0]);
+    input_ = ends[1];
+    if (failed == 0) return;
+    close(input_);
+    throw std::runtime_error("cannot start " + request.title + ": " + std::strerror(failed));
+  }
+
+  void follow(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      int status = 0;
+      const bool ended = reaped(status);  // before the last look
+      if (look() | ended) {
+        if (ended) {
+          const std::scoped_lock lock(mutex_);
+          status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+          question_.reset();
+        }
+        changed_();
+      }
+      if (ended) return;
+      std::this_thread::sleep_for(kBetweenLooks);
+    }
+  }
+
+  bool reaped(int& status) {
+    const std::scoped_lock lock(mutex_);
+    gone_ = waitpid(process_, &status, WNOHANG) == process_;
+    return gone_;
+  }
+
+  // True when there was something new.
+  bool look() {
+    const std::string said = output_.more(), progress = progress_.more();
+    const std::scoped_lock lock(mutex_);
+    read_output(said);
+    read_progress(progress);
+    return !said.empty() || !progress.empty();
+  }
+
+  void add_line(const std::string& line) {
+    if (line.empty()) return;
+    lines_.push_back(line.substr(0, kMostText));
+    if (lines_.size() > kMostLines) lines_.erase(lines_.begin());
+  }
+
+  void read_output(const std::string& text) {
+    open_line_ += text;
+    for (std::size_t end = 0; (end = open_line_.find('\n')) != std::string::npos; open_line_.erase(0, end + 1)) {
+      const std::string line = open_line_.substr(0, end);
+      add_line(line);
+      if (!line.empty()) unasked_.push_back(line.substr(0, kMostText));
+      if (unasked_.size() > kMostLines) unasked_.erase(unasked_.begin());
+    }
+    if (open_line_.size() > kMostText) open_line_.erase(0, open_line_.size() - kMostText);
+    if (!open_line_.ends_with(kQuestion)) return;
+    question_ = std::move(unasked_);
+    unasked_.clear();
+    open_line_.clear();
+  }
+
+  void read_progress(const std::string& text) {
+    open_progress_ += text;
+    for (std::size_t end = 0; (end = open_progress_.find('\n')) != std::string::npos;
+         open_progress_.erase(0, end + 1)) {
+      const std::string line = open_progress_.substr(0, end);
+      const nlohmann::json said = nlohmann::json::parse(line, nullptr, false);
+      if (!said.is_object()) {
+        add_line(line);
+        continue;
+      }
+      if (said.contains("note") && said["note"].is_string()) add_line(said["note"].get<std::string>());
+      if (!said.contains("done") || !said.contains("total")) continue;
+      done_ = said.value("done", 0), total_ = said.value("total", 0);
+      label_ = said.value("label", "");
+      seconds_left_ = said.value("seconds_left", -1.0);
+    }
+    if (open_progress_.size() > kMostText) open_progress_.clear();
+  }
+
+  const std::string title_;
+  const std::function<void()> changed_;
+  pid_t process_ = -1;
+  int input_ = -1;
+  Growing output_, progress_;  // the follower's
+
+  mutable std::mutex mutex_;
+  std::optional<int> status_;
+  bool gone_ = false;  // its number may be another process's by now
+  int done_ = 0, total_ = 0;
+  double seconds_left_ = -1;
+  std::string label_, open_line_, open_progress_;
+  std::vector<std::string> lines_, unasked_;
+  std::optional<std::vector<std::string>> question_;
+  std::jthread follower_;
+};
+
+Job::Job(const JobRequest& request, std::function<void()> changed)
+    : process_(std::make_unique<Process>(request, std::move(changed))) {}
+Job::~Job() = default;
+
+bool Job::running() const {
+  return process_->running();
+}
+
+nlohmann::json Job::state() const {
+  return process_->state();
+}
+
+void Job::answer(bool done) {
+  process_->answer(done);
+}
+
+void Job::pause() {
+  process_->signal(1);
+}
+
+void Job::stop_now() {
+  process_->signal(2);
+}
+
+}  // namespace station
