@@ -25,12 +25,17 @@ using nlohmann::json;
 
 constexpr std::size_t kLongestClient = 64, kLongestText = 200;
 
+// What a command said, or a client asked for, may be any bytes.
+std::string written(const json& document) {
+  return document.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
 HttpResponse said(int status, const std::string& line) {
-  return {.status = status, .content_type = "application/json", .body = json{{"message", line}}.dump() + "\n"};
+  return {.status = status, .content_type = "application/json", .body = written({{"message", line}})};
 }
 
 HttpResponse answered(const json& document) {
-  return {.content_type = "application/json", .body = document.dump() + "\n"};
+  return {.content_type = "application/json", .body = written(document)};
 }
 
 std::string text_of(const json& asked, const char* key) {

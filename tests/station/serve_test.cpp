@@ -349,6 +349,7 @@ TEST_F(TechnicianPage, ThePageAndItsPartsAreThere) {
     EXPECT_GT(answer.body.size(), 500U) << path;
   }
   EXPECT_EQ(page_->handle({.method = "GET", .path = "/../rig.json"}).status, 404);
+  EXPECT_EQ(page_->handle({.method = "GET", .path = "/\xff\xfe"}).status, 404);
   // Every text that the page asks for is in the one file.
   const json texts = json::parse(page_->handle({.method = "GET", .path = "/texts.json"}).body);
   const std::string page = page_->handle({.method = "GET", .path = "/"}).body;
