@@ -9,7 +9,7 @@ namespace station {
 namespace {
 
 struct Arguments {
-  std::string library = "library", words, what, out;
+  std::string folder = "library", words, what, out;
   int number = 0;
   bool json = false;
 };
@@ -44,7 +44,7 @@ void print_all(const LibraryThread& thread) {
 }
 
 void list(const Arguments& arguments) {
-  const auto threads = Library(arguments.library, false).list(arguments.words);
+  const auto threads = Library(arguments.folder, false).list(arguments.words);
   if (arguments.json) {
     nlohmann::json all = nlohmann::json::array();
     for (const LibraryThread& thread : threads) all.push_back(to_json(thread));
@@ -63,7 +63,7 @@ void add_library_command(CLI::App& app) {
   command->require_subcommand(1);
   const auto add = [&](const char* name, const char* description) {
     CLI::App* sub = command->add_subcommand(name, description);
-    sub->add_option("--library", arguments->library, "the library's folder")->capture_default_str();
+    sub->add_option("--library", arguments->folder, "the library's folder")->capture_default_str();
     return sub;
   };
   CLI::App* listed = add("list", "one line for each thread");
@@ -74,7 +74,7 @@ void add_library_command(CLI::App& app) {
   shown->add_option("number", arguments->number, "of the thread in the list")->required();
   shown->add_flag("--json", arguments->json, "as JSON, for machines");
   shown->callback([arguments] {
-    const LibraryThread thread = Library(arguments->library, false).show(arguments->number);
+    const LibraryThread thread = Library(arguments->folder, false).show(arguments->number);
     if (arguments->json)
       std::cout << to_json(thread).dump() << "\n";
     else
@@ -84,13 +84,13 @@ void add_library_command(CLI::App& app) {
   added->add_option("what", arguments->what, "session folder or thread file")->required();
   added->callback([arguments] {
     rig::SystemClock clock;
-    print_line(Library(arguments->library, true).add(arguments->what, clock.utc()));
+    print_line(Library(arguments->folder, true).add(arguments->what, clock.utc()));
   });
   CLI::App* exported = add("export", "one thread with its sample and hashes, in a folder of its own");
   exported->add_option("number", arguments->number, "of the thread in the list")->required();
   exported->add_option("--out", arguments->out, "new folder")->required();
   exported->callback([arguments] {
-    Library(arguments->library, false).export_thread(arguments->number, arguments->out);
+    Library(arguments->folder, false).export_thread(arguments->number, arguments->out);
     std::cout << "exported: " << arguments->out << "\n";
   });
 }

@@ -67,7 +67,7 @@ class Drawing {
            "); export the motif as plain SVG");
     motif_.name = trimmed(root.child("title").text().get());
     read_rules(root, 0);
-    walk(root, {}, Geom::Affine(Geom::Scale(unit_mm(root))), 0);
+    walk(root, {}, Geom::Affine(Geom::Scale(unit_mm(root))));
     if (motif_.runs.empty()) fail("has no line to sew; give paths a stroke");
     return motif_;
   }
@@ -274,7 +274,8 @@ class Drawing {
     return "";
   }
 
-  void walk(const pugi::xml_node& node, const Style& inherited, const Geom::Affine& outer, int depth) {
+  // As deep as read_rules has let it be.
+  void walk(const pugi::xml_node& node, const Style& inherited, const Geom::Affine& outer) {
     static const std::set<std::string> without_lines{"text", "image", "use", "foreignObject", "switch"};
     static const std::set<std::string> groups{"svg", "g", "a"};
     static const std::set<std::string> shapes{"path", "line", "polyline", "polygon", "rect", "circle", "ellipse"};
@@ -284,7 +285,7 @@ class Drawing {
     if (without_lines.contains(kind)) fail_at(node, "has no lines of its own; convert it to paths");
     if (groups.contains(kind)) {
       const Geom::Affine mm = transform_of(node) * outer;
-      for (const pugi::xml_node& child : node.children()) walk(child, style, mm, depth + 1);
+      for (const pugi::xml_node& child : node.children()) walk(child, style, mm);
     } else if (shapes.contains(kind)) {
       const auto visible = style.find("visibility");
       if (visible == style.end() || visible->second == "visible") sew(node, style, transform_of(node) * outer);

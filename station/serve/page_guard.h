@@ -8,6 +8,7 @@
 // No answer ever allows another origin to read it.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>

@@ -57,26 +57,6 @@ std::vector<std::string> names_in(const fs::path& folder, bool folders) {
   return names;
 }
 
-RunState state_of_session(const fs::path& folder) {
-  return state_of(read_journal(folder / "journal.jsonl").records, folder_in_use(folder));
-}
-
-json session_line(const fs::path& folder) {
-  json line{{"name", folder.filename().string()}, {"state", "unreadable"}};
-  try {
-    const SessionFile session = read_session_file(folder);
-    line["state"] = state_name(state_of_session(folder));
-    line["spool"] = session.sample ? session.sample->name : session.spool.name;
-    line["utc"] = session.utc;
-    line["developed"] = fs::exists(folder / "linear");
-    line["inverted"] = fs::exists(folder / "result" / "thread.json");
-    line["report"] = fs::exists(folder / "report.html");
-  } catch (const std::exception& error) {
-    line["problem"] = error.what();
-  }
-  return line;
-}
-
 json library_lines(const fs::path& folder) {
   json lines = json::array();
   if (!fs::exists(folder / "index.sqlite")) return lines;
@@ -107,6 +87,37 @@ TechnicianPage::TechnicianPage(fs::path rig, fs::path workspace, std::function<v
       throw std::runtime_error("cannot make " + (workspace_ / part).string() + ": " + error.message() +
                                "; choose another --workspace");
   }
+}
+
+// A lab has hundreds of sessions, and the page asks after every change: journals are read again only when they have grown.
+json TechnicianPage::session_line(const fs::path& folder) {
+  const std::string name = folder.filename().string();
+  const fs::path journal = folder / "journal.jsonl";
+  std::error_code error;
+  ReadSession now{.journal_bytes = fs::file_size(journal, error),
+                  .journal_time = fs::last_write_time(journal, error),
+                  .in_use = folder_in_use(folder)};
+  const std::scoped_lock lock(sessions_mutex_);
+  ReadSession& known = sessions_[name];
+  const bool same = !known.line.is_null() && known.journal_bytes == now.journal_bytes &&
+                    known.journal_time == now.journal_time && known.in_use == now.in_use;
+  if (!same) {
+    now.line = {{"name", name}, {"state", "unreadable"}};
+    try {
+      const SessionFile session = read_session_file(folder);
+      now.line["state"] = state_name(state_of(read_journal(journal).records, now.in_use));
+      now.line["spool"] = session.sample ? session.sample->name : session.spool.name;
+      now.line["utc"] = session.utc;
+    } catch (const std::exception& problem) {
+      now.line["problem"] = problem.what();
+    }
+    known = std::move(now);
+  }
+  json line = known.line;
+  line["developed"] = fs::exists(folder / "linear", error);
+  line["inverted"] = fs::exists(folder / "result" / "thread.json", error);
+  line["report"] = fs::exists(folder / "report.html", error);
+  return line;
 }
 
 std::shared_ptr<Job> TechnicianPage::job() const {
@@ -191,7 +202,7 @@ HttpResponse TechnicianPage::state() {
   return answered(document);
 }
 
-HttpResponse TechnicianPage::session(const std::string& name) const {
+HttpResponse TechnicianPage::session(const std::string& name) {
   if (const auto problem = problem_with_name(name)) return said(400, *problem);
   const fs::path folder = workspace_ / "sessions" / name;
   if (!is_session(folder)) return said(404, "there is no session " + name);

@@ -17,8 +17,10 @@
 //   POST /api/stop                                 emergency stop: any browser's, at once
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -43,10 +45,11 @@ class TechnicianPage {
 
  private:
   HttpResponse state();
-  HttpResponse session(const std::string& name) const;
+  HttpResponse session(const std::string& name);
   HttpResponse report(const std::string& name) const;
   HttpResponse take_control(const nlohmann::json& asked);
   HttpResponse start(const nlohmann::json& asked);
+  nlohmann::json session_line(const std::filesystem::path& folder);
   bool in_control(const nlohmann::json& asked) const;
   std::shared_ptr<Job> job() const;
 
@@ -56,6 +59,16 @@ class TechnicianPage {
   mutable std::mutex mutex_;
   std::shared_ptr<Job> job_;
   std::string controller_;  // client in control; empty: nobody yet
+
+  // What was read of a session, good while its journal is as long and as old, and is held by a process or is not.
+  struct ReadSession {
+    std::uintmax_t journal_bytes = 0;
+    std::filesystem::file_time_type journal_time{};
+    bool in_use = false;
+    nlohmann::json line;
+  };
+  std::mutex sessions_mutex_;
+  std::map<std::string, ReadSession> sessions_;
 };
 
 }  // namespace station

@@ -342,6 +342,21 @@ TEST_F(TechnicianPage, TheEmergencyStopIsAnybodysAndEndsTheRun) {
   EXPECT_NE(job().at("status"), 0);
 }
 
+TEST_F(TechnicianPage, ASessionIsShownAsItsJournalHasItNow) {
+  const std::filesystem::path folder = folder_ / "bench/sessions/silk_red";
+  std::filesystem::copy(std::string(FIXTURES_DIR) + "/sessions/silk_red", folder,
+                        std::filesystem::copy_options::recursive);
+  const json shown = get("/api/session", "silk_red");
+  EXPECT_EQ(shown.at("state"), "complete");
+  ASSERT_EQ(shown.at("views").size(), 17U);
+  for (const json& view : shown["views"]) EXPECT_EQ(view.at("grade"), "good") << view;
+  std::ifstream stream(folder / "journal.jsonl");
+  std::string journal{std::istreambuf_iterator<char>(stream), {}};
+  journal.resize(journal.rfind('\n', journal.size() - 2) + 1);  // without its stop
+  std::ofstream(folder / "journal.jsonl") << journal;
+  EXPECT_EQ(get("/api/state").at("sessions")[0].at("state"), "interrupted");
+}
+
 TEST_F(TechnicianPage, ThePageAndItsPartsAreThere) {
   for (const char* path : {"/", "/app.js", "/style.css", "/texts.json"}) {
     const HttpResponse answer = page_->handle({.method = "GET", .path = path});

@@ -105,7 +105,8 @@ function render() {
   fill($("capture-form").calibration, state.calibrations);
   fill($("session-choice"), state.sessions.map(line => line.name));
   session = $("session-choice").value;
-  $("threads").replaceChildren(...state.library.map(thread => {
+  const {library: threads} = state;
+  $('threads').replaceChildren(...threads.map(thread => {
     const row = document.createElement("tr");
     for (const value of [thread.number, thread.name, thread.diameter_mm,
                          thread.relative_rmse === null ? "" : (100 * thread.relative_rmse).toFixed(1) + " %", thread.added_utc])
