@@ -33,6 +33,10 @@ double scaled(double sigma_a) {
   return std::log1p(20 * sigma_a);
 }
 
+double scaled_slope(double sigma_a) {
+  return 20 / (1 + 20 * sigma_a);
+}
+
 double unscaled(double value) {
   return std::expm1(value) / 20;
 }
@@ -48,13 +52,23 @@ AbsorptionCurve::AbsorptionCurve(std::vector<double> sigma_a, std::vector<double
   reflectance_ = made_to_fall(reflectance);
 }
 
+std::size_t AbsorptionCurve::end_of_step(double sigma_a) const {
+  const auto above = std::upper_bound(sigma_a_.begin() + 1, sigma_a_.end() - 1, sigma_a);
+  return static_cast<std::size_t>(above - sigma_a_.begin());
+}
+
 double AbsorptionCurve::reflectance(double sigma_a) const {
-  if (sigma_a <= 0) return reflectance_.front();
-  if (sigma_a >= sigma_a_.back()) return reflectance_.back();
-  const auto above = std::ranges::upper_bound(sigma_a_, sigma_a);
-  const auto i = static_cast<std::size_t>(above - sigma_a_.begin());
-  const double share = (scaled(sigma_a) - scaled(sigma_a_[i - 1])) / (scaled(sigma_a_[i]) - scaled(sigma_a_[i - 1]));
+  const double within = std::clamp(sigma_a, 0.0, sigma_a_.back());
+  const std::size_t i = end_of_step(within);
+  const double share = (scaled(within) - scaled(sigma_a_[i - 1])) / (scaled(sigma_a_[i]) - scaled(sigma_a_[i - 1]));
   return reflectance_[i - 1] + share * (reflectance_[i] - reflectance_[i - 1]);
+}
+
+double AbsorptionCurve::slope(double sigma_a) const {
+  const double within = std::clamp(sigma_a, 0.0, sigma_a_.back());
+  const std::size_t i = end_of_step(within);
+  return (reflectance_[i] - reflectance_[i - 1]) / (scaled(sigma_a_[i]) - scaled(sigma_a_[i - 1])) *
+         scaled_slope(within);
 }
 
 double AbsorptionCurve::sigma_a(double reflectance) const {
@@ -70,13 +84,18 @@ bool AbsorptionCurve::in_gamut(double reflectance) const {
   return reflectance >= darkest() && reflectance <= brightest();
 }
 
+std::vector<double> absorption_steps(int count, double most) {
+  std::vector<double> steps{0};
+  for (int i = 1; i < count; ++i) steps.push_back(unscaled(scaled(most) * i / (count - 1)));
+  return steps;
+}
+
 std::array<AbsorptionCurve, 3> measure_absorption_curves(const std::function<Eigen::Array3d(double)>& reflectance_of,
                                                          int count, double most) {
-  std::vector<double> sigma_a;
+  const std::vector<double> sigma_a = absorption_steps(count, most);
   std::array<std::vector<double>, 3> reflectances;
-  for (int i = 0; i < count; ++i) {
-    sigma_a.push_back(i == 0 ? 0 : unscaled(scaled(most) * i / (count - 1)));
-    const Eigen::Array3d found = reflectance_of(sigma_a.back());
+  for (const double step : sigma_a) {
+    const Eigen::Array3d found = reflectance_of(step);
     for (std::size_t c = 0; c < 3; ++c) reflectances[c].push_back(found[static_cast<int>(c)]);
   }
   return {AbsorptionCurve(sigma_a, reflectances[0]), AbsorptionCurve(sigma_a, reflectances[1]),

@@ -18,6 +18,7 @@ class AbsorptionCurve {
   AbsorptionCurve(std::vector<double> sigma_a, std::vector<double> reflectance);
 
   double reflectance(double sigma_a) const;
+  double slope(double sigma_a) const;  // of the reflectance; at 0 and at the end that of the side within
   // The absorption that has it; for reflectances outside of the gamut that of its nearest end.
   double sigma_a(double reflectance) const;
   bool in_gamut(double reflectance) const;
@@ -25,11 +26,15 @@ class AbsorptionCurve {
   double brightest() const { return reflectance_.front(); }
 
  private:
+  std::size_t end_of_step(double sigma_a) const;
+
   std::vector<double> sigma_a_, reflectance_;
 };
 
-// One for each channel (what lies below may be coloured), from `count` absorptions, 0 to `most`, evenly in
-// log(1 + 20 sigma_a). `reflectance_of` returns the channels' reflectances when all three have one absorption.
+// `count` absorptions from 0 to `most`, evenly in log(1 + 20 sigma_a).
+std::vector<double> absorption_steps(int count, double most);
+
+// One for each channel (what lies below may be coloured), from absorption_steps(). `reflectance_of` returns the channels' reflectances when all three have one absorption.
 std::array<AbsorptionCurve, 3> measure_absorption_curves(const std::function<Eigen::Array3d(double)>& reflectance_of,
                                                          int count = 14, double most = 12);
 

@@ -36,6 +36,17 @@ std::vector<ColumnYarns> yarns_of(const Cloth& cloth) {
   return yarns;
 }
 
+std::optional<AbsorptionTexture> checked_absorption(const Cloth& cloth) {
+  if (!cloth.absorption) return std::nullopt;
+  if (cloth.absorption->sigma_a.empty() || !(cloth.absorption->texel_mm.minCoeff() > 0))
+    throw std::runtime_error("cloth: its absorption texture has no texels, or texels without size; give one or more");
+  for (const ScatteringModel& thread : cloth.threads)
+    if (!std::holds_alternative<ThreadParameters>(thread))
+      throw std::runtime_error(
+          "cloth: it has an absorption texture, which is for the thread model alone; use threads of that model");
+  return cloth.absorption;
+}
+
 // The part of a query's ray inside a cell, in the endless patch.
 struct PatchRay {
   Vector3d origin, direction;
@@ -65,7 +76,8 @@ ClothGeometry::ClothGeometry(const Cloth& cloth, std::uint32_t first_curve_set)
       first_curve_set_(first_curve_set),
       yarns_(yarns_of(cloth)),
       grid_(yarns_, {cloth.patch.period_x_mm, cloth.patch.period_y_mm}),
-      places_(cloth.patch, 0) {}
+      places_(cloth.patch, 0),
+      absorption_(checked_absorption(cloth)) {}
 
 void ClothGeometry::attach_to(RTCDevice device, RTCScene scene) const {
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
@@ -129,6 +141,10 @@ CurvePoint ClothGeometry::point_at(const ClothHit& hit) const {
   point.position = world.cast<float>();
   point.tangent = frame * point.tangent;
   point.normal = frame * point.normal;
+  if (absorption_) {
+    const Eigen::Vector2i texel = absorption_->texel_at(patch.head<2>());
+    point.absorption = &absorption_->sigma_a(texel.y(), texel.x());
+  }
   return point;
 }
 

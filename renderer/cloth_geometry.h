@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "renderer/cloth_shell.h"
@@ -27,7 +28,7 @@ struct ClothHit {
 class ClothGeometry {
  public:
   // Its hits carry curve set `first_curve_set` + thread. Errors: those of make_shell; a yarn of a thread that is not
-  // among the cloth's threads.
+  // among the cloth's threads; an absorption texture without texels, or for threads of another scattering model.
   ClothGeometry(const Cloth& cloth, std::uint32_t first_curve_set);
   ClothGeometry(const ClothGeometry&) = delete;
   ClothGeometry& operator=(const ClothGeometry&) = delete;
@@ -51,6 +52,7 @@ class ClothGeometry {
   std::vector<ColumnYarns> yarns_;  // of one thread and section
   YarnGrid grid_;
   YarnPlaces places_;
+  std::optional<AbsorptionTexture> absorption_;
 };
 
 }  // namespace renderer

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 namespace renderer {
@@ -154,6 +155,36 @@ float srgb_encoded(float linear) {
   return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
 }
 
+float srgb_decoded(float encoded) {
+  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+}
+
+// By its first bytes, as OpenImageIO names it: none of its other readers is let near the file.
+std::string picture_format(const fs::path& file) {
+  const std::string asked = "reading picture " + file.string();
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) fail(asked, "there is no such file", "check the name");
+  std::array<char, 4> begin{};
+  std::ifstream(file, std::ios::binary).read(begin.data(), begin.size());
+  const std::string_view bytes(begin.data(), begin.size());
+  if (bytes == "\x89PNG") return "png";
+  if (bytes.substr(0, 3) == "\xff\xd8\xff") return "jpeg";
+  if (bytes == "\x76\x2f\x31\x01") return "openexr";
+  fail(asked, "it is none of PNG, JPEG and EXR", "give one of these");
+}
+
+// One pixel of `channels` values (grey or colour, with or without alpha, which comes last) as linear sRGB over white.
+cv::Vec3f linear_srgb_of(const float* pixel, int channels, bool encoded) {
+  const bool grey = channels <= 2, transparent = channels == 2 || channels == 4;
+  const float alpha = transparent ? std::clamp(pixel[channels - 1], 0.0f, 1.0f) : 1.0f;
+  cv::Vec3f linear;
+  for (int c = 0; c < 3; ++c) {
+    const float value = pixel[grey ? 0 : c];
+    linear[c] = alpha * (encoded ? srgb_decoded(value) : value) + (1 - alpha);
+  }
+  return linear;
+}
+
 }  // namespace
 
 void write_exr(const fs::path& file, const cv::Mat3f& linear, const ImageHeader& header) {
@@ -224,6 +255,36 @@ cv::Mat3f read_exr(const fs::path& file, ImageHeader* header) {
     }
   }
   return image;
+}
+
+cv::Mat3f read_linear_srgb(const fs::path& file) {
+  const std::string asked = "reading picture " + file.string();
+  const std::string format = picture_format(file);
+  if (format == "png") check_png_is_complete(file);
+  OIIO::ImageSpec as_stored;
+  as_stored.attribute("oiio:UnassociatedAlpha", 1);
+  const auto input = OIIO::ImageInput::create(format);
+  OIIO::ImageSpec found;
+  if (!input || !input->open(file.string(), found, as_stored))
+    fail(asked, input ? input->geterror() : OIIO::geterror(), "it is damaged or cut short: make it again");
+  const OIIO::ImageSpec& spec = input->spec();
+  if (spec.nchannels < 1 || spec.nchannels > 4)
+    fail(asked, "it has " + std::to_string(spec.nchannels) + " channels", "give a grey or colour picture");
+  if (static_cast<double>(spec.width) * spec.height > kMostPicturePixels)
+    fail(asked, "it has " + std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels",
+         "give one of at most 100 million");
+  const auto width = static_cast<std::size_t>(spec.width), channels = static_cast<std::size_t>(spec.nchannels);
+  std::vector<float> values(width * static_cast<std::size_t>(spec.height) * channels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data()))
+    fail(asked, input->geterror(), "it is damaged or cut short: make it again");
+  if (!std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); }))
+    fail(asked, "it has values that are no numbers", "make it again");
+  cv::Mat3f linear(spec.height, spec.width);
+  linear.forEach([&](cv::Vec3f& pixel, const int* at) {
+    const std::size_t first = (static_cast<std::size_t>(at[0]) * width + static_cast<std::size_t>(at[1])) * channels;
+    pixel = linear_srgb_of(values.data() + first, spec.nchannels, format != "openexr");
+  });
+  return linear;
 }
 
 void write_png(const fs::path& file, const cv::Mat1b& grey) {

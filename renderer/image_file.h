@@ -30,6 +30,11 @@ void write_exr(const std::filesystem::path& file, const std::vector<ExrChannel>&
                const ImageHeader& header = {});
 std::vector<ExrChannel> read_exr_channels(const std::filesystem::path& file);
 
+// A picture for people as linear sRGB: PNG and JPEG (sRGB-encoded; what is transparent is white) or EXR (linear already), of at
+// most kMostPicturePixels; grey ones have three equal channels.
+inline constexpr double kMostPicturePixels = 1e8;
+cv::Mat3f read_linear_srgb(const std::filesystem::path& file);
+
 // 8-bit PNG: a mask (grey) or display colours (RGB, already encoded).
 void write_png(const std::filesystem::path& file, const cv::Mat1b& grey);
 void write_png(const std::filesystem::path& file, const cv::Mat3b& rgb);

@@ -34,6 +34,13 @@ YarnModel<float> prepare(const YarnParameters& p) {
   return YarnModel<float>(in_scalar<float>(p));
 }
 
+CurveLobes<float> lobes_at(const CurveModel& model, const CurvePoint& curve, const Vector3f& wo) {
+  const float h = viewing_offset(wo);
+  if (const auto* thread = std::get_if<ThreadModel<float>>(&model); thread && curve.absorption)
+    return thread->lobes_at(h, wo, {(*curve.absorption)[0], (*curve.absorption)[1], (*curve.absorption)[2]});
+  return std::visit([&](const auto& of) { return of.lobes_at(h, wo); }, model);
+}
+
 }  // namespace
 
 std::vector<CurveModel> prepare_curve_models(const std::vector<ScatteringModel>& scattering) {
@@ -79,10 +86,8 @@ PathVertex::PathVertex(const SurfaceHit& hit, const Vector3f& wo, const std::vec
     is_curve_ = true;
     position_ = curve->position;
     local_from_world_ = local_from_world(*curve);
-    const Vector3f local = local_from_world_ * wo;
-    const float h = viewing_offset(local);
     const CurveModel& model = models[curve->curve_set];
-    lobes_ = std::visit([&](const auto& of) { return of.lobes_at(h, local); }, model);
+    lobes_ = lobes_at(model, *curve, local_from_world_ * wo);
     if (leaves_on_far_side(model)) far_side_of_ = curve;
   } else {
     const auto& mesh = std::get<MeshPoint>(hit.point);

@@ -47,6 +47,10 @@ class PathVertex {
   ScatteringValue<float> evaluate(const Eigen::Vector3f& wi) const;
   Eigen::Vector3f sample(Sampler& sampler) const;
   bool is_curve() const { return is_curve_; }
+  // M_p N_p of a curve's lobes along wi.
+  Lanes<float> lobe_densities(const Eigen::Vector3f& wi) const {
+    return lobes_.lobe_densities(local_from_world_ * wi);
+  }
   const Eigen::Vector3f& position() const { return position_; }
   // Where light scattered along wi starts: `position`, or elsewhere on a thread (far_side_position).
   Eigen::Vector3f start_toward(const Eigen::Vector3f& wi, Sampler& sampler) const {

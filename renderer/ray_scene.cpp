@@ -162,6 +162,7 @@ SceneMemory RayScene::memory() const {
   for (const Cloth& cloth : scene_.cloths) {
     const ClothSurface& s = cloth.surface;
     memory.surfaces += bytes_of(s.vertices) + bytes_of(s.normals) + bytes_of(s.patch_mm) + bytes_of(s.triangles);
+    if (cloth.absorption) memory.surfaces += cloth.absorption->sigma_a.total() * sizeof(cv::Vec3f);
   }
   for (const TriangleMesh& mesh : scene_.meshes)
     memory.surfaces += bytes_of(mesh.vertices) + bytes_of(mesh.triangles) + bytes_of(mesh.texture_coordinates) +

@@ -33,6 +33,7 @@ struct CurvePoint {
       position;  // just below the surface, where scattered rays start: they cannot meet the same spot again
   Eigen::Vector3f tangent, normal;  // unit, perpendicular to each other; normal points outwards
   float radius;                     // from the curve's axis to `position`; of a flattened yarn that of the round one
+  const cv::Vec3f* absorption = nullptr;  // texel of the cloth's AbsorptionTexture there, if it has one
 };
 
 struct MeshPoint {

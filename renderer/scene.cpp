@@ -1,6 +1,7 @@
 #include "renderer/scene.h"
 
 #include <cassert>
+#include <cmath>
 
 namespace renderer {
 namespace {
@@ -21,6 +22,15 @@ void CurveSet::add_clamped_curve(const std::vector<Eigen::Vector4f>& points) {
   control_points.insert(control_points.end(), points.begin(), points.end());
   control_points.push_back(mirrored(points.back(), points[points.size() - 2]));
   for (std::uint32_t i = 0; i + 1 < points.size(); ++i) segments.push_back(first + i);
+}
+
+Eigen::Vector2i AbsorptionTexture::texel_at(const Eigen::Vector2d& patch_mm) const {
+  const auto repeated = [](double place, int size) {
+    const double into = place - std::floor(place / size) * size;
+    return std::min(static_cast<int>(into), size - 1);
+  };
+  return {repeated(patch_mm.x() / texel_mm.x(), sigma_a.cols),
+          sigma_a.rows - 1 - repeated(patch_mm.y() / texel_mm.y(), sigma_a.rows)};
 }
 
 std::vector<ScatteringModel> scattering_models(const Scene& scene) {

@@ -58,12 +58,21 @@ struct ClothSurface {
   std::vector<std::array<std::uint32_t, 3>> triangles{};
 };
 
+// Absorption that differs from place to place of an endless patch, instead of its threads' own: a picture in the cloth. Both
+// its yarns have it where they cross.
+struct AbsorptionTexture {
+  cv::Mat3f sigma_a{};                                 // per thread radius, RGB; the first row has the largest y
+  Eigen::Vector2d texel_mm = Eigen::Vector2d::Ones();  // in the patch; the lower left corner is at its origin
+  Eigen::Vector2i texel_at(const Eigen::Vector2d& patch_mm) const;  // column, row; it repeats without end
+};
+
 // Cloth in two scales: one patch, repeated without end over a surface and ending at its border. Memory does not grow
 // with the number of repeats. Cloth as explicit curves: cloth_shape.h.
 struct Cloth {
   ClothSurface surface{};
   YarnPatch patch{};
   std::vector<ScatteringModel> threads{};  // by thread index of the patch's yarns
+  std::optional<AbsorptionTexture> absorption{};  // for ThreadParameters
 };
 
 // Emitting sphere; irradiance at distance d facing it: radiance * beam_factor * pi * radius^2 / d^2.

@@ -36,6 +36,7 @@ int main(int argc, char** argv) {
   station::add_calibrate_command(app);
   station::add_capture_command(app);
   station::add_import_command(app);
+  station::add_pattern_command(app);
   station::add_plan_command(app);
   station::add_replay_command(app);
   station::add_verify_command(app);

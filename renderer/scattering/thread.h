@@ -94,11 +94,16 @@ struct ThreadTransmittance {
   Rgb<S> tt, trt;
 };
 template <class S>
-ThreadTransmittance<S> thread_transmittance(const BasicThreadParameters<S>& p, const S& chord_length) {
+ThreadTransmittance<S> thread_transmittance(const BasicThreadParameters<S>& p, const Vec3<S>& sigma_a,
+                                            const S& chord_length) {
   const auto [first, second] = p.transmittance_powers;
-  const Rgb<S> tt = (p.sigma_a.array() * (-chord_length * S(first))).exp();
+  const Rgb<S> tt = (sigma_a.array() * (-chord_length * S(first))).exp();
   if (first == second) return {tt, tt};
-  return {tt, (p.sigma_a.array() * (-chord_length * S(second))).exp()};
+  return {tt, (sigma_a.array() * (-chord_length * S(second))).exp()};
+}
+template <class S>
+ThreadTransmittance<S> thread_transmittance(const BasicThreadParameters<S>& p, const S& chord_length) {
+  return thread_transmittance(p, p.sigma_a, chord_length);
 }
 
 // lambda_0, lambda_1, lambda_2 at c = |cos theta_o|, limited when the parameters say so.
@@ -133,6 +138,10 @@ class ThreadModel {
 
   // The lobes seen from unit direction wo (local frame) at offset h = sin(gamma_o) in [-1, 1].
   CurveLobes<S> lobes_at(const Geometry<S>& h, const Vec3<Geometry<S>>& wo) const {
+    return lobes_at(h, wo, parameters_.sigma_a);
+  }
+  // Of the same thread with another absorption.
+  CurveLobes<S> lobes_at(const Geometry<S>& h, const Vec3<Geometry<S>>& wo, const Vec3<S>& sigma_a) const {
     using std::asin, std::sqrt;
     const Geometry<S> sin_o = wo.x(), cos_o = sqrt(wo.y() * wo.y() + wo.z() * wo.z());
     CurveLobes<S> lobes;
@@ -144,7 +153,7 @@ class ThreadModel {
     for (int p = 0; p < 3; ++p) lobes.center[p] = lobe_center<S>(p, S(asin(h)), chord.gamma_t);
 
     const std::array<S, 3> lambda = thread_lobe_energies<S>(parameters_, cos_o);
-    const ThreadTransmittance<S> transmittance = thread_transmittance(parameters_, chord.length);
+    const ThreadTransmittance<S> transmittance = thread_transmittance<S>(parameters_, sigma_a, chord.length);
     lobes.attenuation.row(0) = (parameters_.lambda0_rgb.array() * lambda[0]).transpose();
     lobes.attenuation.row(1) = (transmittance.tt * lambda[1]).transpose();
     lobes.attenuation.row(2) = (transmittance.trt * lambda[2]).transpose();

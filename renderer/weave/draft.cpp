@@ -138,19 +138,28 @@ Problem problem_of_threads(const char* kind, const YarnSystem& system) {
 
 // Colour orders are capped here, so that the least common multiples below stay far from overflow.
 Problem problem_of_extent(const Draft& draft) {
-  constexpr std::size_t kMost = kMostCrossings;
+  const int most = draft.relaxed ? kMostCrossings : kMostUnrelaxedCrossings;
   const std::size_t longest = std::max(
       {draft.warp_over.size(), draft.warp_over.front().size(), draft.warp.threads.size(), draft.weft.threads.size()});
-  const auto too_large = [](const std::string& what) {
-    return what + ", the most is " + std::to_string(kMost) + "; shorten the repeat or the colour order";
+  const auto too_large = [&](const std::string& what) {
+    return what + ", the most is " + std::to_string(most) + "; shorten the repeat or the colour order" +
+           (draft.relaxed ? ", or leave the yarns unrelaxed" : "");
   };
-  if (longest > kMost) return too_large("a repeat of " + std::to_string(longest) + " yarns is too large");
+  if (longest > static_cast<std::size_t>(most))
+    return too_large("a repeat of " + std::to_string(longest) + " yarns is too large");
   const std::int64_t crossings = std::int64_t{ends_in_patch(draft)} * picks_in_patch(draft);
-  if (crossings > kMostCrossings)
+  if (crossings > most)
     return too_large("the patch is too large: " + std::to_string(ends_in_patch(draft)) + " ends x " +
                      std::to_string(picks_in_patch(draft)) + " picks are " + std::to_string(crossings) +
                      " crossings");
   return {};
+}
+
+Problem problem_of_what_relaxes(const Draft& draft) {
+  if (draft.relaxed || (!draft.free_periods && draft.transverse_modulus_n_mm2 == 0)) return {};
+  return std::string(
+      "free periods and a transverse modulus take effect while yarns come to rest; leave them out, or "
+      "relax the yarns");
 }
 
 Problem problem_of_height_scale(const Draft& draft) {
@@ -236,6 +245,7 @@ std::optional<std::string> check_draft(const Draft& draft) {
   if (!problem) problem = problem_of_mechanics("warp", draft.warp, draft.free_periods);
   if (!problem) problem = problem_of_mechanics("weft", draft.weft, draft.free_periods);
   if (!problem) problem = problem_of_height_scale(draft);
+  if (!problem) problem = problem_of_what_relaxes(draft);
   if (!problem) problem = problem_of_unevenness(draft.unevenness, draft.slubs);
   if (!problem) problem = problem_of_sections(draft.transverse_modulus_n_mm2, draft.plies);
   if (!problem) problem = problem_of_threads("warp", draft.warp);

@@ -61,6 +61,7 @@ struct Draft {
   YarnSystem warp, weft;
   bool free_periods = false;  // relaxation: the cell takes the size at which it pulls at nothing; needs contraction
   double height_scale = 1.0;  // multiplies the heights of all centre lines; not 1: no longer a contact shape
+  bool relaxed = true;        // false: yarns keep the shapes of initial_patch(), for figures too large to be relaxed
 
   // What makes yarns less ideal than round, equal ones: for woven_patch(), not for relax().
   // N / mm^2. A yarn under a load of q per length is lower than round by 1 + q / (modulus x diameter), and so much wider: an
@@ -83,12 +84,12 @@ int picks_in_patch(const Draft& draft);
 
 // What keeps this draft from being woven, as one line, or nothing: empty or ragged structure, a yarn that never
 // interlaces, yarns that lie loose on the others, sizes that are not positive, neighbouring yarns that overlap
-// (pitch < diameter), a patch of more than kMostCrossings crossings.
+// (pitch < diameter), a patch of more than kMostCrossings crossings (kMostUnrelaxedCrossings), or what only relaxation can do.
 // A sett in which round yarns jam is woven; its overlap is measured (YarnPatch::least_gap_mm).
 std::optional<std::string> check_draft(const Draft& draft);
 
 inline constexpr int kPointsPerCrossing = 8;  // of a yarn's curve, from one crossing to the next
-inline constexpr int kMostCrossings = 4096;
+inline constexpr int kMostCrossings = 4096, kMostUnrelaxedCrossings = 1 << 18;
 inline constexpr int kMostThreads = 4096;
 inline constexpr double kMostContraction = 0.3, kMostFlatness = 4;
 inline constexpr double kMostUnevenness = 0.2;

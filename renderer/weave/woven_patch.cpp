@@ -152,6 +152,12 @@ YarnPatch with_strands(const YarnPatch& patch, const std::vector<Strands>& of_ya
 }
 
 RelaxedPatch woven_patch(const Draft& draft, const RelaxationOptions& options) {
+  if (!draft.relaxed) {
+    RelaxedPatch drawn{.patch = initial_patch(draft, options.points_per_crossing)};
+    make_uneven(drawn.patch, draft);
+    if (draft.plies.count > 1) drawn.patch = with_plies(drawn.patch, draft.plies);
+    return drawn;
+  }
   Draft unscaled = draft;
   unscaled.height_scale = 1;
   YarnPatch start = initial_patch(unscaled, options.points_per_crossing);

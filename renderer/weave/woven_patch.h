@@ -15,7 +15,8 @@
 
 namespace renderer {
 
-// Errors: std::runtime_error, one line: those of check_draft() and check_at_rest(); plies thicker than their yarn.
+// Unrelaxed drafts keep the analytic shapes, and an empty report. Errors: std::runtime_error, one line: those of
+// check_draft() and check_at_rest(); plies thicker than their yarn.
 RelaxedPatch woven_patch(const Draft& draft, const RelaxationOptions& options = {});
 
 // Each yarn of the patch as its plies; what was measured stays that of the yarns.

@@ -15,6 +15,7 @@ void add_demo_command(CLI::App& app);
 void add_develop_command(CLI::App& app);
 void add_devices_command(CLI::App& app);
 void add_library_command(CLI::App& app);
+void add_pattern_command(CLI::App& app);
 void add_plan_command(CLI::App& app);
 void add_predict_command(CLI::App& app);
 void add_render_command(CLI::App& app);

@@ -4,6 +4,7 @@
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
 #include "station/embroider/embroider_motif.h"
+#include "station/render_scene.h"
 
 namespace station {
 
@@ -12,6 +13,7 @@ void add_embroider_command(CLI::App& app) {
     EmbroiderRequest request;
     std::vector<std::string> colours;
     std::string ground;
+    std::vector<double> at_mm;
     OutputOptions output;
   };
   auto arguments = std::make_shared<Arguments>();
@@ -27,18 +29,33 @@ void add_embroider_command(CLI::App& app) {
   command->add_option("--diameter", request.diameter_mm, "of the thread as it is sewn, mm")
       ->check(CLI::Range(0.02, 5.0))
       ->capture_default_str();
-  command->add_option("--px-per-mm", request.pixels_per_mm, "pixels per millimetre")
-      ->check(CLI::Range(0.1, 1000.0))
+  CLI::Option* pixels = command->add_option("--px-per-mm", request.pixels_per_mm, "pixels per millimetre")
+                            ->check(CLI::Range(0.1, 1000.0))
+                            ->capture_default_str();
+  CLI::Option* scene = command
+                           ->add_option("--scene", request.scene,
+                                        "sewn on a cloth of this scene and rendered as it says; the scene with the "
+                                        "embroidery is written beside the picture")
+                           ->excludes(pixels);
+  command->add_option("--cloth", request.cloth, "which of the scene's cloths, from 0")
+      ->check(CLI::Range(0, 1 << 20))
+      ->needs(scene)
       ->capture_default_str();
-  command->add_option("--spp", request.samples_per_pixel, "samples per pixel")
-      ->check(CLI::Range(1, 1 << 20))
-      ->capture_default_str();
+  command->add_option("--at", arguments->at_mm, "where the motif's middle lies in the cloth, mm; else in its middle")
+      ->expected(2)
+      ->needs(scene);
+  command->add_option("--turn", request.turn_deg, "of the motif on the scene's cloth, degrees counter-clockwise")
+      ->check(CLI::Range(-360.0, 360.0))
+      ->needs(scene);
+  command->add_option("--spp", request.samples_per_pixel, "samples per pixel; 64, or the scene's")
+      ->check(CLI::Range(1, kMostSamples));
   command->add_option("--seed", request.seed, "of the paths")->capture_default_str();
   arguments->output.add_to(*command);
   command->callback([arguments] {
     EmbroiderRequest& asked = arguments->request;
     for (const std::string& colour : arguments->colours) asked.colours.push_back(parse_colour(colour));
     if (!arguments->ground.empty()) asked.ground = parse_colour(arguments->ground);
+    if (!arguments->at_mm.empty()) asked.at_mm = Eigen::Vector2d(arguments->at_mm[0], arguments->at_mm[1]);
     asked.progress_style = arguments->output.progress_style();
     const Embroidery embroidery = embroider(asked);
     if (arguments->output.json)

@@ -101,6 +101,7 @@ renderer::Draft parse_draft(const json& document, const std::string& source) {
   draft.weft = parse_system(reader.object("weft"));
   if (reader.has("height_scale")) draft.height_scale = reader.number("height_scale", -10, 10);
   if (reader.has("periods")) draft.free_periods = reader.choice("periods", {"fixed", "free"}) == "free";
+  if (reader.has("relaxed")) draft.relaxed = reader.flag("relaxed");
   if (reader.has("transverse_modulus_n_mm2"))
     draft.transverse_modulus_n_mm2 = reader.number("transverse_modulus_n_mm2", -kMost, renderer::kMostModulus);
   if (reader.has("unevenness")) parse_unevenness(reader.object("unevenness"), draft.unevenness);
@@ -132,6 +133,7 @@ json to_json(const renderer::Draft& draft) {
           {"weft", system_json(draft.weft)},
           {"periods", draft.free_periods ? "free" : "fixed"},
           {"height_scale", draft.height_scale},
+          {"relaxed", draft.relaxed},
           {"transverse_modulus_n_mm2", draft.transverse_modulus_n_mm2},
           {"unevenness",
            {{"radius", draft.unevenness.radius},

@@ -1,14 +1,19 @@
 #include "station/documents/scene_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "renderer/embroidery/sewn_curves.h"
+#include "renderer/embroidery/stitch_curves.h"
 #include "renderer/garment.h"
 #include "renderer/image_file.h"
 #include "renderer/mesh_file.h"
 #include "renderer/weave/patch_curves.h"
+#include "renderer/weave/patch_measures.h"
 #include "renderer/weave/woven_patch.h"
 #include "station/documents/draft_file.h"
+#include "station/documents/motif_file.h"
 #include "station/documents/patch_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/thread_file.h"
@@ -24,6 +29,9 @@ using renderer::ClothShape;
 constexpr double kLeastSize = 0.01, kMostSize = 1e4;  // mm
 constexpr double kMostCoordinate = 1e6;               // mm
 constexpr double kSurroundings_mm = 1e7;              // radius of the sphere that an environment is
+constexpr double kLeastTexel = 1e-4;                  // mm
+constexpr double kMostDiameter = 10;                  // mm, of a sewing thread
+constexpr double kMostAbsorption = 1000;              // per thread radius
 constexpr int kMostSide = 16384;                      // pixels
 constexpr double kMostPixels = 1e8;
 
@@ -113,15 +121,40 @@ ClothShape parse_shape(ObjectReader& reader, std::initializer_list<const char*> 
   return shape;
 }
 
-renderer::YarnPatch parse_weave(ObjectReader& cloth, const std::filesystem::path& folder) {
+void read_weave(ObjectReader& cloth, const std::filesystem::path& folder, SceneCloth& scene) {
   if (cloth.has("patch") == cloth.has("draft"))
     cloth.refuse("draft", "give either a draft or a patch, not both and not none");
-  if (cloth.has("patch")) return read_patch(folder / cloth.text("patch"));
+  if (cloth.has("patch")) {
+    scene.patch = read_patch(folder / cloth.text("patch"));
+    const auto& yarns = scene.patch.yarns;
+    const auto warp = std::count_if(yarns.begin(), yarns.end(), [](const renderer::Yarn& yarn) { return yarn.warp; });
+    scene.crossings = {static_cast<int>(warp), static_cast<int>(yarns.size()) - static_cast<int>(warp)};
+    return;
+  }
   renderer::Draft draft = read_draft(folder / cloth.text("draft"));
   replace_threads(cloth, "warp_threads", draft.warp);
   replace_threads(cloth, "weft_threads", draft.weft);
   if (const auto problem = renderer::check_draft(draft)) cloth.refuse("draft", *problem);
-  return renderer::woven_patch(draft).patch;
+  scene.patch = renderer::woven_patch(draft).patch;
+  scene.crossings = {renderer::ends_in_patch(draft), renderer::picks_in_patch(draft)};
+}
+
+renderer::AbsorptionTexture parse_absorption(ObjectReader reader, const std::filesystem::path& folder) {
+  renderer::AbsorptionTexture texture;
+  texture.sigma_a = named_file(reader, folder, [](const std::filesystem::path& file) {
+    cv::Mat3f read = renderer::read_exr(file);
+    for (const cv::Vec3f& texel : read)
+      for (int c = 0; c < 3; ++c)
+        if (!(texel[c] >= 0 && texel[c] <= static_cast<float>(kMostAbsorption)))
+          throw std::runtime_error(file.string() + ": found an absorption of " + std::to_string(texel[c]) +
+                                   ", expected 0 to " + std::to_string(static_cast<int>(kMostAbsorption)) +
+                                   " per thread radius; make it with threadstation pattern");
+    return read;
+  });
+  const std::vector<double> size = reader.numbers("texel_mm", 2, {kLeastTexel, kMostSize});
+  texture.texel_mm = {size[0], size[1]};
+  reader.finish();
+  return texture;
 }
 
 void check_threads(const ObjectReader& cloth, const renderer::YarnPatch& patch, std::size_t count) {
@@ -134,15 +167,54 @@ void check_threads(const ObjectReader& cloth, const renderer::YarnPatch& patch, 
 
 SceneCloth parse_cloth(ObjectReader reader, const std::filesystem::path& folder, std::size_t threads) {
   SceneCloth cloth;
-  cloth.patch = parse_weave(reader, folder);
+  read_weave(reader, folder, cloth);
   check_threads(reader, cloth.patch, threads);
   ObjectReader shape = reader.object("shape");
   cloth.shape = parse_shape(shape, {"swatch", "cylinder", "mesh", "skirt", "pleats", "drape"}, folder);
   shape.finish();
   cloth.world_from_cloth = pose(reader, "world_from_cloth");
   if (reader.has("method")) cloth.two_scale = reader.choice("method", {"two_scale", "brute_force"}) == "two_scale";
+  if (reader.has("absorption")) {
+    if (!cloth.two_scale) reader.refuse("absorption", "is for cloth in two scales; leave the method out");
+    cloth.absorption = parse_absorption(reader.object("absorption"), folder);
+  }
   reader.finish();
   return cloth;
+}
+
+Eigen::Vector3d absorption_of(ObjectReader& reader, const json& rgb) {
+  const bool numbers = rgb.is_array() && rgb.size() == 3 &&
+                       std::all_of(rgb.begin(), rgb.end(), [](const json& value) { return value.is_number(); });
+  Eigen::Vector3d found(-1, -1, -1);
+  for (int c = 0; numbers && c < 3; ++c) found[c] = rgb[static_cast<std::size_t>(c)].get<double>();
+  if (!(found.minCoeff() >= 0 && found.maxCoeff() <= kMostAbsorption))
+    reader.refuse("sigma_a", "found " + rgb.dump() + ", expected R, G, B from 0 to 1000 per thread radius");
+  return found;
+}
+
+SceneEmbroidery parse_embroidery(ObjectReader reader, const std::filesystem::path& folder, const SceneFile& scene) {
+  SceneEmbroidery made;
+  if (scene.cloths.empty()) reader.refuse("cloth", "the scene has no cloth to sew on; add one");
+  if (scene.threads.empty()) reader.refuse("thread", "the scene lists no threads; add the one to sew with");
+  made.cloth = reader.integer("cloth", 0, static_cast<int>(scene.cloths.size()) - 1);
+  made.motif = read_motif(folder / reader.text("motif"));
+  const int thread = reader.integer("thread", 0, static_cast<int>(scene.threads.size()) - 1);
+  made.diameter_mm = reader.number("diameter_mm", kLeastSize, kMostDiameter);
+  const json& absorptions = reader.raw("sigma_a");
+  if (!absorptions.is_array() || absorptions.size() != made.motif.threads.size())
+    reader.refuse("sigma_a", "expected a list with R, G, B for each of the motif's " +
+                                 std::to_string(made.motif.threads.size()) + " threads");
+  for (const json& rgb : absorptions) {
+    made.threads.push_back(scene.threads[static_cast<std::size_t>(thread)]);
+    made.threads.back().sigma_a = absorption_of(reader, rgb);
+  }
+  if (reader.has("at_mm")) {
+    const std::vector<double> at = reader.numbers("at_mm", 2, {-kMostCoordinate, kMostCoordinate});
+    made.at_mm = Eigen::Vector2d(at[0], at[1]);
+  }
+  if (reader.has("turn_deg")) made.turn_rad = reader.number("turn_deg", -360, 360) * renderer::kPi / 180;
+  reader.finish();
+  return made;
 }
 
 Vector3d at_least_zero(ObjectReader& reader, const std::string& key, double most) {
@@ -264,6 +336,23 @@ void read_threads(ObjectReader& reader, const std::filesystem::path& folder, Sce
   }
 }
 
+// An embroidery's threads as curves, each with its scattering.
+std::vector<renderer::CurveSet> sewn(const SceneEmbroidery& embroidery, const SceneCloth& cloth) {
+  const renderer::ClothSurface surface = renderer::surface_of(cloth.shape, cloth.patch, cloth.world_from_cloth);
+  const renderer::MotifMeasures extents = renderer::measure(embroidery.motif);
+  renderer::MotifPlace place{.turn_rad = embroidery.turn_rad};
+  place.at_mm =
+      embroidery.at_mm.value_or(renderer::middle_of(surface)) - place.on_cloth((extents.low + extents.high) / 2);
+  std::vector<renderer::CurveSet> sets;
+  renderer::StitchCurves stitches = renderer::stitch_curves(embroidery.motif, embroidery.diameter_mm);
+  for (std::size_t i = 0; i < stitches.threads.size(); ++i) {
+    if (stitches.threads[i].segments.empty()) continue;
+    stitches.threads[i].scattering = embroidery.threads[i];
+    sets.push_back(std::move(stitches.threads[i]));
+  }
+  return renderer::sewn_curves(std::move(sets), place, surface, renderer::surface_range(cloth.patch).high_mm);
+}
+
 }  // namespace
 
 SceneFile parse_scene(const json& document, const std::string& source, const std::filesystem::path& folder) {
@@ -273,6 +362,9 @@ SceneFile parse_scene(const json& document, const std::string& source, const std
   read_threads(reader, folder, scene);
   for (const ObjectReader& cloth : reader.objects("cloths"))
     scene.cloths.push_back(parse_cloth(cloth, folder, scene.threads.size()));
+  if (reader.has("embroideries"))
+    for (const ObjectReader& embroidery : reader.objects("embroideries"))
+      scene.embroideries.push_back(parse_embroidery(embroidery, folder, scene));
   if (reader.has("objects"))
     for (const ObjectReader& object : reader.objects("objects"))
       scene.objects.push_back(parse_object(object, folder));
@@ -299,14 +391,17 @@ renderer::Scene to_scene(const SceneFile& file) {
   const std::vector<renderer::ScatteringModel> threads(file.threads.begin(), file.threads.end());
   for (const SceneCloth& cloth : file.cloths) {
     if (cloth.two_scale) {
-      scene.cloths.push_back(
-          {renderer::surface_of(cloth.shape, cloth.patch, cloth.world_from_cloth), cloth.patch, threads});
+      scene.cloths.push_back({renderer::surface_of(cloth.shape, cloth.patch, cloth.world_from_cloth), cloth.patch,
+                              threads, cloth.absorption});
     } else {
       for (renderer::CurveSet& set :
            renderer::explicit_curves(cloth.shape, cloth.patch, threads, cloth.world_from_cloth))
         scene.curves.push_back(std::move(set));
     }
   }
+  for (const SceneEmbroidery& embroidery : file.embroideries)
+    for (renderer::CurveSet& set : sewn(embroidery, file.cloths[static_cast<std::size_t>(embroidery.cloth)]))
+      scene.curves.push_back(std::move(set));
   for (const SceneBody& body : file.objects)
     scene.meshes.push_back(renderer::body_of(body.shape, body.world_from_object, body.albedo));
   scene.lights = file.lights;

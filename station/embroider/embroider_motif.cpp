@@ -13,10 +13,14 @@
 #include "renderer/image_file.h"
 #include "renderer/path_tracer.h"
 #include "station/documents/motif_file.h"
+#include "station/documents/reader.h"
+#include "station/documents/scene_file.h"
+#include "station/documents/scene_names.h"
 #include "station/documents/session_file.h"
 #include "station/documents/thread_file.h"
 #include "station/interrupt.h"
 #include "station/picture_destination.h"
+#include "station/render_scene.h"
 #include "station/report/display.h"
 
 namespace station {
@@ -27,6 +31,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
+constexpr int kSamples = 64;           // per pixel, of the curves and without a scene
 constexpr double kEye_mm = 1000;       // above the cloth
 constexpr double kCurveShare = 30;     // of the work, %
 constexpr double kSatinPitch = 0.875;  // of the diameter: stitches side by side
@@ -92,7 +97,7 @@ renderer::Motif satin_block(double diameter_mm) {
 std::array<inversion::AbsorptionCurve, 3> curves_of(const renderer::ThreadParameters& thread, double diameter_mm,
                                                     const Array3d& ground, std::uint64_t seed,
                                                     const std::function<void(double)>& done) {
-  constexpr int kCount = 14, kSamples = 64;
+  constexpr int kCount = 14;
   const renderer::Motif satin = satin_block(diameter_mm);
   const renderer::MotifMeasures extents = renderer::measure(satin);
   const Vector2d middle = (extents.low + extents.high) / 2, half = 0.2 * (extents.high - extents.low);
@@ -109,6 +114,77 @@ std::array<inversion::AbsorptionCurve, 3> curves_of(const renderer::ThreadParame
         return Array3d(mean[0], mean[1], mean[2]);
       },
       kCount);
+}
+
+Eigen::Matrix3d srgb_from_camera(const ThreadFile& thread) {
+  return Eigen::Map<const Matrix>(thread.linear_srgb_from_camera.data());
+}
+
+std::optional<Srgb8> wanted_colour(const renderer::Motif& motif, std::size_t thread,
+                                   const EmbroiderRequest& request) {
+  if (!request.colours.empty()) return request.colours[thread % request.colours.size()];
+  return motif.threads[thread].srgb;
+}
+
+// The digitized thread with the absorption that has the colour; with its own where no colour is wanted.
+EmbroideredThread dyed_thread(const std::optional<Srgb8>& wanted, const ThreadFile& digitized,
+                              const std::array<inversion::AbsorptionCurve, 3>& curves) {
+  EmbroideredThread made;
+  for (int c = 0; c < 3; ++c) made.sigma_a[static_cast<std::size_t>(c)] = digitized.parameters.sigma_a[c];
+  if (!wanted) return made;
+  const Eigen::Matrix3d to_srgb = srgb_from_camera(digitized);
+  const Vector3d linear = linear_of(*wanted), camera_rgb = to_srgb.inverse() * linear;
+  Vector3d reached;
+  for (int c = 0; c < 3; ++c) {
+    const auto channel = static_cast<std::size_t>(c);
+    made.sigma_a[channel] = curves[channel].sigma_a(camera_rgb[c]);
+    reached[c] = curves[channel].reflectance(made.sigma_a[channel]);
+  }
+  made.wanted = *wanted;
+  made.delta_e_2000 = calibration::delta_e_2000(calibration::lab_of_linear_srgb(linear),
+                                                calibration::lab_of_linear_srgb((to_srgb * reached).cwiseMax(0)));
+  return made;
+}
+
+std::filesystem::path sewn_scene_of(const std::filesystem::path& picture) {
+  return std::filesystem::path(picture).replace_extension(".json");
+}
+
+// Asked before the work: that the scene can be read and has the cloth, and that it is not written over.
+void check_scene(const EmbroiderRequest& request) {
+  const SceneFile scene = read_scene(request.scene);
+  const auto count = static_cast<int>(scene.cloths.size());
+  if (request.cloth < 0 || request.cloth >= count)
+    throw std::runtime_error(request.scene.string() + ": cloth " + std::to_string(request.cloth) +
+                             " was asked for, the scene has " + std::to_string(count) + " (counted from 0)");
+  std::error_code none;
+  if (std::filesystem::equivalent(sewn_scene_of(request.out), request.scene, none))
+    throw std::runtime_error(request.out.string() + ": the scene of it would be written over " +
+                             request.scene.string() + "; choose another name");
+}
+
+// The scene with the motif on its cloth, beside the picture, and the picture of it.
+void render_on_scene(const EmbroiderRequest& request, const Embroidery& embroidery) {
+  const std::filesystem::path file = sewn_scene_of(request.out),
+                              folder = file.has_parent_path() ? file.parent_path() : ".";
+  nlohmann::json scene = moved_scene(read_json_file(request.scene), request.scene.parent_path(), folder);
+  nlohmann::json absorptions = nlohmann::json::array();
+  for (const EmbroideredThread& thread : embroidery.threads) absorptions.push_back(thread.sigma_a);
+  nlohmann::json sewn{{"cloth", request.cloth},
+                      {"motif", name_from(folder, request.motif)},
+                      {"thread", scene["threads"].size()},
+                      {"diameter_mm", request.diameter_mm},
+                      {"sigma_a", absorptions},
+                      {"turn_deg", request.turn_deg}};
+  if (request.at_mm) sewn["at_mm"] = {request.at_mm->x(), request.at_mm->y()};
+  scene["threads"].push_back(name_from(folder, request.thread));
+  scene["embroideries"].push_back(sewn);
+  write_json_file(file, scene);
+  render_scene({.scene = file,
+                .out = request.out,
+                .samples_per_pixel = request.samples_per_pixel,
+                .seed = request.seed,
+                .progress = request.progress_style});
 }
 
 }  // namespace
@@ -129,9 +205,9 @@ Embroidery embroider(const EmbroiderRequest& request) {
   const renderer::MotifMeasures measures = renderer::measure(motif);
   const Vector2d margin = Vector2d::Constant(3 * request.diameter_mm);
   const renderer::Camera camera = camera_above(measures.low - margin, measures.high + margin, request.pixels_per_mm);
+  if (!request.scene.empty()) check_scene(request);
   ProgressDisplay progress("embroider", request.progress_style);
-  const Matrix to_srgb = Eigen::Map<const Matrix>(digitized.linear_srgb_from_camera.data());
-  const Eigen::Matrix3d to_camera = to_srgb.inverse();
+  const Eigen::Matrix3d to_camera = srgb_from_camera(digitized).inverse();
   const Array3d ground = (to_camera * linear_of(request.ground)).cwiseMax(0).cwiseMin(1).array();
   int shown = -1;
   const auto show = [&](double percent, const char* what) {
@@ -147,34 +223,26 @@ Embroidery embroider(const EmbroiderRequest& request) {
                         .image = request.out.string()};
   std::vector<renderer::ThreadParameters> threads;
   for (std::size_t i = 0; i < motif.threads.size(); ++i) {
-    renderer::ThreadParameters thread = digitized.parameters;
-    EmbroideredThread made{.name = motif.threads[i].name,
-                           .stitches = measures.stitches_of_threads[i],
-                           .length_mm = measures.lengths_mm[i]};
-    std::optional<Srgb8> wanted = motif.threads[i].srgb;
-    if (!request.colours.empty()) wanted = request.colours[i % request.colours.size()];
-    if (wanted) {
-      const Vector3d linear = linear_of(*wanted), camera_rgb = to_camera * linear;
-      Vector3d reached;
-      for (int c = 0; c < 3; ++c) {
-        const inversion::AbsorptionCurve& curve = curves[static_cast<std::size_t>(c)];
-        thread.sigma_a[c] = curve.sigma_a(camera_rgb[c]);
-        reached[c] = curve.reflectance(thread.sigma_a[c]);
-      }
-      made.wanted = *wanted;
-      made.delta_e_2000 = calibration::delta_e_2000(calibration::lab_of_linear_srgb(linear),
-                                                    calibration::lab_of_linear_srgb((to_srgb * reached).cwiseMax(0)));
-    }
-    for (int c = 0; c < 3; ++c) made.sigma_a[static_cast<std::size_t>(c)] = thread.sigma_a[c];
-    threads.push_back(thread);
+    EmbroideredThread made = dyed_thread(wanted_colour(motif, i, request), digitized, curves);
+    made.name = motif.threads[i].name;
+    made.stitches = measures.stitches_of_threads[i];
+    made.length_mm = measures.lengths_mm[i];
+    threads.push_back(digitized.parameters);
+    for (int c = 0; c < 3; ++c) threads.back().sigma_a[c] = made.sigma_a[static_cast<std::size_t>(c)];
     embroidery.threads.push_back(made);
   }
+  if (!request.scene.empty()) {
+    progress.finish("sewing on " + request.scene.string());
+    render_on_scene(request, embroidery);
+    return embroidery;
+  }
   const renderer::PathTracer tracer(scene_of(motif, threads, request.diameter_mm, ground));
-  const cv::Mat3f image = tracer.render(
-      camera, {.samples_per_pixel = request.samples_per_pixel, .seed = request.seed, .progress = [&](double share) {
-                 show(kCurveShare + (100 - kCurveShare) * share, "rendering");
-                 return !interrupted();
-               }});
+  const cv::Mat3f image = tracer.render(camera, {.samples_per_pixel = request.samples_per_pixel.value_or(kSamples),
+                                                 .seed = request.seed,
+                                                 .progress = [&](double share) {
+                                                   show(kCurveShare + (100 - kCurveShare) * share, "rendering");
+                                                   return !interrupted();
+                                                 }});
   if (request.out.extension() == ".exr")
     renderer::write_exr(request.out, image,
                         {{"threadstation/content", "linear camera RGB, reflectance under even light"},

@@ -23,6 +23,17 @@ TEST(AbsorptionCurve, FollowsTheLawThatItWasMeasuredFromAndInvertsIt) {
   }
 }
 
+TEST(AbsorptionCurve, SlopeIsThatOfItsReflectance) {
+  const AbsorptionCurve curve = measured();
+  for (const double sigma_a : {0.02, 0.3, 1.1, 4.0})
+    EXPECT_NEAR(curve.slope(sigma_a), (curve.reflectance(sigma_a + 1e-5) - curve.reflectance(sigma_a - 1e-5)) / 2e-5,
+                1e-3 * std::abs(curve.slope(sigma_a)))
+        << sigma_a;
+  EXPECT_LT(curve.slope(0), 0);
+  EXPECT_LE(curve.slope(12), 0);
+  EXPECT_LE(curve.slope(100), 0);
+}
+
 TEST(AbsorptionCurve, OutsideOfTheGamutItIsItsNearestEnd) {
   const AbsorptionCurve curve = measured();
   EXPECT_EQ(curve.sigma_a(0.99), 0);

@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <limits>
+#include <opencv2/imgcodecs.hpp>
 
 namespace renderer {
 namespace {
@@ -173,6 +175,49 @@ TEST(EncodeSrgbTest, MapsBlackMiddleGreyAndWhiteAsTheStandardDoes) {
 TEST(EncodeSrgbTest, AppliesTheColourMatrixAndTheScale) {
   const cv::Matx33f swap(0, 0, 1, 0, 1, 0, 1, 0, 0);
   EXPECT_EQ(encode_srgb(cv::Mat3f(1, 1, cv::Vec3f(0.5f, 0.25f, 0)), 2, swap)(0, 0), cv::Vec3b(0, 188, 255));
+}
+
+// The same patches in each of the formats; transparent ones show the white below them.
+TEST_F(ImageFileTest, PicturesForPeopleAreLinearSrgbOverWhite) {
+  const cv::Vec3b orange(188, 64, 0);
+  const cv::Vec3f linear(0.5029F, 0.0513F, 0);
+  write_png(folder_ / "a.png", cv::Mat3b(16, 16, orange));
+  cv::Mat3b bgr(16, 16, cv::Vec3b(orange[2], orange[1], orange[0]));
+  cv::imwrite((folder_ / "a.jpg").string(), bgr, {cv::IMWRITE_JPEG_QUALITY, 100});
+  write_exr(folder_ / "a.exr", cv::Mat3f(16, 16, linear));
+  cv::imwrite((folder_ / "transparent.png").string(), cv::Mat4b(16, 16, cv::Vec4b(0, 64, 188, 51)));
+  cv::imwrite((folder_ / "deep.png").string(), cv::Mat_<cv::Vec3w>(16, 16, cv::Vec3w(0, 64 * 257, 188 * 257)));
+  write_png(folder_ / "grey.png", cv::Mat1b(16, 16, uchar{188}));
+  const auto is = [&](const char* name, const cv::Vec3f& expected, double tolerance) {
+    const cv::Mat3f read = read_linear_srgb(folder_ / name);
+    EXPECT_EQ(read.size(), cv::Size(16, 16)) << name;
+    EXPECT_LT(cv::norm(read, cv::Mat3f(16, 16, expected), cv::NORM_INF), tolerance) << name << ": " << read(8, 8);
+  };
+  is("a.png", linear, 1e-4), is("a.jpg", linear, 0.02), is("a.exr", linear, 1e-6), is("deep.png", linear, 1e-4);
+  is("grey.png", {0.5029F, 0.5029F, 0.5029F}, 1e-4);
+  is("transparent.png", 0.2F * linear + cv::Vec3f(0.8F, 0.8F, 0.8F), 2e-3);
+}
+
+TEST_F(ImageFileTest, PicturesForPeopleThatAreNoneAreOneLine) {
+  const auto refused = [&](const fs::path& file, const char* why) {
+    EXPECT_THAT(error_of([&] { read_linear_srgb(file); }),
+                AllOf(HasSubstr(file.string()), HasSubstr(why), Not(HasSubstr("\n"))));
+  };
+  refused(folder_ / "none.png", "no such file");
+  refused(folder_, "no such file");
+  std::ofstream(folder_ / "text.png") << "text";
+  refused(folder_ / "text.png", "none of PNG, JPEG and EXR");
+  std::ofstream(folder_ / "empty.png");
+  refused(folder_ / "empty.png", "none of PNG, JPEG and EXR");
+  write_png(folder_ / "cut.png", cv::Mat3b(64, 64, cv::Vec3b(1, 2, 3)));
+  cut_in_half(folder_ / "cut.png");
+  refused(folder_ / "cut.png", "not a complete PNG");
+  cv::Mat3f values(4, 4, cv::Vec3f(1, 1, 1));
+  values(2, 2)[1] = std::numeric_limits<float>::quiet_NaN();
+  write_exr(folder_ / "nan.exr", values);
+  refused(folder_ / "nan.exr", "no numbers");
+  std::ofstream(folder_ / "begin.jpg", std::ios::binary) << "\xff\xd8\xff\xe0 and no more";
+  refused(folder_ / "begin.jpg", "damaged");
 }
 
 }  // namespace

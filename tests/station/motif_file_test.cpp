@@ -13,6 +13,7 @@
 #include "renderer/image_file.h"
 #include "station/documents/dst_file.h"
 #include "station/documents/pes_file.h"
+#include "station/documents/scene_file.h"
 #include "station/documents/thread_file.h"
 #include "tests/places.h"
 #include "tests/station/program.h"
@@ -239,6 +240,44 @@ TEST_F(Embroider, SatinInGamutHasTheFilesColoursWithinTwoAndElseIsOffAsSaid) {
   const nlohmann::json green = nlohmann::json::parse(other.out).at("threads")[2].at("srgb");
   EXPECT_EQ(green, nlohmann::json({0x80, 0xa8, 0x8c}));
   EXPECT_LT(difference(renderer::read_exr(folder_ / "motif.exr"), green, {-4.5, 22.8, 3, 5}), 2);
+}
+
+TEST_F(Embroider, OnASceneItIsSewnWhereAskedAndTheSceneIsWritten) {
+  const std::string hoop = std::string(FIXTURES_DIR) + "/scenes/hoop.json";
+  const auto sew = [&](const std::vector<std::string>& more, const std::string& out) {
+    std::vector<std::string> arguments{"embroider", three_blocks(),
+                                       "--thread",  std::string(FIXTURES_DIR) + "/threads/silk_blue.json",
+                                       "--out",     out,
+                                       "--spp",     "2",
+                                       "--scene",   hoop,
+                                       "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_threadstation(arguments);
+  };
+  const ProgramResult result = sew({"--at", "50", "70", "--turn", "90"}, folder_ / "hoop.exr");
+  ASSERT_EQ(result.status, 0) << result.error;
+  const station::SceneFile scene = station::read_scene(folder_ / "hoop.json");
+  ASSERT_EQ(scene.embroideries.size(), 1U);
+  EXPECT_EQ(scene.embroideries[0].threads.size(), 3U);
+  const renderer::Scene made = station::to_scene(scene);
+  EXPECT_EQ(made.cloths.size(), 1U) << "the ground is cloth in two scales";
+  ASSERT_EQ(made.curves.size(), 3U);
+  Eigen::AlignedBox3f bounds;
+  for (const renderer::CurveSet& set : made.curves)
+    for (const Eigen::Vector4f& point : set.control_points) bounds.extend(point.head<3>());
+  // The swatch is 130 mm wide, its patch begins at its lower left corner; the motif is 6 mm wide and was turned.
+  EXPECT_NEAR(bounds.center().x(), 50 - 65, 0.5F);
+  EXPECT_NEAR(bounds.center().y(), 70 - 65, 0.5F);
+  EXPECT_NEAR(bounds.sizes().y(), 6, 0.8F);
+  EXPECT_GT(bounds.max().z(), 0.3F) << "above the cloth's yarns";
+  EXPECT_EQ(renderer::read_exr(folder_ / "hoop.exr").cols, scene.camera.width);
+  const auto refused = [](const ProgramResult& no, const std::string& named) {
+    EXPECT_EQ(no.status, 1);
+    EXPECT_NE(no.error.find(named), std::string::npos) << no.error;
+  };
+  refused(sew({"--at", "1", "1"}, folder_ / "beside.exr"), "beside it");
+  refused(sew({"--cloth", "1"}, folder_ / "none.exr"), "counted from 0");
+  refused(sew({}, std::string(FIXTURES_DIR) + "/scenes/hoop.png"), "written over");
 }
 
 TEST_F(Embroider, WhatCannotBeEmbroideredIsOneLine) {

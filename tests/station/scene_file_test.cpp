@@ -39,7 +39,7 @@ TEST(SceneFile, ReadyScenesAreReadAndBecomeScenes) {
     EXPECT_EQ(made.cloths.size(), scene.cloths.size()) << "ready scenes are in two scales";
     EXPECT_EQ(made.meshes.size(), scene.objects.size());
   }
-  EXPECT_EQ(read, 11);
+  EXPECT_EQ(read, 12);
 }
 
 TEST(SceneFile, ReadyThreadsAreReadAndWrittenAgainAsTheyAre) {
