@@ -169,9 +169,9 @@ std::string describe(const Pattern& pattern) {
                 "%.2f %% of the picture is out of the thread's gamut\n"
                 "CIEDE2000                      by the curves    refined\n"
                 "to what was asked for, mean       %10.2f %10.2f\n"
-                "                       95 %%       %10.2f %10.2f\n"
+                "                       95 %%        %10.2f %10.2f\n"
                 "to the picture,        mean       %10.2f %10.2f\n"
-                "                       95 %%       %10.2f %10.2f\n",
+                "                       95 %%        %10.2f %10.2f\n",
                 pattern.ends, pattern.picks, pattern.width_mm, pattern.height_mm, 100 * pattern.out_of_gamut,
                 pattern.by_curves.mean, pattern.refined.mean, pattern.by_curves.percentile_95,
                 pattern.refined.percentile_95, pattern.by_curves_of_picture.mean, pattern.refined_of_picture.mean,
