@@ -30,9 +30,10 @@ void write_exr(const std::filesystem::path& file, const std::vector<ExrChannel>&
                const ImageHeader& header = {});
 std::vector<ExrChannel> read_exr_channels(const std::filesystem::path& file);
 
-// 8-bit PNG: a mask (grey) or display colours (RGB, already encoded).
+// 8-bit PNG: a mask (grey), display colours (RGB, already encoded), or these with opacity that they are not multiplied by.
 void write_png(const std::filesystem::path& file, const cv::Mat1b& grey);
 void write_png(const std::filesystem::path& file, const cv::Mat3b& rgb);
+void write_png(const std::filesystem::path& file, const cv::Mat4b& rgba);
 cv::Mat1b read_png_grey(const std::filesystem::path& file);
 // A PNG file's bytes, for embedding in a page.
 std::string encode_png(const cv::Mat3b& rgb);
