@@ -13,7 +13,7 @@ struct DirectionPair {
 };
 
 struct FarFieldOptions {
-  int samples_per_pair = 32768;
+  int samples_per_pair = 16384;
   std::uint64_t seed = 1;
   PartProgress progress = [](double) { return true; };
 };

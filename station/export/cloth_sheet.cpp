@@ -67,9 +67,8 @@ cv::Mat3f drawn_maps(const PbrMaps& maps, double normal_scale, const Eigen::Vect
 cv::Mat3f evenly_lit_maps(const PbrMaps& maps, const GltfShader& shader, const Eigen::Vector2d& period_mm,
                           const renderer::Camera& camera) {
   const EvenLight even(shader);
-  return drawn_maps(maps, shader.material().normal_scale, period_mm, camera, [&](const PbrTexel& texel) {
-    return Array3d(texel.opacity * even.seen(texel.diffuse, texel.normal.z()).reflectance);
-  });
+  return drawn_maps(maps, shader.material().normal_scale, period_mm, camera,
+                    [&](const PbrTexel& texel) { return Array3d(texel.opacity * even.seen(texel).reflectance); });
 }
 
 // Rows of any width on white, each with its title above it.
@@ -129,9 +128,10 @@ cv::Mat3b curves(const ClothSample& cloth, const PbrMaps& maps, const GltfShader
   double done = 0;
   for (const Scan& s : scans) {
     const std::vector<Array3d> measured =
-        far_field(cloth, s.pairs, {.seed = options.seed, .progress = [&](double part) {
-                                     return options.progress((done + part) / static_cast<double>(std::size(scans)));
-                                   }});
+        far_field(cloth, s.pairs,
+                  {.samples_per_pair = options.samples_per_pair, .seed = options.seed, .progress = [&](double part) {
+                     return options.progress((done + part) / static_cast<double>(std::size(scans)));
+                   }});
     ++done;
     PlotLine original{.title = "cloth"}, exported{.title = "glTF", .style = PlotStyle::dashed};
     for (std::size_t i = 0; i < s.pairs.size(); ++i) {
@@ -158,6 +158,12 @@ cv::Mat3f shaded_maps(const PbrMaps& maps, const GltfShader& shader, const Eigen
                       const renderer::Camera& camera, const Vector3d& to_view, const Vector3d& to_light) {
   return drawn_maps(maps, shader.material().normal_scale, period_mm, camera,
                     [&](const PbrTexel& texel) { return radiance(texel, shader, to_view, to_light); });
+}
+
+double paths_of_sheet(const ClothSample& cloth, const SheetOptions& options) {
+  constexpr double kCurves = 44;  // directions
+  return static_cast<double>(views().size()) * bake_size(cloth, kPanel_px).area() * options.samples_per_pixel +
+         kCurves * options.samples_per_pair;
 }
 
 ClothSheet draw_sheet(const ClothSample& cloth, const PbrMaps& maps, const GltfShader& shader,
@@ -196,7 +202,7 @@ ClothSheet draw_sheet(const ClothSample& cloth, const PbrMaps& maps, const GltfS
   const double done = static_cast<double>(all.size());
   SheetOptions last = options;
   last.progress = [&](double part) { return options.progress((done + part) / steps); };
-  rows.add("from afar: cloth and exported material", curves(cloth, maps, shader, last, 3 * panel.width));
+  rows.add("from afar: cloth and exported material", curves(cloth, maps, shader, last, 3 * kPanel_px));
   sheet.picture = rows.picture();
   return sheet;
 }

@@ -13,7 +13,8 @@
 namespace station {
 
 struct SheetOptions {
-  int samples_per_pixel = 64;
+  int samples_per_pixel = 32;
+  int samples_per_pair = 16384;  // of the curves from afar
   std::uint64_t seed = 1;
   PartProgress progress = [](double) { return true; };
 };
@@ -34,6 +35,9 @@ inline constexpr int kSheetPeriods = 3;  // both ways
 // Slanted views are stretched to the shape of the straight one. Errors: those of render_or_stop; gnuplot is missing.
 ClothSheet draw_sheet(const ClothSample& cloth, const PbrMaps& maps, const GltfShader& shader,
                       const SheetOptions& options);
+
+// Paths that draw_sheet traces, about.
+double paths_of_sheet(const ClothSample& cloth, const SheetOptions& options);
 
 // The maps, shaded: radiance in linear sRGB for one light as far_field() has it. `camera` sees whole periods.
 cv::Mat3f shaded_maps(const PbrMaps& maps, const GltfShader& shader, const Eigen::Vector2d& period_mm,

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
 
@@ -20,8 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-constexpr int kTexelsAcross = 96;  // of the maps, where their mean over a period is meant
 
 // A folder that disappears again unless it gets its final name.
 class NewFolder {
@@ -70,6 +69,15 @@ void check_memory(const ExportClothRequest& request, const cv::Size& size) {
   throw std::runtime_error(text);
 }
 
+// Samples of far views and of the sheet go with those of a texel.
+struct Quality {
+  int per_pair, sheet;
+};
+
+Quality quality_of(const ExportClothRequest& request) {
+  return {256 * request.samples_per_texel, std::max(1, request.samples_per_texel / 2)};
+}
+
 // Shares of the whole work, by the paths that are traced.
 class Stages {
  public:
@@ -94,11 +102,15 @@ Eigen::Array3d mean_of(const cv::Mat3f& picture) {
   return {mean[0], mean[1], mean[2]};
 }
 
-Eigen::Array3d even_reflectance(const std::vector<PbrTexel>& texels, const GltfShader& shader) {
+EvenLight::Seen mean_seen(const std::vector<PbrTexel>& texels, const GltfShader& shader) {
   const EvenLight even(shader);
-  Eigen::Array3d sum = Eigen::Array3d::Zero();
-  for (const PbrTexel& texel : texels) sum += texel.opacity * even.seen(texel.diffuse, texel.normal.z()).reflectance;
-  return sum / static_cast<double>(texels.size());
+  EvenLight::Seen mean{Eigen::Array3d::Zero(), Eigen::Array3d::Zero()};
+  for (const PbrTexel& texel : texels) {
+    const EvenLight::Seen seen = even.seen(texel);
+    mean.reflectance += texel.opacity * seen.reflectance / static_cast<double>(texels.size());
+    mean.transmittance += texel.opacity * seen.transmittance / static_cast<double>(texels.size());
+  }
+  return mean;
 }
 
 json list(const Eigen::Array3d& color) {
@@ -177,17 +189,21 @@ ExportClothReport export_cloth(const ExportClothRequest& request) {
   check_memory(request, size);
   NewFolder folder(request.out);
   const std::vector<DirectionPair> pairs = standard_pairs();
+  const Quality quality = quality_of(request);
   const double bake_samples = 4.0 * size.area() * request.samples_per_texel,
-               far_samples = static_cast<double>(pairs.size()) * FarFieldOptions{}.samples_per_pair,
-               sheet_samples = 6.0 * 256 * 256 * SheetOptions{}.samples_per_pixel,
+               far_samples = static_cast<double>(pairs.size()) * quality.per_pair,
+               sheet_samples =
+                   paths_of_sheet(cloth, {.samples_per_pixel = quality.sheet, .samples_per_pair = quality.per_pair}),
                all_samples = bake_samples + far_samples + sheet_samples;
   Stages stages(request.progress);
   const BakedCloth baked = bake_cloth(cloth, {.size_px = size,
                                               .samples_per_texel = request.samples_per_texel,
                                               .seed = request.seed,
                                               .progress = stages.stage(bake_samples / all_samples)});
-  const std::vector<Eigen::Array3d> measured =
-      far_field(cloth, pairs, {.seed = request.seed, .progress = stages.stage(far_samples / all_samples)});
+  const std::vector<Eigen::Array3d> measured = far_field(cloth, pairs,
+                                                         {.samples_per_pair = quality.per_pair,
+                                                          .seed = request.seed,
+                                                          .progress = stages.stage(far_samples / all_samples)});
   const PbrFit fit = fit_material(baked.front, pairs, measured);
   const GltfShader shader(fit.material);
   const PbrMaps front = maps_of(baked.front, shader);
@@ -199,13 +215,16 @@ ExportClothReport export_cloth(const ExportClothRequest& request) {
                            .height_mm = baked.height_mm,
                            .material = fit.material,
                            .converged = fit.converged,
-                           .even_reflectance_cloth = mean_of(baked.front.reflectance),
-                           .even_reflectance_export = even_reflectance(texels, shader),
+                           .even_cloth = {mean_of(baked.front.reflectance), mean_of(baked.front.transmittance)},
+                           .even_export = mean_seen(texels, shader),
                            .pairs = far_field_errors(texels, shader, pairs, measured)};
   report.front_light = agreement(report.pairs, true);
   report.back_light = agreement(report.pairs, false);
-  const ClothSheet sheet =
-      draw_sheet(cloth, front, shader, {.seed = request.seed, .progress = stages.stage(sheet_samples / all_samples)});
+  const ClothSheet sheet = draw_sheet(cloth, front, shader,
+                                      {.samples_per_pixel = quality.sheet,
+                                       .samples_per_pair = quality.per_pair,
+                                       .seed = request.seed,
+                                       .progress = stages.stage(sheet_samples / all_samples)});
   report.views = sheet.views;
   renderer::write_png(folder.path() / "comparison.png", sheet.picture);
   write_formats(folder, request, {cloth, baked, shader, front, sheet}, report);
@@ -222,8 +241,11 @@ json to_json(const ExportClothReport& report) {
                 {"period_mm", {report.width_mm, report.height_mm}},
                 {"material", to_json(report.material)},
                 {"converged", report.converged},
-                {"even_reflectance",
-                 {{"cloth", list(report.even_reflectance_cloth)}, {"export", list(report.even_reflectance_export)}}},
+                {"even_light",
+                 {{"reflectance_cloth", list(report.even_cloth.reflectance)},
+                  {"reflectance_export", list(report.even_export.reflectance)},
+                  {"transmittance_cloth", list(report.even_cloth.transmittance)},
+                  {"transmittance_export", list(report.even_export.transmittance)}}},
                 {"far_field", agreement_json(report)}};
   for (const ComparedView& view : report.views) document["views"].push_back(to_json(view));
   for (const FarFieldError& error : report.pairs) document["pairs"].push_back(to_json(error));
@@ -234,11 +256,11 @@ std::string describe(const ExportClothReport& report) {
   char text[600];
   std::snprintf(text, sizeof text,
                 "%s: %d x %d pixels for %.3f x %.3f mm\n"
-                "roughness %.2f, specular %.2f, sheen up to %.2f at roughness %.2f, normals x %.2f\n"
+                "roughness %.2f, specular %.2f, sheen %.2f of roughness %.2f, normals x %.2f\n"
                 "seen from afar, light in front: %.0f %% RMS, CIEDE2000 %.1f, 95 %% below %.1f\n"
                 "seen from afar, light behind: %.0f %% RMS, CIEDE2000 %.1f, 95 %% below %.1f\n",
                 report.folder.c_str(), report.size_px.width, report.size_px.height, report.width_mm, report.height_mm,
-                report.material.roughness, report.material.specular, report.material.sheen_color.maxCoeff(),
+                report.material.roughness, report.material.specular, report.material.sheen,
                 report.material.sheen_roughness, report.material.normal_scale, 100 * report.front_light.relative_rms,
                 report.front_light.mean_delta_e, report.front_light.delta_e_95, 100 * report.back_light.relative_rms,
                 report.back_light.mean_delta_e, report.back_light.delta_e_95);

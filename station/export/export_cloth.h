@@ -20,7 +20,7 @@ struct ExportClothRequest {
   std::filesystem::path draft, warp, weft;  // a draft and two thread files
   std::filesystem::path out;                // a folder that is not there yet
   int size_px = 256;                        // of the textures' longer side
-  int samples_per_texel = 64;
+  int samples_per_texel = 64;               // of far views and of the sheet in proportion
   std::set<ClothExport> formats{ClothExport::textures, ClothExport::gltf, ClothExport::u3m};
   std::uint64_t seed = 1;
   double most_bytes = 0;  // of memory; 0: half of the machine's
@@ -36,7 +36,7 @@ struct ExportClothReport {
   GltfMaterial material;
   bool converged = false;
   FarFieldAgreement front_light, back_light;
-  Eigen::Array3d even_reflectance_cloth, even_reflectance_export;  // mean over the face
+  EvenLight::Seen even_cloth, even_export;  // mean over the face, under even light from in front and from behind
   std::vector<FarFieldError> pairs;
   std::vector<ComparedView> views;
 };

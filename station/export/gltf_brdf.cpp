@@ -12,6 +12,7 @@ using Eigen::Vector3d;
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kLeastCosine = 1e-3;  // of grazing views, which normal maps produce even below the horizon
 constexpr int kAlbedoSteps = 64;
+constexpr double kDielectric = 0.04;  // reflectance at normal incidence
 
 double ggx_distribution(double cos_half, double alpha) {
   const double a2 = alpha * alpha, d = cos_half * cos_half * (a2 - 1) + 1;
@@ -76,41 +77,51 @@ double SheenAlbedo::at(double cosine) const {
   return values_[below] + within * (values_[below + 1] - values_[below]);
 }
 
-GltfShader::GltfShader(const GltfMaterial& material)
-    : material_(material), f0_((0.04 * material.specular_color).min(1.0)), sheen_albedo_(material.sheen_roughness) {}
-
-double GltfShader::base_share(double cos_view, double cos_light) const {
-  const double strongest = material_.sheen_color.maxCoeff();
-  if (strongest <= 0) return 1;
-  return 1 - strongest * std::max(sheen_albedo_.at(cos_view), sheen_albedo_.at(cos_light));
+GltfGloss gloss_of(const GltfMaterial& material, const Array3d& hue) {
+  const auto tinted = [&hue](double tint) -> Array3d { return 1 - tint + tint * hue; };
+  return {.specular_color = tinted(material.specular_tint), .sheen_color = tinted(material.sheen_tint)};
 }
 
-GltfShader::Shading GltfShader::shade(const Vector3d& normal, const Vector3d& to_view,
-                                      const Vector3d& to_light) const {
-  Shading shading;
+GltfShader::GltfShader(const GltfMaterial& material)
+    : material_(material),
+      facing_reflectance_(std::min(1.0, kDielectric * material.specular_level)),
+      sheen_albedo_(material.sheen_roughness) {}
+
+Array3d GltfShader::radiance(const Lobes& lobes, const GltfGloss& gloss) const {
+  return lobes.facing * gloss.specular_color + lobes.grazing + lobes.sheen * gloss.sheen_color;
+}
+
+GltfShader::Lobes GltfShader::lobes(const Vector3d& normal, const Vector3d& to_view, const Vector3d& to_light,
+                                    double strength) const {
+  Lobes found;
   const double facing = normal.dot(to_light), cos_light = std::abs(facing);
-  if (cos_light < 1e-9) return shading;
+  if (cos_light < 1e-9) return found;
   const double cos_view = std::max(kLeastCosine, normal.dot(to_view));
   const Vector3d front_light = facing > 0 ? to_light : Vector3d(to_light - 2 * facing * normal);
   const Vector3d half = (to_view + front_light).normalized();
-  const double grazing = std::pow(1 - std::clamp(half.dot(to_view), 0.0, 1.0), 5);
-  const Array3d fresnel = material_.specular * (f0_ + (1 - f0_) * grazing);
-  const double base = base_share(cos_view, cos_light), diffuse = (1 - fresnel.maxCoeff()) * base * cos_light;
+  const double grazing = std::pow(1 - std::clamp(half.dot(to_view), 0.0, 1.0), 5),
+               specular = strength * material_.specular;
+  const double fresnel = specular * (facing_reflectance_ + (1 - facing_reflectance_) * grazing),
+               sheen_share =
+                   strength * material_.sheen * std::max(sheen_albedo_.at(cos_view), sheen_albedo_.at(cos_light)),
+               base = std::max(0.0, 1 - sheen_share), diffuse = (1 - fresnel) * base * cos_light;
   if (facing < 0) {
-    shading.transmitted = diffuse;
-    return shading;
+    found.transmitted = diffuse;
+    return found;
   }
-  shading.reflected = diffuse;
+  found.reflected = diffuse;
   const double cos_half = std::clamp(normal.dot(half), 0.0, 1.0), to_radiance = kPi * cos_light;
   const double alpha = std::pow(std::max(material_.roughness, kLeastRoughness), 2);
-  shading.fixed =
-      fresnel * (base * to_radiance * ggx_distribution(cos_half, alpha) * ggx_visibility(cos_view, cos_light, alpha));
-  if (material_.sheen_color.maxCoeff() > 0) {
+  const double highlight =
+      specular * base * to_radiance * ggx_distribution(cos_half, alpha) * ggx_visibility(cos_view, cos_light, alpha);
+  found.facing = highlight * facing_reflectance_ * (1 - grazing);
+  found.grazing = highlight * grazing;
+  if (material_.sheen > 0) {
     const double sheen_alpha = std::pow(std::max(material_.sheen_roughness, kLeastSheenRoughness), 2);
-    shading.fixed += material_.sheen_color * (to_radiance * charlie_distribution(cos_half, sheen_alpha) *
-                                              charlie_visibility(cos_view, cos_light, sheen_alpha));
+    found.sheen = strength * material_.sheen * to_radiance * charlie_distribution(cos_half, sheen_alpha) *
+                  charlie_visibility(cos_view, cos_light, sheen_alpha);
   }
-  return shading;
+  return found;
 }
 
 }  // namespace station

@@ -14,13 +14,24 @@ namespace station {
 
 // What is the same all over a cloth.
 struct GltfMaterial {
-  double roughness = 1;                                    // perceptual: alpha = roughness^2
-  double specular = 1;                                     // specularFactor
-  Eigen::Array3d specular_color = Eigen::Array3d::Ones();  // times 0.04: reflectance at normal incidence, at most 1
-  Eigen::Array3d sheen_color = Eigen::Array3d::Zero();     // in [0, 1]
-  double sheen_roughness = 0.5;                            // perceptual, as above
-  double normal_scale = 1;                                 // of the normal map's x and y
+  double roughness = 1;          // perceptual: alpha = roughness^2
+  double specular = 1;           // specularFactor, of a texel at full strength
+  double specular_level = 1;     // specularColorFactor: times 0.04 the reflectance at normal incidence
+  double specular_tint = 0;      // 0: white highlights, 1: of the texel's hue
+  double sheen = 0;              // sheenColorFactor, at most 1
+  double sheen_tint = 0;         // as of highlights
+  double sheen_roughness = 0.5;  // perceptual, as above
+  double normal_scale = 1;       // of the normal map's x and y
 };
+
+// What highlight and sheen of a texel are; colours are linear, and their largest is 1.
+struct GltfGloss {
+  double strength = 1;  // of both, in [0, 1]
+  Eigen::Array3d specular_color = Eigen::Array3d::Ones(), sheen_color = Eigen::Array3d::Ones();
+};
+
+// Of a texel of that hue (largest 1), at full strength.
+GltfGloss gloss_of(const GltfMaterial& material, const Eigen::Array3d& hue);
 
 inline constexpr double kLeastRoughness = 0.05, kLeastSheenRoughness = 0.1;
 
@@ -44,21 +55,25 @@ class GltfShader {
  public:
   explicit GltfShader(const GltfMaterial& material);
 
-  // Radiance = `fixed` + `reflected` x diffuse colour that is reflected + `transmitted` x that which is let through, for light
-  // of irradiance pi perpendicular to its direction: cosine and density are in it.
-  struct Shading {
-    Eigen::Array3d fixed = Eigen::Array3d::Zero();
-    double reflected = 0, transmitted = 0;
+  // Parts of the radiance for light of irradiance pi perpendicular to its direction; cosine and density are in them.
+  struct Lobes {
+    double facing = 0;       // times the gloss's specular colour
+    double grazing = 0;      // white
+    double sheen = 0;        // times the gloss's sheen colour
+    double reflected = 0;    // times the diffuse colour that is reflected
+    double transmitted = 0;  // times the one that is let through
   };
-  Shading shade(const Eigen::Vector3d& normal, const Eigen::Vector3d& to_view, const Eigen::Vector3d& to_light) const;
+  Lobes lobes(const Eigen::Vector3d& normal, const Eigen::Vector3d& to_view, const Eigen::Vector3d& to_light,
+              double strength) const;
+
+  // All that is not diffuse.
+  Eigen::Array3d radiance(const Lobes& lobes, const GltfGloss& gloss) const;
 
   const GltfMaterial& material() const { return material_; }
 
  private:
-  double base_share(double cos_view, double cos_light) const;
-
   GltfMaterial material_;
-  Eigen::Array3d f0_;
+  double facing_reflectance_;  // at normal incidence, in the strongest colour
   SheenAlbedo sheen_albedo_;
 };
 

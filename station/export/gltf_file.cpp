@@ -17,7 +17,7 @@ using nlohmann::json;
 // The specification's constants.
 constexpr int kFloat = 5126, kUnsignedShort = 5123, kVertices = 34962, kIndices = 34963;
 constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kRepeat = 10497;
-constexpr int kBaseColor = 0, kNormal = 1, kTransmission = 2;  // textures and images
+constexpr int kBaseColor = 0, kNormal = 1, kTransmission = 2, kSpecular = 3, kSheen = 4;  // textures and images
 
 // Bytes of a buffer with the views and accessors that describe them.
 class Buffer {
@@ -63,42 +63,51 @@ json square(Buffer& buffer, const GltfSwatch& swatch) {
           {"material", 0}};
 }
 
-json list(const Eigen::Array3d& color) {
-  return {color[0], color[1], color[2]};
+json grey(double value) {
+  return {value, value, value};
+}
+
+json texture(int index) {
+  return {{"index", index}};
 }
 
 json material_json(const GltfSwatch& swatch) {
   const GltfMaterial& material = swatch.material;
-  const json transmission{{"index", kTransmission}};
   const bool opaque = cv::countNonZero(swatch.maps.opacity != 255) == 0;
-  return {{"name", swatch.name},
-          {"doubleSided", true},
-          {"alphaMode", opaque ? "OPAQUE" : "BLEND"},
-          {"pbrMetallicRoughness",
-           {{"baseColorTexture", {{"index", kBaseColor}}},
-            {"metallicFactor", 0},
-            {"roughnessFactor", material.roughness}}},
-          {"normalTexture", {{"index", kNormal}, {"scale", material.normal_scale}}},
-          {"extensions",
-           {{"KHR_materials_specular",
-             {{"specularFactor", material.specular}, {"specularColorFactor", list(material.specular_color)}}},
-            {"KHR_materials_sheen",
-             {{"sheenColorFactor", list(material.sheen_color)}, {"sheenRoughnessFactor", material.sheen_roughness}}},
-            {"KHR_materials_diffuse_transmission",
-             {{"diffuseTransmissionFactor", swatch.maps.transmission_factor},
-              {"diffuseTransmissionTexture", transmission},
-              {"diffuseTransmissionColorTexture", transmission}}}}},
-          {"extras", swatch.extras}};
+  return {
+      {"name", swatch.name},
+      {"doubleSided", true},
+      {"alphaMode", opaque ? "OPAQUE" : "BLEND"},
+      {"pbrMetallicRoughness",
+       {{"baseColorTexture", texture(kBaseColor)}, {"metallicFactor", 0}, {"roughnessFactor", material.roughness}}},
+      {"normalTexture", {{"index", kNormal}, {"scale", material.normal_scale}}},
+      {"extensions",
+       {{"KHR_materials_specular",
+         {{"specularFactor", material.specular},
+          {"specularTexture", texture(kSpecular)},
+          {"specularColorFactor", grey(material.specular_level)},
+          {"specularColorTexture", texture(kSpecular)}}},
+        {"KHR_materials_sheen",
+         {{"sheenColorFactor", grey(material.sheen)},
+          {"sheenColorTexture", texture(kSheen)},
+          {"sheenRoughnessFactor", material.sheen_roughness}}},
+        {"KHR_materials_diffuse_transmission",
+         {{"diffuseTransmissionFactor", swatch.maps.transmission_factor},
+          {"diffuseTransmissionTexture", texture(kTransmission)},
+          {"diffuseTransmissionColorTexture", texture(kTransmission)}}}}},
+      {"extras", swatch.extras}};
 }
 
 }  // namespace
 
 void write_gltf(const std::filesystem::path& folder, const GltfSwatch& swatch) {
-  const char* const images[] = {"base_color.png", "normal.png", "transmission.png"};
+  const char* const images[] = {"base_color.png", "normal.png", "transmission.png", "specular.png", "sheen.png"};
   renderer::write_png(folder / images[kBaseColor], with_alpha(swatch.maps.base_color, swatch.maps.opacity));
   renderer::write_png(folder / images[kNormal], swatch.maps.normal);
   renderer::write_png(folder / images[kTransmission],
                       with_alpha(swatch.maps.transmission_color, swatch.maps.transmission));
+  renderer::write_png(folder / images[kSpecular], with_alpha(swatch.maps.specular_color, swatch.maps.gloss));
+  renderer::write_png(folder / images[kSheen], swatch.maps.sheen_color);
   Buffer buffer;
   const json primitive = square(buffer, swatch);
   FileSystem disk;

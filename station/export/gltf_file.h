@@ -1,4 +1,4 @@
-// A square swatch of cloth as glTF 2.0: cloth.gltf, cloth.bin and three PNG files.
+// A square swatch of cloth as glTF 2.0: cloth.gltf, cloth.bin and five PNG files.
 #pragma once
 
 #include <filesystem>

@@ -15,20 +15,23 @@ namespace {
 using Eigen::Array3d;
 using nlohmann::json;
 
-// roughness, specular, specular colour x 3, sheen colour x 3, sheen roughness, normal scale
-constexpr int kParameters = 10;
+// roughness, specular, its level and tint, sheen, its tint and roughness, normal scale
+constexpr int kParameters = 8;
 using Parameters = std::array<double, kParameters>;
-constexpr Parameters kLow{0.2, 0, 0, 0, 0, 0, 0, 0, kLeastSheenRoughness, 0},
-    kHigh{1, 1, 12.5, 12.5, 12.5, 1, 1, 1, 1, 1}, kStart{0.6, 0.5, 1, 1, 1, 0.1, 0.1, 0.1, 0.5, 0.5};
+constexpr double kMostLevel = 2;  // 8 % at normal incidence, more than any fiber has; more brings cloths no nearer
+constexpr Parameters kLow{0.2, 0, 0, 0, 0, 0, kLeastSheenRoughness, 0}, kHigh{1, 1, kMostLevel, 1, 1, 1, 1, 1},
+    kStart{0.6, 0.5, 1, 0.5, 0.1, 0.5, 0.5, 0.5};
 constexpr int kTexelsAcross = 12;
 
 GltfMaterial material_of(const double* p) {
   return {.roughness = p[0],
           .specular = p[1],
-          .specular_color = {p[2], p[3], p[4]},
-          .sheen_color = {p[5], p[6], p[7]},
-          .sheen_roughness = p[8],
-          .normal_scale = p[9]};
+          .specular_level = p[2],
+          .specular_tint = p[3],
+          .sheen = p[4],
+          .sheen_tint = p[5],
+          .sheen_roughness = p[6],
+          .normal_scale = p[7]};
 }
 
 Array3d lightness(const Array3d& radiance) {
@@ -127,8 +130,10 @@ FarFieldAgreement agreement(const std::vector<FarFieldError>& errors, bool front
 json to_json(const GltfMaterial& material) {
   return {{"roughness", material.roughness},
           {"specular", material.specular},
-          {"specular_color", list(material.specular_color)},
-          {"sheen_color", list(material.sheen_color)},
+          {"specular_level", material.specular_level},
+          {"specular_tint", material.specular_tint},
+          {"sheen", material.sheen},
+          {"sheen_tint", material.sheen_tint},
           {"sheen_roughness", material.sheen_roughness},
           {"normal_scale", material.normal_scale}};
 }

@@ -11,6 +11,9 @@ namespace station {
 
 // Of one side of a cloth; every map repeats without a seam.
 struct PbrMaps {
+  cv::Mat1b gloss;               // linear: strength of highlight and sheen
+  cv::Mat3b specular_color;      // sRGB, times specular_level
+  cv::Mat3b sheen_color;         // sRGB, times sheen: with the strength in it
   cv::Mat3b base_color;          // sRGB: diffuse colour of what is not let through; the next texel's in holes
   cv::Mat1b opacity;             // linear
   cv::Mat3b normal;              // (n + 1) / 2, y up (OpenGL); to be scaled by the material's normal_scale

@@ -10,11 +10,19 @@ using Eigen::Array3d;
 using Eigen::Vector3d;
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kNormalSteps = 24;
+constexpr int kNormalSteps = 16, kStrengthSteps = 4;
 constexpr double kLeastOpacity = 1e-3;
 
 Array3d array_of(const cv::Vec3f& v) {
   return {v[0], v[1], v[2]};
+}
+
+void add(GltfShader::Lobes& sum, double weight, const GltfShader::Lobes& lobes) {
+  sum.facing += weight * lobes.facing;
+  sum.grazing += weight * lobes.grazing;
+  sum.sheen += weight * lobes.sheen;
+  sum.reflected += weight * lobes.reflected;
+  sum.transmitted += weight * lobes.transmitted;
 }
 
 }  // namespace
@@ -24,61 +32,80 @@ Vector3d scaled_normal(const cv::Vec3f& normal, double scale) {
 }
 
 // Midpoints of equal parts of the sphere; half a circle is enough, the other half is its mirror image.
-EvenLight::EvenLight(const GltfShader& shader) {
+EvenLight::EvenLight(const GltfShader& shader) : shader_(shader) {
   constexpr int kPolar = 32, kAzimuths = 16;
-  for (int i = 0; i <= kNormalSteps; ++i) {
-    const double normal_z = static_cast<double>(i) / kNormalSteps;
-    const Vector3d normal(std::sqrt(1 - normal_z * normal_z), 0, normal_z);
-    Response sum;
-    for (int p = 0; p < kPolar; ++p) {
-      const double z = 1 - 2 * (p + 0.5) / kPolar, sine = std::sqrt(1 - z * z);
-      for (int k = 0; k < kAzimuths; ++k) {
-        const double phi = kPi * (k + 0.5) / kAzimuths;
-        const Vector3d light(sine * std::cos(phi), sine * std::sin(phi), z);
-        const GltfShader::Shading shading = shader.shade(normal, Vector3d::UnitZ(), light);
-        (z > 0 ? sum.fixed_above : sum.fixed_below) += shading.fixed;
-        (z > 0 ? sum.above_reflected : sum.below_reflected) += shading.reflected;
-        (z > 0 ? sum.above_transmitted : sum.below_transmitted) += shading.transmitted;
+  constexpr double kWeight = 4.0 / (kPolar * kAzimuths);  // solid angle of each, over pi
+  for (int i = 0; i <= kNormalSteps; ++i)
+    for (int s = 0; s <= kStrengthSteps; ++s) {
+      const double normal_z = static_cast<double>(i) / kNormalSteps,
+                   strength = static_cast<double>(s) / kStrengthSteps;
+      const Vector3d normal(std::sqrt(1 - normal_z * normal_z), 0, normal_z);
+      Response sum;
+      for (int p = 0; p < kPolar; ++p) {
+        const double z = 1 - 2 * (p + 0.5) / kPolar, sine = std::sqrt(1 - z * z);
+        for (int k = 0; k < kAzimuths; ++k) {
+          const double phi = kPi * (k + 0.5) / kAzimuths;
+          const Vector3d light(sine * std::cos(phi), sine * std::sin(phi), z);
+          add(z > 0 ? sum.above : sum.below, kWeight, shader.lobes(normal, Vector3d::UnitZ(), light, strength));
+        }
       }
+      responses_.push_back(sum);
     }
-    constexpr double kWeight = 4.0 / (kPolar * kAzimuths);  // solid angle of each, over pi
-    sum.fixed_above *= kWeight, sum.fixed_below *= kWeight;
-    sum.above_reflected *= kWeight, sum.above_transmitted *= kWeight;
-    sum.below_reflected *= kWeight, sum.below_transmitted *= kWeight;
-    responses_.push_back(sum);
+}
+
+EvenLight::Response EvenLight::at(double normal_z, double strength) const {
+  const double i = std::clamp(normal_z, 0.0, 1.0) * kNormalSteps, s = std::clamp(strength, 0.0, 1.0) * kStrengthSteps;
+  const int i0 = std::min(static_cast<int>(i), kNormalSteps - 1),
+            s0 = std::min(static_cast<int>(s), kStrengthSteps - 1);
+  Response sum;
+  for (const int di : {0, 1})
+    for (const int ds : {0, 1}) {
+      const double weight = (di == 1 ? i - i0 : 1 - i + i0) * (ds == 1 ? s - s0 : 1 - s + s0);
+      const Response& node = responses_[static_cast<std::size_t>((i0 + di) * (kStrengthSteps + 1) + s0 + ds)];
+      add(sum.above, weight, node.above);
+      add(sum.below, weight, node.below);
+    }
+  return sum;
+}
+
+EvenLight::Seen EvenLight::gloss_seen(const Response& response, const GltfGloss& gloss) const {
+  return {shader_.radiance(response.above, gloss), shader_.radiance(response.below, gloss)};
+}
+
+EvenLight::Seen EvenLight::seen(const PbrTexel& texel) const {
+  const Response r = at(texel.normal.z(), texel.gloss.strength);
+  const Seen gloss = gloss_seen(r, texel.gloss);
+  const DiffuseColors& diffuse = texel.diffuse;
+  return {gloss.reflectance + r.above.reflected * diffuse.reflected + r.above.transmitted * diffuse.transmitted,
+          gloss.transmittance + r.below.reflected * diffuse.reflected + r.below.transmitted * diffuse.transmitted};
+}
+
+void EvenLight::fit(const Seen& wanted, PbrTexel& texel) const {
+  const Vector3d normal = texel.normal;
+  for (const double lean : {1.0, 0.75, 0.5, 0.25, 0.0}) {
+    texel.normal = Vector3d(lean * normal.x(), lean * normal.y(), normal.z()).normalized();
+    if (fit_colors(wanted, texel)) return;
   }
 }
 
-EvenLight::Response EvenLight::at(double normal_z) const {
-  const double place = std::clamp(normal_z, 0.0, 1.0) * kNormalSteps;
-  const auto below = static_cast<std::size_t>(std::min(place, kNormalSteps - 1.0));
-  const double w = place - static_cast<double>(below);
-  const Response &a = responses_[below], &b = responses_[below + 1];
-  return {.fixed_above = a.fixed_above + w * (b.fixed_above - a.fixed_above),
-          .fixed_below = a.fixed_below + w * (b.fixed_below - a.fixed_below),
-          .above_reflected = a.above_reflected + w * (b.above_reflected - a.above_reflected),
-          .above_transmitted = a.above_transmitted + w * (b.above_transmitted - a.above_transmitted),
-          .below_reflected = a.below_reflected + w * (b.below_reflected - a.below_reflected),
-          .below_transmitted = a.below_transmitted + w * (b.below_transmitted - a.below_transmitted)};
-}
-
-EvenLight::Seen EvenLight::seen(const DiffuseColors& diffuse, double normal_z) const {
-  const Response r = at(normal_z);
-  return {r.fixed_above + r.above_reflected * diffuse.reflected + r.above_transmitted * diffuse.transmitted,
-          r.fixed_below + r.below_reflected * diffuse.reflected + r.below_transmitted * diffuse.transmitted};
-}
-
-DiffuseColors EvenLight::diffuse_for(const Seen& wanted, double normal_z) const {
-  const Response r = at(normal_z);
-  const Array3d above = wanted.reflectance - r.fixed_above, below = wanted.transmittance - r.fixed_below;
-  const double determinant = r.above_reflected * r.below_transmitted - r.above_transmitted * r.below_reflected;
-  DiffuseColors diffuse{(r.below_transmitted * above - r.above_transmitted * below) / determinant,
-                        (r.above_reflected * below - r.below_reflected * above) / determinant};
-  diffuse.reflected = diffuse.reflected.max(0).min(1);
-  diffuse.transmitted = diffuse.transmitted.max(0).min(1);
-  const double excess = (diffuse.reflected + diffuse.transmitted).maxCoeff();
-  if (excess > 1) diffuse.reflected /= excess, diffuse.transmitted /= excess;
-  return diffuse;
+bool EvenLight::fit_colors(const Seen& wanted, PbrTexel& texel) const {
+  constexpr double kMostGloss = 0.5;  // of what the texel sends back
+  constexpr double kSlack = 2e-3;
+  const Array3d color = wanted.reflectance.max(0);
+  const Array3d hue = color.maxCoeff() > 0 ? Array3d(color / color.maxCoeff()) : Array3d::Ones();
+  texel.gloss = gloss_of(shader_.material(), hue);
+  const Seen full = gloss_seen(at(texel.normal.z(), 1), texel.gloss);
+  texel.gloss.strength = std::min(1.0, (kMostGloss * color / full.reflectance.max(1e-9)).minCoeff());
+  const Response r = at(texel.normal.z(), texel.gloss.strength);
+  const Seen gloss = gloss_seen(r, texel.gloss);
+  const Array3d above = wanted.reflectance - gloss.reflectance, below = wanted.transmittance - gloss.transmittance;
+  const double determinant = r.above.reflected * r.below.transmitted - r.above.transmitted * r.below.reflected;
+  const DiffuseColors exact{(r.below.transmitted * above - r.above.transmitted * below) / determinant,
+                            (r.above.reflected * below - r.below.reflected * above) / determinant};
+  texel.diffuse = {exact.reflected.max(0).min(1), exact.transmitted.max(0).min(1)};
+  const double excess = (texel.diffuse.reflected + texel.diffuse.transmitted).maxCoeff();
+  if (excess > 1) texel.diffuse.reflected /= excess, texel.diffuse.transmitted /= excess;
+  return std::min(exact.reflected.minCoeff(), exact.transmitted.minCoeff()) >= -kSlack && excess <= 1 + kSlack;
 }
 
 std::vector<PbrTexel> texels_of(const BakedSide& side, const GltfShader& shader, int across) {
@@ -92,18 +119,18 @@ std::vector<PbrTexel> texels_of(const BakedSide& side, const GltfShader& shader,
       PbrTexel texel{.normal = scaled_normal(side.normal(row, column), shader.material().normal_scale),
                      .opacity = side.opacity(row, column)};
       if (texel.opacity > kLeastOpacity)
-        texel.diffuse = even.diffuse_for({array_of(side.reflectance(row, column)) / texel.opacity,
-                                          array_of(side.transmittance(row, column)) / texel.opacity},
-                                         texel.normal.z());
+        even.fit({array_of(side.reflectance(row, column)) / texel.opacity,
+                  array_of(side.transmittance(row, column)) / texel.opacity},
+                 texel);
       texels.push_back(texel);
     }
   return texels;
 }
 
 Array3d radiance(const PbrTexel& texel, const GltfShader& shader, const Vector3d& to_view, const Vector3d& to_light) {
-  const GltfShader::Shading shading = shader.shade(texel.normal, to_view, to_light);
-  return texel.opacity * (shading.fixed + shading.reflected * texel.diffuse.reflected +
-                          shading.transmitted * texel.diffuse.transmitted);
+  const GltfShader::Lobes lobes = shader.lobes(texel.normal, to_view, to_light, texel.gloss.strength);
+  return texel.opacity * (shader.radiance(lobes, texel.gloss) + lobes.reflected * texel.diffuse.reflected +
+                          lobes.transmitted * texel.diffuse.transmitted);
 }
 
 Array3d mean_radiance(const std::vector<PbrTexel>& texels, const GltfShader& shader, const Vector3d& to_view,

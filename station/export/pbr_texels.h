@@ -1,7 +1,8 @@
 // The texels of a baked cloth as a glTF surface that shows the same under even light.
 //
-// A texel's highlight and sheen are the material's; its two diffuse colours are what remains: seen straight on, it then sends
-// back and lets through as much even light as the renderer found, texel by texel and colour by colour.
+// Highlight and sheen are the material's, of the texel's own hue as far as the material tints them, and weaker where the texel
+// sends back little light, in the valleys between yarns: they make at most half of it. The two diffuse colours are what remains.
+// So, seen straight on, a texel sends back and lets through as much even light as the renderer found, colour by colour.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,6 +20,7 @@ struct DiffuseColors {
 struct PbrTexel {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, as shaded: scaled by the material's normal_scale
   double opacity = 1;
+  GltfGloss gloss{};
   DiffuseColors diffuse{};
 };
 
@@ -32,19 +34,21 @@ class EvenLight {
   struct Seen {
     Eigen::Array3d reflectance, transmittance;
   };
-  Seen seen(const DiffuseColors& diffuse, double normal_z) const;
-  // The colours with which a surface shows `wanted`; those that it cannot have are cut to the range that it has.
-  DiffuseColors diffuse_for(const Seen& wanted, double normal_z) const;
+  Seen seen(const PbrTexel& texel) const;
+  // Sets gloss and colours so that the texel shows `wanted`. A slanted texel reflects light from behind and lets light from the
+  // front through; where that is more than is wanted, its normal is raised until it is not.
+  void fit(const Seen& wanted, PbrTexel& texel) const;
 
  private:
   struct Response {
-    Eigen::Array3d fixed_above = Eigen::Array3d::Zero(), fixed_below = Eigen::Array3d::Zero();
-    // By light from above and below, of the colour that is reflected and of the one that is let through.
-    double above_reflected = 0, above_transmitted = 0, below_reflected = 0, below_transmitted = 0;
+    GltfShader::Lobes above{}, below{};  // by light from there
   };
-  Response at(double normal_z) const;
+  Response at(double normal_z, double strength) const;
+  bool fit_colors(const Seen& wanted, PbrTexel& texel) const;  // true: exactly
+  Seen gloss_seen(const Response& response, const GltfGloss& gloss) const;
 
-  std::vector<Response> responses_;  // at even steps of normal_z, 0 first
+  const GltfShader& shader_;
+  std::vector<Response> responses_;  // at even steps of normal_z, 0 first, and of the strength, 0 first, within each
 };
 
 // `across` x `across` texels of the side's picture, evenly spread; all of them where it has fewer.

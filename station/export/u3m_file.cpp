@@ -75,7 +75,9 @@ json side_json(const std::filesystem::path& folder, const std::string& side, con
     return repeated_image(path, size, measure);
   };
   const GltfMaterial& material = cloth.material;
-  const Array3d base = mean_color(maps.base_color), f0 = (0.04 * material.specular_color).min(1.0);
+  const Array3d base = mean_color(maps.base_color), specular = mean_color(maps.specular_color),
+                sheen = material.sheen * mean_color(maps.sheen_color);
+  const double f0 = std::min(1.0, 0.04 * material.specular_level);
   const cv::Size preview = cloth.preview.size();
   const double periods = cloth.preview_periods;
   return {
@@ -92,10 +94,11 @@ json side_json(const std::filesystem::path& folder, const std::string& side, con
                               maps.transmission_factor, image("transmission", maps.transmission))},
       {"roughness", constant(material.roughness)},
       {"metalness", constant(0)},
-      {"specular_value", constant(material.specular * f0.maxCoeff() / kMostSpecular)},
-      {"specular_tint", constant(tint(f0, base))},
-      {"sheen_value", constant(material.sheen_color.maxCoeff())},
-      {"sheen_tint", constant(tint(material.sheen_color, base))},
+      {"specular_value", scalar(material.specular * f0 / kMostSpecular * cv::mean(maps.gloss)[0] / 255,
+                                material.specular * f0 / kMostSpecular, image("specular", maps.gloss))},
+      {"specular_tint", constant(tint(specular, base))},
+      {"sheen_value", constant(sheen.maxCoeff())},
+      {"sheen_tint", constant(tint(sheen, base))},
       {"ior", constant(kIor)},
       {"anisotropy_value", constant(0)},
       {"anisotropy_rotation", constant(0)},
