@@ -145,9 +145,7 @@ cv::Mat3b curves(const ClothSample& cloth, const PbrMaps& maps, const GltfShader
                             .lines = {original, exported}});
   }
   const std::string png = draw(sheet, PlotFormat::png);
-  const cv::Mat1b bytes(1, static_cast<int>(png.size()),
-                        reinterpret_cast<unsigned char*>(const_cast<char*>(png.data())));
-  cv::Mat3b picture = cv::imdecode(bytes, cv::IMREAD_COLOR);
+  cv::Mat3b picture = cv::imdecode(std::vector<unsigned char>(png.begin(), png.end()), cv::IMREAD_COLOR);
   cv::cvtColor(picture, picture, cv::COLOR_BGR2RGB);
   return picture;
 }
