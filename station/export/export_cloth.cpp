@@ -27,6 +27,7 @@ class NewFolder {
  public:
   explicit NewFolder(fs::path final_name) : final_(std::move(final_name)) {
     if (!final_.has_filename()) final_ = final_.parent_path();  // written with a slash at its end
+    if (final_.empty()) throw std::runtime_error("--out is empty; give it the name of a folder");
     std::error_code ignored;
     if (fs::exists(fs::symlink_status(final_, ignored)))
       throw std::runtime_error(final_.string() + " is there already; give --out a new name, or remove it");

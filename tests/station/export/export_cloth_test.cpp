@@ -154,6 +154,7 @@ TEST_F(ExportCloth, RefusesInOneLineWhatItCannotDo) {
   expect_refused({kFixtures + "/scenes/satin_cylinder.json", "--out", out}, 1, "cylinder");
   expect_refused({kFixtures + "/scenes/skirts_four_colours.json", "--out", out}, 1, "cloths");
   expect_refused({"--out", out}, 2, "--draft");
+  expect_refused({kSwatch, "--out", ""}, 1, "--out");
   expect_refused({kSwatch, "--out", out, "--size", "8"}, 2, "--size");
   expect_refused({kSwatch, "--out", out, "--spp", "0"}, 2, "--spp");
   expect_refused({kSwatch, "--out", out, "--only", "obj"}, 2, "obj");
