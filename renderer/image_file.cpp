@@ -98,6 +98,7 @@ template <class Pixel>
 Bytes encode_png_pixels(const cv::Mat_<Pixel>& image) {
   OIIO::ImageSpec spec(image.cols, image.rows, image.channels(), OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
+  spec.attribute("oiio:UnassociatedAlpha", 1);
   return encode("png", spec, image.data, image.step);
 }
 
@@ -292,6 +293,9 @@ void write_png(const fs::path& file, const cv::Mat1b& grey) {
 }
 void write_png(const fs::path& file, const cv::Mat3b& rgb) {
   write_atomically(file, encode_png_pixels(rgb));
+}
+void write_png(const fs::path& file, const cv::Mat4b& rgba) {
+  write_atomically(file, encode_png_pixels(rgba));
 }
 
 cv::Mat1b read_png_grey(const fs::path& file) {

@@ -35,9 +35,10 @@ std::vector<ExrChannel> read_exr_channels(const std::filesystem::path& file);
 inline constexpr double kMostPicturePixels = 1e8;
 cv::Mat3f read_linear_srgb(const std::filesystem::path& file);
 
-// 8-bit PNG: a mask (grey) or display colours (RGB, already encoded).
+// 8-bit PNG: a mask (grey), display colours (RGB, already encoded), or these with opacity that they are not multiplied by.
 void write_png(const std::filesystem::path& file, const cv::Mat1b& grey);
 void write_png(const std::filesystem::path& file, const cv::Mat3b& rgb);
+void write_png(const std::filesystem::path& file, const cv::Mat4b& rgba);
 cv::Mat1b read_png_grey(const std::filesystem::path& file);
 // A PNG file's bytes, for embedding in a page.
 std::string encode_png(const cv::Mat3b& rgb);
