@@ -75,22 +75,26 @@ class Job::Process {
 
   nlohmann::json state() const {
     const std::scoped_lock lock(mutex_);
-    nlohmann::json state{{"title", title_},         {"running", !status_}, {"status", nullptr},
-                         {"done", done_},           {"total", total_},     {"label", label_},
-                         {"seconds_left", nullptr}, {"question", nullptr}, {"lines", lines_}};
+    nlohmann::json state{{"title", title_},         {"running", !status_},
+                         {"status", nullptr},       {"done", done_},
+                         {"total", total_},         {"label", label_},
+                         {"seconds_left", nullptr}, {"question", nullptr},
+                         {"asked", asked_},         {"arrangement", arrangement_},
+                         {"lines", lines_}};
     if (status_) state["status"] = *status_;
     if (seconds_left_ >= 0) state["seconds_left"] = seconds_left_;
     if (question_) state["question"] = *question_;
     return state;
   }
 
-  void answer(bool done) {
+  bool answer(int question, bool done) {
     const std::string line = done ? "\n" : "q\n";
     const std::scoped_lock lock(mutex_);
-    if (!question_ || gone_) return;
+    if (!question_ || question != asked_ || gone_) return false;
     question_.reset();
     // Shorter than a pipe holds; a process that has gone is seen by the follower.
     [[maybe_unused]] const ssize_t written = write(input_, line.data(), line.size());
+    return true;
   }
 
   void signal(int times) {
@@ -175,6 +179,7 @@ class Job::Process {
     open_line_ += text;
     for (std::size_t end = 0; (end = open_line_.find('\n')) != std::string::npos; open_line_.erase(0, end + 1)) {
       const std::string line = open_line_.substr(0, end);
+      if (read_arrangement(line)) continue;
       add_line(line);
       if (!line.empty()) unasked_.push_back(line.substr(0, kMostText));
       if (unasked_.size() > kMostLines) unasked_.erase(unasked_.begin());
@@ -182,8 +187,18 @@ class Job::Process {
     if (open_line_.size() > kMostText) open_line_.erase(0, open_line_.size() - kMostText);
     if (!open_line_.ends_with(kQuestion)) return;
     question_ = std::move(unasked_);
+    ++asked_;
     unasked_.clear();
     open_line_.clear();
+  }
+
+  // What the next question is about, for a drawing (drawing_operator.h).
+  bool read_arrangement(const std::string& line) {
+    if (!line.starts_with("{\"arrangement\"")) return false;
+    const nlohmann::json said = nlohmann::json::parse(line, nullptr, false);
+    if (!said.is_object()) return false;
+    arrangement_ = said.at("arrangement");
+    return true;
   }
 
   void read_progress(const std::string& text) {
@@ -219,6 +234,8 @@ class Job::Process {
   std::string label_, open_line_, open_progress_;
   std::vector<std::string> lines_, unasked_;
   std::optional<std::vector<std::string>> question_;
+  int asked_ = 0;
+  nlohmann::json arrangement_;
   std::jthread follower_;
 };
 
@@ -234,8 +251,8 @@ nlohmann::json Job::state() const {
   return process_->state();
 }
 
-void Job::answer(bool done) {
-  process_->answer(done);
+bool Job::answer(int question, bool done) {
+  return process_->answer(question, done);
 }
 
 void Job::pause() {
