@@ -90,7 +90,26 @@ Words cloth(const Asked& asked) {
   return words;
 }
 
-const std::map<std::string, std::function<Words(const Asked&)>> kKinds{
+using Commands = std::map<std::string, std::function<Words(const Asked&)>>;
+
+// Of a thread in the library, into a new folder of exports/.
+const Commands kExports{{"folder", [](const Asked& asked) {
+                           return Words{"library",
+                                        "export",
+                                        asked.number("number"),
+                                        "--library",
+                                        asked.workspace.library(),
+                                        "--out",
+                                        asked.workspace.exported(asked.name())};
+                         }}};
+
+Words exported(const Asked& asked) {
+  const auto format = kExports.find(asked.text("format"));
+  if (format == kExports.end()) throw Refused(400, "expected \"format\": one that the station's state offers");
+  return format->second(asked);
+}
+
+const Commands kKinds{
     {"check", check},
     {"preview",
      [](const Asked& asked) {
@@ -124,16 +143,7 @@ const std::map<std::string, std::function<Words(const Asked&)>> kKinds{
      [](const Asked& asked) {
        return Words{"library", "add", asked.session(), "--library", asked.workspace.library()};
      }},
-    {"export",
-     [](const Asked& asked) {
-       return Words{"library",
-                    "export",
-                    asked.number("number"),
-                    "--library",
-                    asked.workspace.library(),
-                    "--out",
-                    asked.workspace.exported(asked.name())};
-     }},
+    {"export", exported},
 };
 
 std::string all_kinds() {
@@ -150,6 +160,12 @@ JobCommand job_command(const json& asked, const Workspace& workspace, const fs::
   if (found == kKinds.end()) throw Refused(400, "expected \"kind\": one of " + all_kinds());
   const std::string name = text_of(asked, "name");
   return {.title = kind + (name.empty() ? "" : " " + name), .arguments = found->second({asked, workspace, rig})};
+}
+
+std::vector<std::string> export_formats() {
+  std::vector<std::string> names;
+  for (const auto& [name, command] : kExports) names.push_back(name);
+  return names;
 }
 
 fs::path ready_draft(const std::string& name) {

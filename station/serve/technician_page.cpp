@@ -162,6 +162,7 @@ json TechnicianPage::state() {
   json document = workspace_.contents();
   document["rig"] = rig_.name;
   document["drafts"] = ready_drafts();
+  document["export_formats"] = export_formats();
   document["simulated_spools"] = rig_.simulation ? simulated_spools() : std::vector<std::string>();
   document["job"] = nullptr;
   if (const std::shared_ptr<Job> of = job()) document["job"] = of->state();

@@ -2,7 +2,7 @@
 // (workspace.h) holds, and one job at a time.
 //
 //   GET  /                     the page; its other files by their names
-//   GET  /api/state            {"rig", "job", "control", "drafts", "simulated_spools", and the workspace's contents}
+//   GET  /api/state            {"rig", "job", "control", "drafts", "export_formats", "simulated_spools", and the workspace's contents}
 //   GET  /api/events           event stream: a line when something has changed
 //   GET  /api/bench            {"frame": last_frame.h, "devices": as `check` found them last, "checked_ms": when}
 //   GET  /api/session?name=    workspace.h

@@ -22,7 +22,7 @@ struct ClothColour : testing::Test {
 };
 
 TEST_F(ClothColour, ItIsReachedByAbsorptionAlone) {
-  const Srgb8 wanted{0x60, 0x80, 0x50};
+  const Srgb8 wanted{0xb0, 0xc0, 0xa0};
   double last = 0;
   const ClothColours colours(thread, patch, [&](double done) { last = done; });
   EXPECT_GT(last, 0.8);

@@ -2,8 +2,11 @@
 // validated as files are, and a run that is none of the network's business (rows 14, 37).
 #include "station/serve/technician_page.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <fstream>
@@ -213,7 +216,10 @@ TEST_F(TechnicianPage, NoNameOfARequestLeavesItsFolder) {
     EXPECT_EQ(refused_with("/api/job", {{"client", "me"}, {"kind", "cloth"}, {"name", "silk_red"}, {"draft", name}}),
               400)
         << name;
-    EXPECT_EQ(refused_with("/api/job", {{"client", "me"}, {"kind", "export"}, {"number", 1}, {"name", name}}), 400)
+    EXPECT_EQ(
+        refused_with("/api/job",
+                     {{"client", "me"}, {"kind", "export"}, {"number", 1}, {"format", "folder"}, {"name", name}}),
+        400)
         << name;
     EXPECT_EQ(
         refused_with("/api/spool",
@@ -278,6 +284,14 @@ TEST_F(TechnicianPage, TheSpoolFormWritesWhatCaptureReads) {
   const json line = get("/api/state").at("spools").at(0);
   EXPECT_EQ(line.at("sample").at("barcode"), "4006381333948");
   EXPECT_EQ(line.at("diameter_mm"), 0.5);
+}
+
+TEST(SampleFile, TheDocumentedOneIsReadAndWrittenAgain) {
+  const station::Sample sample = station::read_sample_file(std::string(FIXTURES_DIR) + "/samples/silk_blue.json");
+  EXPECT_EQ(sample.lot, "B 3");
+  const TemporaryFolder folder;
+  station::write_sample_file(folder / "sample.json", sample);
+  EXPECT_EQ(station::read_sample_file(folder / "sample.json"), sample);
 }
 
 TEST_F(TechnicianPage, ASpoolThatNoFileMayDescribeIsRefusedByTheLineOfTheFilesReader) {
@@ -359,6 +373,46 @@ TEST_F(TechnicianPage, AThreadOfTheLibraryIsShownWithItsCurves) {
   const std::string colour = thread.at("colour");
   EXPECT_GT(colour.substr(1, 2), colour.substr(3, 2));  // red silk
   EXPECT_EQ(get("/api/state").at("library")[0].at("number"), 1);
+}
+
+TEST_F(TechnicianPage, AQueueIsShownRowByRowAndABadOneSaysWhy) {
+  post("/api/control", {{"client", "me"}});
+  std::filesystem::copy(std::string(FIXTURES_DIR) + "/sessions/silk_red",
+                        folder_ / "bench/sessions/4006381333931-A-12", std::filesystem::copy_options::recursive);
+  const std::string spool = std::string(FIXTURES_DIR) + "/spools/silk_red.json";
+  std::ofstream(folder_ / "bench/queues/week.csv")
+      << "barcode,name,lot,material,colour,note,spool\n4006381333931,red,A 12,silk,,," << spool
+      << "\n4006381333948,blue,B 3,silk,,,\n";
+  std::ofstream(folder_ / "bench/queues/bad.csv") << "barcode,name,lot,material,colour,note,spool\n,,,,,,x.json\n";
+  const json queues = get("/api/state").at("queues");
+  ASSERT_EQ(queues.size(), 2U);
+  EXPECT_NE(queues[0].at("problem").get<std::string>().find("neither barcode nor name"), std::string::npos);
+  ASSERT_EQ(queues[1].at("spools").size(), 2U);
+  EXPECT_EQ(queues[1]["spools"][0].at("state"), "complete");
+  EXPECT_EQ(queues[1]["spools"][1].at("sample").at("name"), "blue");
+  EXPECT_TRUE(queues[1]["spools"][1].at("state").is_null());
+  const HttpResponse started = post(
+      "/api/job", {{"client", "me"}, {"kind", "queue"}, {"name", "week"}, {"calibration", "none"}, {"person", "-x"}});
+  EXPECT_EQ(started.status, 200) << started.body;
+  // The first is complete already.
+  ASSERT_TRUE(eventually([&] { return !job().at("question").is_null(); })) << job().dump(1);
+  EXPECT_NE(job().at("question").dump().find("4006381333948-B-3"), std::string::npos) << job().dump(1);
+  post("/api/answer", {{"client", "me"}, {"done", false}, {"question", job().at("asked")}});
+  ASSERT_TRUE(eventually([&] { return job().at("running") == false; }));
+  EXPECT_NE(job().at("lines").dump().find("4006381333931-A-12: was complete already"), std::string::npos)
+      << job().dump(1);
+}
+
+// The browsers' connections are among them: one that a job keeps open is never closed.
+TEST_F(TechnicianPage, AJobKeepsNoneOfTheServersFilesOpen) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  start_calibration();
+  close(ends[1]);
+  ASSERT_EQ(fcntl(ends[0], F_SETFL, O_NONBLOCK), 0);
+  char byte = 0;
+  EXPECT_EQ(read(ends[0], &byte, 1), 0) << "the job holds the other end";
+  close(ends[0]);
 }
 
 TEST_F(TechnicianPage, ALiveViewEndsForTheNextJob) {

@@ -6,12 +6,13 @@ import {byId, readTexts, text} from "/document.js";
 import {beginLibrary, showLibrary} from "/library.js";
 import {beginResult, showResult} from "/result.js";
 import {beginSession, chooseSession, showSession, showSessionChoice} from "/session.js";
-import {follow, inControl, post, state} from "/station.js";
+import {follow, inControl, oneAtATime, post, state} from "/station.js";
 
 let screen = "bench";
 
 const toBench = () => show("bench");
 const shows = {bench: showBench, session: () => showSession(toBench), result: showResult, library: showLibrary};
+const showScreen = oneAtATime(() => state && shows[screen] ? shows[screen]() : null);
 const stop = () => post("/api/stop");
 
 function show(name) {
@@ -21,7 +22,7 @@ function show(name) {
     if (button.dataset.screen === name) button.setAttribute("aria-current", "page");
     else button.removeAttribute("aria-current");
   }
-  if (shows[name]) shows[name]();
+  showScreen();
 }
 
 function render() {
@@ -33,7 +34,7 @@ function render() {
   showJob();
   showForms();
   showSessionChoice();
-  if (shows[screen]) shows[screen]();
+  showScreen();
 }
 
 function setTheme(name) {
@@ -43,8 +44,9 @@ function setTheme(name) {
 
 function key(event) {
   if (event.key === "Escape") { event.preventDefault(); stop(); return; }
-  if (event.ctrlKey || event.altKey || event.metaKey || /^(INPUT|SELECT|TEXTAREA|BUTTON|A)$/.test(event.target.tagName)) return;
-  if (event.key === "Enter" && !byId("question").hidden && inControl()) answer(true);
+  const on = event.target.tagName;
+  if (event.ctrlKey || event.altKey || event.metaKey || /^(INPUT|SELECT|TEXTAREA)$/.test(on)) return;
+  if (event.key === "Enter" && !/^(BUTTON|A)$/.test(on) && !byId("question").hidden && inControl()) answer(true);
   if (event.key === "p" && !byId("progress").hidden && inControl()) post("/api/pause");
   if (event.key === "t") byId("theme").click();
   const screens = [...document.querySelectorAll("#screens button")], wanted = screens[Number(event.key) - 1];

@@ -1,6 +1,6 @@
 // Library: search, two threads side by side, export.
 
-import {byId, make, percent, row, text} from "/document.js";
+import {byId, fill, make, percent, row, text} from "/document.js";
 import {curves} from "/curves.js";
 import {ask, inControl, picture, startJob, state} from "/station.js";
 import {unknownRows} from "/result.js";
@@ -27,12 +27,12 @@ function choice(thread) {
 }
 
 function exportButton(thread) {
-  const name = `thread-${thread.number}`;
+  const format = byId("export-format").value, name = `thread-${thread.number}-${format}`;
   if (state.exports.includes(name)) return make("span", {textContent: `${text("exported")}: exports/${name}`});
   const button = make("button", {type: "button", textContent: text("export"), disabled: !inControl()});
   button.setAttribute("aria-label", `${text("export")} ${thread.number}`);
   button.dataset.export = thread.number;
-  button.onclick = () => startJob({kind: "export", number: thread.number, name});
+  button.onclick = () => startJob({kind: "export", number: thread.number, format, name});
   return button;
 }
 
@@ -55,13 +55,17 @@ async function showComparison() {
 
 export function showLibrary() {
   const words = byId("search").value.trim(), found = state.library.filter(thread => matches(thread, words));
-  const mark = JSON.stringify([found, chosen, state.exports, inControl()]);
+  fill(byId("export-format"), state.export_formats, state.export_formats.map(format => text(`export_${format}`)));
+  const mark = JSON.stringify([found, chosen, state.exports, byId("export-format").value, inControl()]);
   if (mark === shown) return;
   shown = mark;
   byId("found").textContent = `${found.length} / ${state.library.length}`;
   byId("threads").replaceChildren(...found.map(thread => row(choice(thread), thread.number, thread.name, thread.sample.barcode,
     thread.sample.lot, thread.sample.colour, thread.diameter_mm, percent(thread.relative_rmse), exportButton(thread))));
-  showComparison();
+  return showComparison();
 }
 
-export function beginLibrary() { byId("search").oninput = showLibrary; }
+export function beginLibrary() {
+  byId("search").oninput = showLibrary;
+  byId("export-format").onchange = showLibrary;
+}

@@ -1,6 +1,6 @@
 // Session: the contact sheet with a verdict for each view, and what can be done next.
 
-import {byId, fill, make, text} from "/document.js";
+import {byId, fill, make, text, time} from "/document.js";
 import {ask, inControl, picture, startJob, state} from "/station.js";
 
 export let session = "";
@@ -42,12 +42,17 @@ export function chooseSession(name) { session = name; showSessionChoice(); }
 export async function showSession(started) {
   const found = session ? await ask("/api/session", {name: session}) : null;
   byId("session-state").textContent = found ? `${found.spool || ""} · ${found.state}` : text("no_session");
-  byId("taken").textContent = found ? `${found.views.filter(view => view.grade).length} / ${found.views.length} ${text("taken")}` : "";
+  byId("taken").textContent = found ? `${found.views.filter(view => view.grade).length} / ${found.views.length} ${text("taken")}${timeLeft()}` : "";
   const tiles = found ? found.views.map(view => tile(view, started)) : [];
   if (tiles.length !== byId("tiles").children.length || tiles.some(element => !element.isConnected))  // else the focus stays where it is
     byId("tiles").replaceChildren(...tiles);
   byId("report-link").hidden = !(found && found.report);
   byId("report-link").href = "/report?" + new URLSearchParams({name: session});
+}
+
+function timeLeft() {
+  const job = state.job;
+  return job && job.running && job.seconds_left !== null ? ` · ${time(job.seconds_left)} ${text("left")}` : "";
 }
 
 export function beginSession(started) {

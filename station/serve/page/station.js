@@ -2,6 +2,8 @@
 
 import {byId, text} from "/document.js";
 
+const kSoon_ms = 100, kLater_ms = 1000;  // until the state is asked for again: after a change, after a failure
+
 const client = sessionStorage.client || (sessionStorage.client = crypto.randomUUID());
 
 export let state = null;
@@ -40,17 +42,31 @@ export async function post(path, fields = {}) {
 export const startJob = fields => post("/api/job", fields);
 export const picture = query => "/picture?" + new URLSearchParams(query);
 
+// `work`, which is not begun again before it has ended: what was asked for meanwhile is done once, soon after.
+export function oneAtATime(work) {
+  let busy = false, again = false;
+  const run = async () => {
+    if (busy) { again = true; return; }
+    busy = true;
+    try {
+      await work();
+    } finally {
+      busy = false;
+      if (again) setTimeout(run, kSoon_ms);
+      again = false;
+    }
+  };
+  return run;
+}
+
 // `changed` is called now and whenever something has changed at the station.
 export async function follow(changed) {
-  let asking = false, again = false;
-  const refresh = async () => {
-    if (asking) { again = true; return; }
-    asking = true;
+  const refresh = oneAtATime(async () => {
     const found = await ask("/api/state");
-    if (found) { state = found; changed(); }
-    asking = false;
-    if (again) { again = false; setTimeout(refresh, 100); }
-  };
+    if (!found) { setTimeout(refresh, kLater_ms); return; }
+    state = found;
+    changed();
+  });
   await refresh();
   const events = new EventSource("/api/events");
   events.onmessage = refresh;

@@ -29,6 +29,8 @@ function writeRig() {
   return file;
 }
 
+const pause = count => new Promise(resolve => setTimeout(resolve, 1000 * count));
+
 let jobs = 0;
 
 // Until the job on the bench has ended well; each question is answered by the big button. Returns how many there were.
@@ -154,10 +156,11 @@ async function undisturbed(station) {
   station.expected.push(/net::ERR_/);
   const end = await disturb(station.address);
   end();
-  await station.until("the page to be back", async () => (await fetch("/api/state")).ok, 30);
-  await new Promise(resolve => setTimeout(resolve, 4000));  // a dropped event stream is opened again by then
+  const jobIsThere = () => fetch("/api/state").then(answer => answer.json()).then(state => state.job.running, () => false);
+  for (let i = 0; i < 30 && !await station.page.evaluate(jobIsThere); i++) await pause(1);
+  await pause(4);  // a dropped event stream is opened again by then
   station.expected.length = 0;
-  assert.match(await station.text("#job-title"), /running$/);
+  assert.equal(await station.page.evaluate(jobIsThere), true);
 }
 
 async function verdicts(station) {
@@ -235,11 +238,14 @@ try {
   await fit(station);
   await weave(station);
   await library(station);
+} catch (error) {
+  console.log(await station.report());
+  throw error;
 } finally {
   await station.close();
   server.stop();
 }
-for (const file of [`sessions/${session}/report.html`, "exports/thread-2/thread.json", "exports/thread-2/manifest.json"])
+for (const file of [`sessions/${session}/report.html`, "exports/thread-2-folder/thread.json", "exports/thread-2-folder/manifest.json"])
   assert.ok(existsSync(inWorkspace(file)), file);
 assert.match(execFileSync(program, ["verify", inWorkspace("sessions", session)]).toString(), /17/);
 note(`${station.shared.pictures} screenshots in ${station.folder}`);

@@ -74,7 +74,7 @@ export class WatchedPage {
     try {
       await this.page.waitForFunction(condition, {timeout: 1000 * seconds, polling: 100}, ...values);
     } catch (error) {
-      throw new Error(`waited ${seconds} s for ${what}: ${error.message}\n${await this.text("#lines")}`);
+      throw new Error(`waited ${seconds} s for ${what}: ${error.message}`);
     }
   }
 
@@ -126,6 +126,14 @@ export class WatchedPage {
       ({impact, id, nodes}) => ({impact, id, where: nodes.map(node => node.target.join(" ")).join(", ")}))));
     for (const {impact, id, where} of violations)
       if (kRefused.includes(impact)) this.problem(`${name} (${theme}): ${impact} accessibility: ${id} at ${where}`);
+  }
+
+  // What there is to say of it when something has gone wrong.
+  async report() {
+    const [page] = (await this.browser.pages()).slice(-1);
+    await page.screenshot({path: path.join(this.folder, "failure.png"), fullPage: true});
+    const state = await page.evaluate(() => fetch("/api/state").then(answer => answer.json()).then(({job}) => job && {...job, lines: job.lines.slice(-2)}, String));
+    return JSON.stringify({problems: this.shared.problems, shown: await page.$eval("main", main => main.innerText.slice(0, 400)), state}, null, 1);
   }
 
   async closePage() {
