@@ -30,7 +30,7 @@ export function draw(tag, attributes = {}, ...children) {
 
 // Puts the names into a list to choose from, and leaves what was chosen.
 export function fill(list, names, titles = names) {
-  if ([...list.options].map(option => option.value).join("\n") === names.join("\n")) return;
+  if (list.options.length === names.length && names.every((name, i) => list.options[i].value === name)) return;
   const before = list.value;
   list.replaceChildren(...names.map((name, i) => new Option(titles[i], name)));
   if (names.includes(before)) list.value = before;
