@@ -181,12 +181,16 @@ class Job::Process {
     open_line_ += text;
     for (std::size_t end = 0; (end = open_line_.find('\n')) != std::string::npos; open_line_.erase(0, end + 1)) {
       const std::string line = open_line_.substr(0, end);
-      if (read_arrangement(line)) continue;
+      if (for_machines(line)) {
+        read_arrangement(line);
+        continue;
+      }
       add_line(line);
       if (!line.empty()) unasked_.push_back(line.substr(0, kMostText));
       if (unasked_.size() > kMostLines) unasked_.erase(unasked_.begin());
     }
-    if (open_line_.size() > kMostText) open_line_.erase(0, open_line_.size() - kMostText);
+    if (open_line_.size() > kMostText)
+      open_line_.erase(1, open_line_.size() - kMostText);  // its beginning says what it is
     if (!open_line_.ends_with(kQuestion)) return;
     question_ = std::move(unasked_);
     ++asked_;
@@ -194,13 +198,13 @@ class Job::Process {
     open_line_.clear();
   }
 
+  // A result as JSON, which no person should read.
+  static bool for_machines(const std::string& line) { return line.starts_with('{') || line.starts_with('['); }
+
   // What the next question is about, for a drawing (drawing_operator.h).
-  bool read_arrangement(const std::string& line) {
-    if (!line.starts_with("{\"arrangement\"")) return false;
+  void read_arrangement(const std::string& line) {
     const nlohmann::json said = nlohmann::json::parse(line, nullptr, false);
-    if (!said.is_object()) return false;
-    arrangement_ = said.at("arrangement");
-    return true;
+    if (said.is_object() && said.contains("arrangement")) arrangement_ = said["arrangement"];
   }
 
   void read_progress(const std::string& text) {

@@ -34,7 +34,7 @@ class Job {
   bool running() const;
   // {"title", "running", "status" (of its exit; null before), "done", "total", "label", "seconds_left", "question" (what is to be
   // done, or null), "asked" (how many questions there were so far), "arrangement" (drawing_operator.h: what the bench was last asked to be; null before), "lines" (the last
-  // that were said)}
+  // that were said to people)}
   nlohmann::json state() const;
 
   // Of the question of this number ("asked" of the state): it is done, or the person declines. False, and nothing is done,

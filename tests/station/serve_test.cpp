@@ -9,14 +9,10 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <chrono>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <thread>
 
-#include "station/documents/reader.h"
 #include "station/serve/http_server.h"
 #include "station/serve/page_guard.h"
-#include "station/serve/technician_page.h"
 #include "tests/places.h"
 #include "tests/station/program.h"
 
@@ -28,7 +24,6 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 using namespace std::chrono_literals;
 using asio::ip::tcp;
-using nlohmann::json;
 using station::HttpRequest;
 using station::HttpResponse;
 using station::HttpServer;
