@@ -124,6 +124,7 @@ std::optional<fs::path> picture_of_step(const fs::path& session, const std::stri
 cv::Mat3b shown_sensor_file(const fs::path& file) {
   constexpr std::size_t kRemembered = 64;
   constexpr int kWidest = 1200;
+  constexpr double kMostBrightened = 16;  // a dark picture is to look dark
   struct Shown {
     fs::path file;
     fs::file_time_type time;
@@ -137,7 +138,8 @@ cv::Mat3b shown_sensor_file(const fs::path& file) {
     for (const Shown& one : shown)
       if (one.file == file && one.time == time) return one.picture;
   }
-  cv::Mat3b picture = display(cells_of(calibration::read_sensor_file(file)), {1, 0, 0, 0, 1, 0, 0, 0, 1});
+  const cv::Mat3f cells = cells_of(calibration::read_sensor_file(file));
+  cv::Mat3b picture = display(cells, std::min(display_scale(cells), kMostBrightened), {1, 0, 0, 0, 1, 0, 0, 0, 1});
   if (picture.cols > kWidest)
     cv::resize(picture, picture, {kWidest, picture.rows * kWidest / picture.cols}, 0, 0, cv::INTER_AREA);
   const std::scoped_lock lock(mutex);

@@ -13,7 +13,9 @@ export function showJob() {
     : `${text("kind_" + job.kind)} · ${job.title}: ${job.running ? text("running") : job.status === 0 ? text("ended_well") : text("ended_badly")}`;
   byId("job-title").className = !job || job.running ? "" : job.status === 0 ? "well" : "badly";
   byId("question").hidden = !(job && job.question);
-  byId("question").dataset.number = job ? job.asked : 0;
+  const asked = String(job ? job.asked : 0);
+  if (job && job.question && byId("question").dataset.number !== asked && !byId("bench").hidden) scrollTo(0, 0);  // to the button
+  byId("question").dataset.number = asked;
   byId("progress").hidden = !(job && job.running && !job.question);
   byId("preview").disabled = !inControl() || Boolean(job && job.running);
   if (!job) return;
