@@ -94,10 +94,11 @@ export async function showBench() {
   byId("frame").hidden = frame === null;
   if (frame === null || frame.id === shownFrame) return;
   shownFrame = frame.id;
-  byId("frame-picture").src = picture({of: "frame", id: frame.id});
   byId("frame-source").textContent = `${frame.source || text("live_view")} · ${frame.width_px} × ${frame.height_px}`;
   byId("histogram").replaceChildren(histogram(frame.histogram));
   byId("measures").replaceChildren(...measures(frame));
+  byId("frame-picture").src = picture({of: "frame", id: frame.id});
+  await byId("frame-picture").decode().catch(() => {});  // the next picture waits for this one, or none would ever be seen
 }
 
 // Of the question that the person has read, not of one that has come meanwhile.
