@@ -34,11 +34,16 @@ std::vector<EnergyBand> energy_bands(const ViewFit& fit) {
 }
 
 std::vector<EnergyBand> energy_bands(const ViewFit& fit, const Eigen::MatrixXd& covariance) {
+  std::vector<double> tenths;
+  for (int tenth = 1; tenth <= 10; ++tenth) tenths.push_back(tenth / 10.0);
+  return energy_bands(fit.unknowns, covariance, tenths);
+}
+
+std::vector<EnergyBand> energy_bands(const ThreadUnknowns& at, const Eigen::MatrixXd& covariance,
+                                     const std::vector<double>& cosines) {
   constexpr double kStep = 1e-5;
-  const ThreadUnknowns at = fit.unknowns;
   std::vector<EnergyBand> bands;
-  for (int tenth = 1; tenth <= 10; ++tenth) {
-    const double cosine = tenth / 10.0;
+  for (const double cosine : cosines) {
     const Values values = values_at(at, cosine);
     Eigen::Matrix<double, kValues, renderer::kThreadParameterCount> slopes;
     for (int k = 0; k < renderer::kThreadParameterCount; ++k) {

@@ -20,5 +20,8 @@ struct EnergyBand {
 std::vector<EnergyBand> energy_bands(const ViewFit& fit);
 // From another covariance of the fit's unknowns.
 std::vector<EnergyBand> energy_bands(const ViewFit& fit, const Eigen::MatrixXd& covariance);
+// Of a thread that was fitted earlier, at these c (0 to 1); `covariance` of its unknowns, all zero when not known.
+std::vector<EnergyBand> energy_bands(const ThreadUnknowns& at, const Eigen::MatrixXd& covariance,
+                                     const std::vector<double>& cosines);
 
 }  // namespace inversion

@@ -46,5 +46,7 @@ std::string encode_png(const cv::Mat3b& rgb);
 // linear * scale, through a 3 x 3 matrix, clipped and sRGB-encoded for display.
 cv::Mat3b encode_srgb(const cv::Mat3f& linear, double scale,
                       const cv::Matx33f& linear_srgb_from_camera = cv::Matx33f::eye());
+// A display colour (RGB) back to linear sRGB, 0 to 1.
+cv::Vec3f linear_of_srgb(const cv::Vec3b& shown);
 
 }  // namespace renderer

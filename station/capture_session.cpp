@@ -92,7 +92,8 @@ RunState run(SessionFolder& session, RigDevices& devices, const SessionFile& ask
       },
       [&] { stop_now(session, devices); });
   std::unique_ptr<rig::Operator> drawing;
-  if (asked.rig.operator_driver == "console") drawing = make_drawing_operator(*devices.person, std::cout);
+  if (asked.rig.operator_driver == "console")
+    drawing = make_drawing_operator(*devices.person, std::cout, request.progress_style == ProgressStyle::json);
   const RunDevices run_devices{*devices.camera, *devices.turntable, drawing ? *drawing : *devices.person,
                                *devices.clock};
   const RunState state = run_session(session, run_devices, asked, calibration, run);

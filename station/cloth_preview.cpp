@@ -5,10 +5,12 @@
 
 #include "renderer/image_file.h"
 #include "renderer/weave/woven_patch.h"
+#include "station/cloth_colour.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/patch_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/thread_file.h"
+#include "station/interrupt.h"
 #include "station/invert/invert_session.h"
 #include "station/render_scene.h"
 #include "station/report/display.h"
@@ -27,6 +29,8 @@ struct Stage {
 constexpr std::array<Stage, 2> kStages{Stage{"swatch", "twill_swatch.json", 360, 360, 32},
                                        Stage{"cylinder", "satin_cylinder.json", 280, 420, 32}};
 constexpr int kQuickReduction = 2;  // of sizes and samples
+constexpr const char* kMadeOf = "made_of.json";
+constexpr int kWarp = 0, kWeft = 1;  // threads of the draft
 
 std::filesystem::path cloth_folder(const std::filesystem::path& session) {
   return session / "result" / "cloth";
@@ -37,8 +41,9 @@ renderer::Draft scaled_draft(renderer::Draft draft, double diameter_mm) {
   for (renderer::YarnSystem* system : {&draft.warp, &draft.weft}) {
     system->diameter_mm *= scale;
     system->pitch_mm *= scale;
-    system->threads = {0};
   }
+  draft.warp.threads = {kWarp};
+  draft.weft.threads = {kWeft};
   draft.plies.radius_mm *= scale;
   draft.plies.turns_per_mm /= scale;
   draft.slubs.length_mm *= scale;
@@ -47,10 +52,10 @@ renderer::Draft scaled_draft(renderer::Draft draft, double diameter_mm) {
   return draft;
 }
 
-json scene_of(const Stage& stage, bool quick) {
+json scene_of(const Stage& stage, const std::array<std::string, 2>& threads, bool quick) {
   json scene = read_json_file(std::filesystem::path(THREADSTATION_FIXTURES) / "scenes" / stage.scene);
   scene["name"] = std::string("the thread as a ") + stage.name;
-  scene["threads"] = {"../thread.json"};
+  scene["threads"] = threads;
   for (json& cloth : scene["cloths"]) {
     for (const char* key : {"draft", "warp_threads", "weft_threads"}) cloth.erase(key);
     cloth["patch"] = "patch.json";
@@ -65,9 +70,37 @@ json scene_of(const Stage& stage, bool quick) {
   return scene;
 }
 
+// The files of the warp's and the weft's thread, as the scenes name them; a coloured one is written.
+std::array<std::string, 2> write_threads(const ClothPreviewRequest& request, const ThreadFile& thread,
+                                         const renderer::YarnPatch& patch, json& made_of) {
+  std::array<std::string, 2> files{"../thread.json", "../thread.json"};
+  if (!request.warp_colour && !request.weft_colour) return files;
+  constexpr int kParts = 100;
+  ProgressDisplay progress("cloth", request.progress_style);
+  const ClothColours colours(thread, patch, [&](double done) {
+    progress.show(static_cast<int>(kParts * done), kParts, "what absorption makes of the cloth");
+  });
+  const auto colour = [&](const char* system, const std::optional<Srgb8>& wanted, std::string& file) {
+    if (!wanted) return;
+    const ColouredThread coloured = colours.thread_of(*wanted);
+    ThreadFile made = thread;
+    made.name += std::string(", coloured as ") + system;
+    made.parameters = coloured.parameters;
+    made.fit = json::object();  // it was never photographed
+    file = std::string(system) + "_thread.json";
+    write_json_file(cloth_folder(request.session) / file, to_json(made));
+    made_of[system] = {{"srgb", *wanted}, {"delta_e_2000", coloured.delta_e_2000}};
+  };
+  colour("warp", request.warp_colour, files[0]);
+  colour("weft", request.weft_colour, files[1]);
+  progress.finish("colours found");
+  return files;
+}
+
 }  // namespace
 
-void preview_cloth(const ClothPreviewRequest& request) {
+json preview_cloth(const ClothPreviewRequest& request) {
+  watch_interrupts();
   const ThreadFile thread = read_thread(thread_file_of(request.session));
   const std::filesystem::path folder = cloth_folder(request.session);
   std::error_code code;
@@ -76,17 +109,27 @@ void preview_cloth(const ClothPreviewRequest& request) {
     throw std::runtime_error("cannot make " + folder.string() + ": " + code.message() +
                              "; is the session's folder writable?");
   const renderer::Draft draft = scaled_draft(read_draft(request.draft), thread.diameter_mm);
+  const renderer::YarnPatch patch = renderer::woven_patch(draft).patch;
   write_json_file(folder / "draft.json", to_json(draft));
-  write_json_file(folder / "patch.json", to_json(renderer::woven_patch(draft).patch));
+  write_json_file(folder / "patch.json", to_json(patch));
+  json made_of{{"draft", draft.name}, {"warp", nullptr}, {"weft", nullptr}};
+  const std::array<std::string, 2> threads = write_threads(request, thread, patch, made_of);
   for (const Stage& stage : kStages) {
     const std::filesystem::path scene = folder / (std::string(stage.name) + ".json");
-    write_json_file(scene, scene_of(stage, request.quick));
+    write_json_file(scene, scene_of(stage, threads, request.quick));
     std::filesystem::path picture = scene;
     picture.replace_extension(".exr");
     render_scene({.scene = scene, .out = picture, .progress = request.progress_style});
     const cv::Mat3b shown = display(renderer::read_exr(picture), thread.linear_srgb_from_camera);
     renderer::write_png(picture.replace_extension(".png"), shown);
   }
+  write_json_file(folder / kMadeOf, made_of);
+  return made_of;
+}
+
+json cloth_made_of(const std::filesystem::path& session) {
+  const std::filesystem::path file = cloth_folder(session) / kMadeOf;
+  return std::filesystem::exists(file) ? read_json_file(file) : json();
 }
 
 std::vector<std::filesystem::path> cloth_pictures(const std::filesystem::path& session) {

@@ -1,24 +1,47 @@
 #include "station/drawing_operator.h"
 
 #include <array>
+#include <nlohmann/json.hpp>
 #include <ostream>
+
+#include "station/capture/plan_file.h"
 
 namespace station {
 namespace {
 
 class DrawingOperator final : public rig::Operator {
  public:
-  DrawingOperator(rig::Operator& person, std::ostream& out) : person_(person), out_(out) {}
+  DrawingOperator(rig::Operator& person, std::ostream& out, bool for_machines)
+      : person_(person), out_(out), for_machines_(for_machines) {}
 
   void arrange(const rig::Arrangement& wanted) override {
-    out_ << "\n" << drawing(wanted) << std::flush;
+    out_ << (for_machines_ ? drawing_for_machines(wanted) : "\n" + drawing(wanted)) << std::flush;
     person_.arrange(wanted);
   }
 
  private:
   rig::Operator& person_;
   std::ostream& out_;
+  bool for_machines_;
 };
+
+const char* name_of(rig::BenchObject object) {
+  switch (object) {
+    case rig::BenchObject::nothing:
+      return "nothing";
+    case rig::BenchObject::board:
+      return "board";
+    case rig::BenchObject::spectralon:
+      return "spectralon";
+    case rig::BenchObject::holder:
+      return "holder";
+    case rig::BenchObject::colour_chart:
+      return "colour_chart";
+    case rig::BenchObject::cylinder:
+      return "cylinder";
+  }
+  return "";
+}
 
 }  // namespace
 
@@ -53,8 +76,18 @@ std::string drawing(const rig::Arrangement& wanted) {
   return text;
 }
 
-std::unique_ptr<rig::Operator> make_drawing_operator(rig::Operator& person, std::ostream& out) {
-  return std::make_unique<DrawingOperator>(person, out);
+std::string drawing_for_machines(const rig::Arrangement& wanted) {
+  const nlohmann::json line{{"arrangement",
+                             {{"object", name_of(wanted.object)},
+                              {"mounting", mounting_name(wanted.mounting)},
+                              {"on_platform", wanted.on_platform},
+                              {"lamp", lamp_name(wanted.lamp)},
+                              {"room_light", wanted.room_light}}}};
+  return line.dump() + "\n";
+}
+
+std::unique_ptr<rig::Operator> make_drawing_operator(rig::Operator& person, std::ostream& out, bool for_machines) {
+  return std::make_unique<DrawingOperator>(person, out, for_machines);
 }
 
 }  // namespace station

@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
   station::add_demo_command(app);
   station::add_devices_command(app);
   station::add_check_command(app);
+  station::add_preview_command(app);
   station::add_camera_process_command(app);
   station::add_simulate_hardware_command(app);
   station::add_calibrate_command(app);
@@ -43,6 +44,7 @@ int main(int argc, char** argv) {
   station::add_develop_command(app);
   station::add_invert_command(app);
   station::add_report_command(app);
+  station::add_cloth_command(app);
   station::add_predict_command(app);
   station::add_compare_command(app);
   station::add_library_command(app);

@@ -24,13 +24,7 @@ constexpr int kSubpixels = 3, kLeastYarns = 8;
 constexpr float kAmbient = 0.2f, kShadow = 0.4f;  // shares of the light
 
 cv::Vec3f color_of(int thread) {
-  cv::Vec3f linear;
-  const cv::Vec3b shown = thread_color(thread);
-  for (int c = 0; c < 3; ++c) {
-    const float v = static_cast<float>(shown[c]) / 255;
-    linear[c] = v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
-  }
-  return linear;
+  return renderer::linear_of_srgb(thread_color(thread));
 }
 
 YarnPatch with_two_threads(YarnPatch patch) {

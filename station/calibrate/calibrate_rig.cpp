@@ -1,8 +1,11 @@
 #include "station/calibrate/calibrate_rig.h"
 
+#include <iostream>
+
 #include "station/documents/lens_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
+#include "station/drawing_operator.h"
 #include "station/interrupt.h"
 #include "station/report/calibration_report.h"
 #include "station/rig_devices.h"
@@ -42,6 +45,11 @@ RigCalibration calibrate_rig(const CalibrateRequest& request) {
     if (!request.only.empty())
       forget_calibration_pictures(request.out, [&](CalibrationRole role) { return belongs_to(role, request.only); });
     RigDevices devices = open_rig(rig, std::nullopt, false);
+    std::unique_ptr<rig::Operator> person;  // behind its drawing, which a program makes
+    if (rig.operator_driver == "console" && request.progress_style == ProgressStyle::json) {
+      person = std::move(devices.person);
+      devices.person = make_drawing_operator(*person, std::cout, true);
+    }
     const StopOnInterrupt emergency([&devices] { devices.turntable->stop(); });
     record_calibration(plan, devices, request.out, show, interrupted);
     utc = devices.clock->utc();

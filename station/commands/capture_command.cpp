@@ -13,7 +13,7 @@ struct Arguments {
   CaptureRequest request;
   bool resume = false;
   std::vector<std::string> reshoot;
-  std::string queue;
+  std::string queue, sample;
   OutputOptions output;
 };
 
@@ -47,6 +47,7 @@ void run(Arguments& arguments) {
   CaptureRequest& request = arguments.request;
   request.progress_style = arguments.output.progress_style();
   if (!arguments.queue.empty()) return run_queue(arguments);
+  if (!arguments.sample.empty()) request.sample = read_sample_file(arguments.sample);
   const RunState state = arguments.resume ? resume_session({.session = request.out,
                                                             .unattended = request.unattended,
                                                             .record = request.record,
@@ -72,6 +73,9 @@ void add_capture_command(CLI::App& app) {
   command->add_option("--out", request.out, "session folder")->required();
   command->add_option("--plan", request.plan, "plan of one's own, from threadstation plan");
   command->add_option("--operator", request.person, "who captures; written into the session");
+  command->add_option(
+      "--sample", arguments->sample,
+      "what the lab knows of the spool beside its geometry (barcode, name, lot, material, colour, note; JSON)");
   command->add_flag("--unattended", request.unattended, "ask nobody; refused when the rig needs a person");
   command->add_flag("--record", request.record,
                     "keep test pictures and all that the devices say, so that the session can be replayed");

@@ -82,16 +82,25 @@ void add_library_command(CLI::App& app) {
   });
   CLI::App* added = add("add", "take in a session's thread, or a thread file");
   added->add_option("what", arguments->what, "session folder or thread file")->required();
+  added->add_flag("--json", arguments->json, "as JSON, for machines");
   added->callback([arguments] {
     rig::SystemClock clock;
-    print_line(Library(arguments->folder, true).add(arguments->what, clock.utc()));
+    const LibraryThread thread = Library(arguments->folder, true).add(arguments->what, clock.utc());
+    if (arguments->json)
+      std::cout << to_json(thread).dump() << "\n";
+    else
+      print_line(thread);
   });
   CLI::App* exported = add("export", "one thread with its sample and hashes, in a folder of its own");
   exported->add_option("number", arguments->number, "of the thread in the list")->required();
   exported->add_option("--out", arguments->out, "new folder")->required();
+  exported->add_flag("--json", arguments->json, "as JSON, for machines");
   exported->callback([arguments] {
     Library(arguments->folder, false).export_thread(arguments->number, arguments->out);
-    std::cout << "exported: " << arguments->out << "\n";
+    if (arguments->json)
+      std::cout << nlohmann::json{{"exported", arguments->out}}.dump() << "\n";
+    else
+      std::cout << "exported: " << arguments->out << "\n";
   });
 }
 

@@ -18,4 +18,16 @@ Sample read_sample(ObjectReader& reader) {
   return sample;
 }
 
+Sample read_sample_file(const std::filesystem::path& file) {
+  const nlohmann::json document = read_json_file(file);
+  ObjectReader reader(document, file.string(), "sample", 1);
+  return read_sample(reader);
+}
+
+void write_sample_file(const std::filesystem::path& file, const Sample& sample) {
+  nlohmann::json document = to_json(sample);
+  document.update({{"format", "threadstation/sample"}, {"version", 1}});
+  write_json_file(file, document);
+}
+
 }  // namespace station

@@ -1,6 +1,7 @@
 // What a lab knows of a spool beside its geometry; texts as people wrote them, any of them may be empty.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -16,5 +17,9 @@ struct Sample {
 
 nlohmann::json to_json(const Sample& sample);
 Sample read_sample(ObjectReader& reader);  // finishes it
+
+// As a document of its own (kind "sample", version 1). Errors: those of reader.h.
+Sample read_sample_file(const std::filesystem::path& file);
+void write_sample_file(const std::filesystem::path& file, const Sample& sample);
 
 }  // namespace station

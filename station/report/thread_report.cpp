@@ -4,20 +4,17 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "inversion/blocks.h"
 #include "renderer/image_file.h"
 #include "station/cloth_preview.h"
 #include "station/documents/thread_file.h"
 #include "station/invert/invert_session.h"
 #include "station/report/display.h"
+#include "station/report/fitted_twins.h"
 #include "station/report/html.h"
 #include "station/report/plot.h"
 
 namespace station {
 namespace {
-
-constexpr int kMargin_px = 24;
-constexpr double kGrey = 0.5;  // where the residual is zero
 
 std::string parameter_table(const ThreadFile& thread) {
   const renderer::ThreadParameters& p = thread.parameters;
@@ -47,18 +44,6 @@ std::string energy_plot(const renderer::ThreadParameters& parameters) {
   return line_plot("cos theta", "scale factor", lines);
 }
 
-// Fitted minus photographed, averaged over the fit's blocks, round a middle grey.
-cv::Mat3f residual_picture(const inversion::View& view, const cv::Mat3f& fitted, int block_px, double scale) {
-  cv::Mat3f picture(fitted.size(), cv::Vec3f(0, 0, 0));
-  for (const inversion::Block& block : inversion::mask_blocks(view.mask, block_px)) {
-    const Eigen::Array3d difference =
-        kGrey / scale + inversion::block_mean(block, fitted) - inversion::block_mean(block, view.image);
-    for (const cv::Point& at : block.pixels)
-      for (int c = 0; c < 3; ++c) picture(at)[c] = static_cast<float>(std::max(0.0, difference[c]));
-  }
-  return picture;
-}
-
 std::string figures_of(const nlohmann::json& fit, const std::string& id) {
   for (const nlohmann::json& view : fit.at("views"))
     if (view.at("id") == id)
@@ -67,32 +52,16 @@ std::string figures_of(const nlohmann::json& fit, const std::string& id) {
   return "not fitted";
 }
 
-// A view as photographed and as fitted, both inside the mask and to be displayed alike.
-struct Twins {
-  cv::Mat3f photographed, fitted;
-  double scale;
-  cv::Rect box;
-};
-
-Twins read_twins(const std::filesystem::path& session, const inversion::View& view) {
-  Twins twins{.photographed = cv::Mat3f(view.image.size(), cv::Vec3f(0, 0, 0)),
-              .fitted = renderer::read_exr(fitted_file_of(session, view.id)),
-              .scale = display_scale(view.image, view.mask),
-              .box = threads_box(view.mask, kMargin_px)};
-  view.image.copyTo(twins.photographed, view.mask);
-  return twins;
-}
-
 std::string fitted_tile(const std::filesystem::path& session, const DevelopedView& developed,
                         const ThreadFile& thread, const std::array<double, 9>& colour) {
   const inversion::View& view = developed.view;
-  const auto [photographed, fitted, scale, box] = read_twins(session, view);
+  const FittedTwins twins = read_twins(session, view);
   const auto shown = [&](const cv::Mat3f& picture, const std::string& what) {
-    return embedded_image(display(picture, scale, colour)(box).clone(), view.id + " " + what);
+    return embedded_image(display(picture, twins.scale, colour)(twins.box).clone(), view.id + " " + what);
   };
-  return "<figure>" + shown(photographed, "photographed") + shown(fitted, "fitted") +
-         shown(residual_picture(view, fitted, thread.fit.at("block_px").get<int>(), scale), "residual") +
-         "<figcaption>" + escaped(view.id) + ": photographed, fitted, fitted minus photographed (grey is none)<br>" +
+  return "<figure>" + shown(twins.photographed, "photographed") + shown(twins.fitted, "fitted") +
+         shown(residual_picture(view, twins, thread.fit.at("block_px").get<int>()), "residual") + "<figcaption>" +
+         escaped(view.id) + ": photographed, fitted, fitted minus photographed (grey is none)<br>" +
          figures_of(thread.fit, view.id) + "</figcaption></figure>\n";
 }
 
@@ -139,7 +108,7 @@ cv::Mat3b overview_picture(const std::filesystem::path& session, const Developed
   cv::Mat3b left;
   for (std::size_t i = 0; i < developed.views.size();
        i += std::max<std::size_t>(1, developed.views.size() / kShown)) {
-    const Twins twins = read_twins(session, developed.views[i].view);
+    const FittedTwins twins = read_twins(session, developed.views[i].view);
     const auto tile = [&](const cv::Mat3f& picture) {
       return fitted_into(display(picture, twins.scale, developed.linear_srgb_from_camera)(twins.box),
                          {kTile_px, kTileHeight_px});

@@ -1,7 +1,8 @@
-# cmake -DFOLDER=page -DOUT=page_files.cpp -P embed_page.cmake: the page's files as a source file.
+# cmake -DFOLDER=page -DFILES=index.html,app.js,... -DOUT=page_files.cpp -P embed_page.cmake: the page's files as a source file.
 set(text "#include \"station/serve/page_files.h\"\n\n#include <array>\n\nnamespace station {\nnamespace {\n\n")
 set(table "")
-foreach(file index.html app.js style.css texts.json)
+string(REPLACE "," ";" files "${FILES}")
+foreach(file ${files})
   file(READ ${FOLDER}/${file} bytes HEX)
   string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")
   string(MAKE_C_IDENTIFIER ${file} name)

@@ -75,22 +75,26 @@ class Job::Process {
 
   nlohmann::json state() const {
     const std::scoped_lock lock(mutex_);
-    nlohmann::json state{{"title", title_},         {"running", !status_}, {"status", nullptr},
-                         {"done", done_},           {"total", total_},     {"label", label_},
-                         {"seconds_left", nullptr}, {"question", nullptr}, {"lines", lines_}};
+    nlohmann::json state{{"title", title_},         {"running", !status_},
+                         {"status", nullptr},       {"done", done_},
+                         {"total", total_},         {"label", label_},
+                         {"seconds_left", nullptr}, {"question", nullptr},
+                         {"asked", asked_},         {"arrangement", arrangement_},
+                         {"lines", lines_}};
     if (status_) state["status"] = *status_;
     if (seconds_left_ >= 0) state["seconds_left"] = seconds_left_;
     if (question_) state["question"] = *question_;
     return state;
   }
 
-  void answer(bool done) {
+  bool answer(int question, bool done) {
     const std::string line = done ? "\n" : "q\n";
     const std::scoped_lock lock(mutex_);
-    if (!question_ || gone_) return;
+    if (!question_ || question != asked_ || gone_) return false;
     question_.reset();
     // Shorter than a pipe holds; a process that has gone is seen by the follower.
     [[maybe_unused]] const ssize_t written = write(input_, line.data(), line.size());
+    return true;
   }
 
   void signal(int times) {
@@ -119,6 +123,8 @@ class Job::Process {
     posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, progress.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    // Nothing else of ours: a connection that the process kept open would look alive to its browser for ever.
+    posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // ctrl-C in the server's terminal is not the run's
@@ -175,15 +181,30 @@ class Job::Process {
     open_line_ += text;
     for (std::size_t end = 0; (end = open_line_.find('\n')) != std::string::npos; open_line_.erase(0, end + 1)) {
       const std::string line = open_line_.substr(0, end);
+      if (for_machines(line)) {
+        read_arrangement(line);
+        continue;
+      }
       add_line(line);
       if (!line.empty()) unasked_.push_back(line.substr(0, kMostText));
       if (unasked_.size() > kMostLines) unasked_.erase(unasked_.begin());
     }
-    if (open_line_.size() > kMostText) open_line_.erase(0, open_line_.size() - kMostText);
+    if (open_line_.size() > kMostText)
+      open_line_.erase(1, open_line_.size() - kMostText);  // its beginning says what it is
     if (!open_line_.ends_with(kQuestion)) return;
     question_ = std::move(unasked_);
+    ++asked_;
     unasked_.clear();
     open_line_.clear();
+  }
+
+  // A result as JSON, which no person should read.
+  static bool for_machines(const std::string& line) { return line.starts_with('{') || line.starts_with('['); }
+
+  // What the next question is about, for a drawing (drawing_operator.h).
+  void read_arrangement(const std::string& line) {
+    const nlohmann::json said = nlohmann::json::parse(line, nullptr, false);
+    if (said.is_object() && said.contains("arrangement")) arrangement_ = said["arrangement"];
   }
 
   void read_progress(const std::string& text) {
@@ -219,6 +240,8 @@ class Job::Process {
   std::string label_, open_line_, open_progress_;
   std::vector<std::string> lines_, unasked_;
   std::optional<std::vector<std::string>> question_;
+  int asked_ = 0;
+  nlohmann::json arrangement_;
   std::jthread follower_;
 };
 
@@ -234,8 +257,8 @@ nlohmann::json Job::state() const {
   return process_->state();
 }
 
-void Job::answer(bool done) {
-  process_->answer(done);
+bool Job::answer(int question, bool done) {
+  return process_->answer(question, done);
 }
 
 void Job::pause() {

@@ -33,10 +33,13 @@ class Job {
 
   bool running() const;
   // {"title", "running", "status" (of its exit; null before), "done", "total", "label", "seconds_left", "question" (what is to be
-  // done, or null), "lines" (the last that were said)}
+  // done, or null), "asked" (how many questions there were so far), "arrangement" (drawing_operator.h: what the bench was last asked to be; null before), "lines" (the last
+  // that were said to people)}
   nlohmann::json state() const;
 
-  void answer(bool done);  // of the question: it is done, or the person declines. Nothing without a question.
+  // Of the question of this number ("asked" of the state): it is done, or the person declines. False, and nothing is done,
+  // when that question is not open: a second click on the same button must not answer the next one.
+  bool answer(int question, bool done);
   void pause();            // ctrl-C: at the next safe point
   void stop_now();         // both ctrl-C: the platform stops at once, whatever is under way is given up
 

@@ -9,14 +9,10 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <chrono>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <thread>
 
-#include "station/documents/reader.h"
 #include "station/serve/http_server.h"
 #include "station/serve/page_guard.h"
-#include "station/serve/technician_page.h"
 #include "tests/places.h"
 #include "tests/station/program.h"
 
@@ -28,7 +24,6 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 using namespace std::chrono_literals;
 using asio::ip::tcp;
-using nlohmann::json;
 using station::HttpRequest;
 using station::HttpResponse;
 using station::HttpServer;
@@ -252,126 +247,6 @@ TEST(HttpServer, WatchersHearOfEachChangeAndMayGo) {
   for (int i = 0; i < 100; ++i) server->publish("changed");
   std::string heard;
   asio::read_until(first, asio::dynamic_buffer(heard), "data: changed\n\n");
-}
-
-// ---- one in control, the run on its own (rows 14, 37)
-
-class TechnicianPage : public testing::Test {
- protected:
-  TechnicianPage() {
-    json rig = station::read_json_file(std::string(FIXTURES_DIR) + "/rigs/simulated.json");
-    rig["operator"] = "console";
-    std::ofstream(folder_ / "rig.json") << rig.dump();
-    page_ = std::make_unique<station::TechnicianPage>(
-        folder_ / "rig.json", folder_ / "bench", [this] { ++changes_; }, THREADSTATION_PROGRAM);
-  }
-
-  HttpResponse post(const std::string& path, const json& fields) {
-    const HttpRequest request{.method = "POST", .path = path, .body = fields.dump()};
-    if (auto urgent = page_->urgent(request)) return *urgent;
-    return page_->handle(request);
-  }
-  json get(const std::string& path, const std::string& name = "") {
-    HttpRequest request{.method = "GET", .path = path};
-    if (!name.empty()) request.query["name"] = name;
-    return json::parse(page_->handle(request).body);
-  }
-  json job() { return get("/api/state").at("job"); }
-
-  template <class Condition>
-  bool eventually(const Condition& condition) {
-    for (int i = 0; i < 600; ++i) {
-      if (condition()) return true;
-      std::this_thread::sleep_for(50ms);
-    }
-    return false;
-  }
-  void start_calibration() {
-    EXPECT_EQ(post("/api/control", {{"client", "me"}}).status, 200);
-    const HttpResponse started = post("/api/job", {{"client", "me"}, {"kind", "calibrate"}, {"name", "monday"}});
-    ASSERT_EQ(started.status, 200) << started.body;
-    ASSERT_TRUE(eventually([&] { return !job().at("question").is_null(); })) << job().dump(1);
-  }
-
-  TemporaryFolder folder_;
-  std::atomic<int> changes_ = 0;
-  std::unique_ptr<station::TechnicianPage> page_;
-};
-
-TEST_F(TechnicianPage, OneBrowserIsInControlAndAnotherMayTakeOver) {
-  const json start{{"client", "me"}, {"kind", "report"}, {"name", "none"}};
-  EXPECT_EQ(post("/api/job", start).status, 409);
-  EXPECT_EQ(post("/api/control", {{"client", "me"}}).status, 200);
-  EXPECT_EQ(post("/api/job", start).status, 404);  // there is no such session
-  EXPECT_EQ(post("/api/control", {{"client", "you"}}).status, 409);
-  EXPECT_EQ(post("/api/control", {{"client", "you"}, {"take", true}}).status, 200);
-  EXPECT_EQ(post("/api/job", start).status, 409);
-  EXPECT_EQ(get("/api/state").at("control"), "you");
-  EXPECT_GE(changes_, 2);
-}
-
-TEST_F(TechnicianPage, NamesThatLeaveTheWorkspaceAreRefused) {
-  post("/api/control", {{"client", "me"}});
-  for (const char* name : {"../x", "/etc", "", "a/b", "-x", ".hidden", "CON"}) {
-    EXPECT_EQ(post("/api/job", {{"client", "me"}, {"kind", "develop"}, {"name", name}}).status, 400) << name;
-    HttpRequest request{.method = "GET", .path = "/report", .query = {{"name", name}}};
-    EXPECT_EQ(page_->handle(request).status, 400) << name;
-  }
-  EXPECT_EQ(post("/api/job", {{"client", "me"}, {"kind", "rm"}, {"name", "x"}}).status, 400);
-  EXPECT_EQ(post("/api/job", json::array()).status, 400);
-  EXPECT_EQ(post("/api/answer", {{"client", "me"}, {"done", true}}).status, 409);  // nothing is running
-}
-
-TEST_F(TechnicianPage, AQuestionIsShownAndItsAnswerReachesTheRun) {
-  start_calibration();
-  const json question = job().at("question");
-  EXPECT_FALSE(question.empty());
-  EXPECT_EQ(post("/api/job", {{"client", "me"}, {"kind", "calibrate"}, {"name", "two"}}).status, 409);
-  EXPECT_EQ(post("/api/answer", {{"client", "me"}, {"done", false}}).status, 200);
-  ASSERT_TRUE(eventually([&] { return job().at("running") == false; }));
-  EXPECT_EQ(job().at("status"), 1);
-  EXPECT_NE(job().at("lines").dump().find("the person declined"), std::string::npos) << job().dump(1);
-}
-
-TEST_F(TechnicianPage, TheEmergencyStopIsAnybodysAndEndsTheRun) {
-  start_calibration();
-  const auto began = std::chrono::steady_clock::now();
-  EXPECT_EQ(post("/api/stop", {{"client", "a watcher"}}).status, 200);
-  EXPECT_LT(std::chrono::steady_clock::now() - began, 1s);
-  ASSERT_TRUE(eventually([&] { return job().at("running") == false; }));
-  EXPECT_NE(job().at("status"), 0);
-}
-
-TEST_F(TechnicianPage, ASessionIsShownAsItsJournalHasItNow) {
-  const std::filesystem::path folder = folder_ / "bench/sessions/silk_red";
-  std::filesystem::copy(std::string(FIXTURES_DIR) + "/sessions/silk_red", folder,
-                        std::filesystem::copy_options::recursive);
-  const json shown = get("/api/session", "silk_red");
-  EXPECT_EQ(shown.at("state"), "complete");
-  ASSERT_EQ(shown.at("views").size(), 17U);
-  for (const json& view : shown["views"]) EXPECT_EQ(view.at("grade"), "good") << view;
-  std::ifstream stream(folder / "journal.jsonl");
-  std::string journal{std::istreambuf_iterator<char>(stream), {}};
-  journal.resize(journal.rfind('\n', journal.size() - 2) + 1);  // without its stop
-  std::ofstream(folder / "journal.jsonl") << journal;
-  EXPECT_EQ(get("/api/state").at("sessions")[0].at("state"), "interrupted");
-}
-
-TEST_F(TechnicianPage, ThePageAndItsPartsAreThere) {
-  for (const char* path : {"/", "/app.js", "/style.css", "/texts.json"}) {
-    const HttpResponse answer = page_->handle({.method = "GET", .path = path});
-    EXPECT_EQ(answer.status, 200) << path;
-    EXPECT_GT(answer.body.size(), 500U) << path;
-  }
-  EXPECT_EQ(page_->handle({.method = "GET", .path = "/../rig.json"}).status, 404);
-  EXPECT_EQ(page_->handle({.method = "GET", .path = "/\xff\xfe"}).status, 404);
-  // Every text that the page asks for is in the one file.
-  const json texts = json::parse(page_->handle({.method = "GET", .path = "/texts.json"}).body);
-  const std::string page = page_->handle({.method = "GET", .path = "/"}).body;
-  for (std::size_t at = 0; (at = page.find("data-text=\"", at)) != std::string::npos;) {
-    at += 11;
-    EXPECT_TRUE(texts.contains(page.substr(at, page.find('"', at) - at))) << page.substr(at, 30);
-  }
 }
 
 TEST(Serve, WhatOpensTheStationToOthersNeedsATokenAndAName) {

@@ -38,7 +38,7 @@ TEST(DrawingOperator, EveryArrangementHasADrawingOfItsOwnThatFitsATerminal) {
 TEST(DrawingOperator, DrawsAndThenAsks) {
   FakePerson person;
   std::ostringstream out;
-  make_drawing_operator(person, out)->arrange({.object = rig::BenchObject::holder, .lamp = rig::Lamp::back});
+  make_drawing_operator(person, out, false)->arrange({.object = rig::BenchObject::holder, .lamp = rig::Lamp::back});
   EXPECT_EQ(person.asked.size(), 1U);
   EXPECT_THAT(out.str(), HasSubstr("behind"));
 }

@@ -1,0 +1,83 @@
+#include "station/cloth_colour.h"
+
+#include <Eigen/Dense>
+#include <stdexcept>
+
+#include "calibration/colour_chart.h"
+#include "renderer/camera.h"
+#include "renderer/cloth_shape.h"
+#include "renderer/image_file.h"
+#include "renderer/path_tracer.h"
+#include "renderer/weave/patch_curves.h"
+#include "station/interrupt.h"
+
+namespace station {
+namespace {
+
+using Eigen::Array3d;
+using Eigen::Vector3d;
+using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+std::array<inversion::AbsorptionCurve, 3> curves_of(const ThreadFile& thread, const renderer::YarnPatch& patch,
+                                                    const std::function<void(double)>& done) {
+  constexpr int kCount = 10;
+  int calls = 0;
+  return inversion::measure_absorption_curves(
+      [&](double sigma_a) {
+        if (interrupted()) throw std::runtime_error("the colours of the cloth were interrupted");
+        done(static_cast<double>(calls++) / kCount);
+        renderer::ThreadParameters coloured = thread.parameters;
+        for (int c = 0; c < 3; ++c) coloured.sigma_a[c] = sigma_a;
+        return even_light_reflectance(patch, coloured);
+      },
+      kCount);
+}
+
+}  // namespace
+
+// Of its middle, seen from above: one whole period, so that every crossing counts alike.
+Array3d even_light_reflectance(const renderer::YarnPatch& patch, const renderer::ThreadParameters& thread,
+                               std::uint64_t seed) {
+  constexpr int kSide_px = 24, kSamples = 16, kMargin_periods = 4;
+  constexpr double kEye_mm = 2000;
+  const double width = patch.period_x_mm, height = patch.period_y_mm;
+  const auto threads = static_cast<std::size_t>(1 + renderer::threads_of(patch).back());
+  renderer::Scene scene;
+  const renderer::SwatchShape swatch{.width_mm = 2 * kMargin_periods * width,
+                                     .height_mm = 2 * kMargin_periods * height};
+  scene.cloths.push_back({.surface = renderer::surface_of(swatch, patch, Eigen::Isometry3d::Identity()),
+                          .patch = patch,
+                          .threads = std::vector<renderer::ScatteringModel>(threads, thread)});
+  scene.surroundings = renderer::EnvironmentLight{.radiance = cv::Mat3f(8, 16, cv::Vec3f(1, 1, 1))};
+  renderer::Camera camera =
+      renderer::look_at({width / 2, height / 2, kEye_mm}, {width / 2, height / 2, 0}, {0, 1, 0});
+  camera.width = camera.height = kSide_px;
+  camera.fx = kSide_px * kEye_mm / width;
+  camera.fy = kSide_px * kEye_mm / height;
+  camera.cx = camera.cy = (kSide_px - 1) / 2.0;
+  const cv::Scalar mean =
+      cv::mean(renderer::PathTracer(scene).render(camera, {.samples_per_pixel = kSamples, .seed = seed}));
+  return {mean[0], mean[1], mean[2]};
+}
+
+ClothColours::ClothColours(const ThreadFile& thread, const renderer::YarnPatch& patch,
+                           const std::function<void(double)>& done)
+    : thread_(thread), curves_(curves_of(thread, patch, done)) {}
+
+ColouredThread ClothColours::thread_of(const Srgb8& colour) const {
+  const Matrix to_srgb = Eigen::Map<const Matrix>(thread_.linear_srgb_from_camera.data());
+  const cv::Vec3f decoded = renderer::linear_of_srgb({colour[0], colour[1], colour[2]});
+  const Vector3d linear(decoded[0], decoded[1], decoded[2]), wanted = to_srgb.inverse() * linear;
+  ColouredThread made{.parameters = thread_.parameters};
+  Vector3d reached;
+  for (int c = 0; c < 3; ++c) {
+    const inversion::AbsorptionCurve& curve = curves_[static_cast<std::size_t>(c)];
+    made.parameters.sigma_a[c] = curve.sigma_a(wanted[c]);
+    reached[c] = curve.reflectance(made.parameters.sigma_a[c]);
+  }
+  made.delta_e_2000 = calibration::delta_e_2000(calibration::lab_of_linear_srgb(linear),
+                                                calibration::lab_of_linear_srgb((to_srgb * reached).cwiseMax(0)));
+  return made;
+}
+
+}  // namespace station

@@ -1,0 +1,181 @@
+#include "station/serve/job_command.h"
+
+#include <functional>
+#include <map>
+
+#include "station/serve/page_answers.h"
+
+namespace station {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using Words = std::vector<std::string>;
+
+constexpr std::size_t kLongestText = 200;
+
+struct Asked {
+  const json& fields;
+  const Workspace& workspace;
+  const fs::path& rig;
+
+  std::string name() const { return name_of(fields, "name"); }
+  fs::path session() const { return workspace.existing_session(name()); }
+  fs::path calibration() const { return workspace.calibration(name_of(fields, "calibration")); }
+  std::string text(const char* key) const {
+    const std::string text = text_of(fields, key);
+    if (text.size() > kLongestText) throw Refused(400, std::string("the text of \"") + key + "\" is too long");
+    return text;
+  }
+  std::string number(const char* key) const {
+    const auto found = fields.find(key);
+    if (found == fields.end() || !found->is_number_unsigned())
+      throw Refused(400, std::string("expected \"") + key + "\": a number");
+    return std::to_string(found->get<unsigned>());
+  }
+  bool flag(const char* key) const {
+    const auto found = fields.find(key);
+    return found != fields.end() && found->is_boolean() && found->get<bool>();
+  }
+};
+
+Words check(const Asked& asked) {
+  Words words{"check", "--rig", asked.rig};
+  if (!text_of(asked.fields, "calibration").empty())
+    words.insert(words.end(), {"--calibration", asked.calibration().string()});
+  return words;
+}
+
+Words capture(const Asked& asked) {
+  const std::string spool = name_of(asked.fields, "spool");
+  Words words{"capture",
+              "--rig",
+              asked.rig,
+              "--calibration",
+              asked.calibration(),
+              "--spool",
+              asked.workspace.spool(spool),
+              "--out",
+              asked.workspace.session(asked.name()),
+              "--operator=" + asked.text("person")};
+  if (fs::exists(asked.workspace.sample(spool)))
+    words.insert(words.end(), {"--sample", asked.workspace.sample(spool).string()});
+  return words;
+}
+
+Words queue(const Asked& asked) {
+  return {"capture",
+          "--queue",
+          asked.workspace.queue(asked.name()),
+          "--rig",
+          asked.rig,
+          "--calibration",
+          asked.calibration(),
+          "--out",
+          asked.workspace.folder() / "sessions",
+          "--operator=" + asked.text("person")};
+}
+
+Words invert(const Asked& asked) {
+  Words words{"invert", asked.session()};
+  if (asked.flag("quick")) words.insert(words.end(), {"--paths", "128", "--paths", "256", "--spp", "4"});
+  return words;
+}
+
+Words cloth(const Asked& asked) {
+  Words words{"cloth", asked.session(), "--draft", ready_draft(name_of(asked.fields, "draft"))};
+  for (const auto& [key, option] : {std::pair("warp_colour", "--warp-colour="), {"weft_colour", "--weft-colour="}})
+    if (const std::string colour = asked.text(key); !colour.empty()) words.push_back(option + colour);
+  if (asked.flag("quick")) words.emplace_back("--quick");
+  return words;
+}
+
+using Commands = std::map<std::string, std::function<Words(const Asked&)>>;
+
+// Of a thread in the library, into a new folder of exports/.
+const Commands kExports{{"folder", [](const Asked& asked) {
+                           return Words{"library",
+                                        "export",
+                                        asked.number("number"),
+                                        "--library",
+                                        asked.workspace.library(),
+                                        "--out",
+                                        asked.workspace.exported(asked.name())};
+                         }}};
+
+Words exported(const Asked& asked) {
+  const auto format = kExports.find(asked.text("format"));
+  if (format == kExports.end()) throw Refused(400, "expected \"format\": one that the station's state offers");
+  return format->second(asked);
+}
+
+const Commands kKinds{
+    {"check", check},
+    {"preview",
+     [](const Asked& asked) {
+       return Words{"preview", "--rig", asked.rig, "--out", asked.workspace.preview()};
+     }},
+    {"calibrate",
+     [](const Asked& asked) {
+       return Words{"calibrate", "--rig", asked.rig, "--out", asked.workspace.calibration(asked.name())};
+     }},
+    {"capture", capture},
+    {"queue", queue},
+    {"resume",
+     [](const Asked& asked) {
+       return Words{"capture", "--resume", "--out", asked.session()};
+     }},
+    {"reshoot",
+     [](const Asked& asked) {
+       return Words{"capture", "--out", asked.session(), "--reshoot", asked.number("view")};
+     }},
+    {"develop",
+     [](const Asked& asked) {
+       return Words{"develop", asked.session()};
+     }},
+    {"invert", invert},
+    {"report",
+     [](const Asked& asked) {
+       return Words{"report", asked.session()};
+     }},
+    {"cloth", cloth},
+    {"add",
+     [](const Asked& asked) {
+       return Words{"library", "add", asked.session(), "--library", asked.workspace.library()};
+     }},
+    {"export", exported},
+};
+
+std::string all_kinds() {
+  std::string names;
+  for (const auto& [name, words] : kKinds) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
+}  // namespace
+
+JobCommand job_command(const json& asked, const Workspace& workspace, const fs::path& rig) {
+  const std::string kind = text_of(asked, "kind");
+  const auto found = kKinds.find(kind);
+  if (found == kKinds.end()) throw Refused(400, "expected \"kind\": one of " + all_kinds());
+  const std::string name = text_of(asked, "name");
+  return {.title = kind + (name.empty() ? "" : " " + name), .arguments = found->second({asked, workspace, rig})};
+}
+
+std::vector<std::string> export_formats() {
+  std::vector<std::string> names;
+  for (const auto& [name, command] : kExports) names.push_back(name);
+  return names;
+}
+
+fs::path ready_draft(const std::string& name) {
+  const fs::path file = fs::path(THREADSTATION_FIXTURES) / "drafts" / (checked_name(name) + ".json");
+  if (!fs::exists(file)) throw Refused(404, "there is no draft " + name);
+  return file;
+}
+
+std::vector<std::string> ready_drafts() {
+  return files_in(fs::path(THREADSTATION_FIXTURES) / "drafts", ".json");
+}
+
+}  // namespace station

@@ -1,0 +1,35 @@
+// What the page may have the program do: the command line of a job that a browser asked for.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "station/serve/workspace.h"
+
+namespace station {
+
+// kind, and what it needs beside "name" (of a calibration, session, queue or export):
+//   check (calibration, may be empty), preview          no name
+//   calibrate
+//   capture (calibration, spool, person), resume, reshoot (view), queue (calibration, person)
+//   develop, invert (quick), report, cloth (draft, warp_colour, weft_colour, quick), add
+//   export (number, format)
+struct JobCommand {
+  std::string title;                   // for people
+  std::vector<std::string> arguments;  // of this program
+};
+
+// Every name is whitelisted before it becomes a part of a path, and no argument is anything but a name, a number or a text
+// behind its option's "=". Throws Refused for what may not be asked.
+JobCommand job_command(const nlohmann::json& asked, const Workspace& workspace, const std::filesystem::path& rig);
+
+// In what forms a thread of the library may be exported.
+std::vector<std::string> export_formats();
+
+// Ready weave drafts that `cloth` may be asked for, by name.
+std::filesystem::path ready_draft(const std::string& name);
+std::vector<std::string> ready_drafts();
+
+}  // namespace station

@@ -1,0 +1,116 @@
+// Bench: the next instruction and its big button; what the camera sees, and how the bench stands.
+
+import {byId, draw, items, make, text, time} from "/document.js";
+import {ask, inControl, picture, post, startJob, state} from "/station.js";
+import {stepPicture} from "/step_picture.js";
+
+let shownFrame = "", shownArrangement = "";
+
+export function showJob() {
+  const job = state.job;
+  document.body.dataset.job = !job ? "none" : `${job.number} ${job.running ? "running" : "ended"}`;
+  byId("job-title").textContent = !job ? text("idle")
+    : `${text("kind_" + job.kind)} · ${job.title}: ${job.running ? text("running") : job.status === 0 ? text("ended_well") : text("ended_badly")}`;
+  byId("job-title").className = !job || job.running ? "" : job.status === 0 ? "well" : "badly";
+  byId("question").hidden = !(job && job.question);
+  const asked = String(job ? job.asked : 0);
+  if (job && job.question && byId("question").dataset.number !== asked && !byId("bench").hidden) scrollTo(0, 0);  // to the button
+  byId("question").dataset.number = asked;
+  byId("progress").hidden = !(job && job.running && !job.question);
+  byId("preview").disabled = !inControl() || Boolean(job && job.running);
+  if (!job) return;
+  if (job.question) {
+    items(byId("instructions"), job.question.filter(line => line.trim()));
+    showStep(job.arrangement);
+  }
+  byId("label").textContent = `${job.done} / ${job.total} ${job.label}`;
+  byId("bar").value = job.total ? job.done / job.total : 0;
+  byId("left").textContent = job.seconds_left === null ? "" : `${time(job.seconds_left)} ${text("left")}`;
+  byId("pause").textContent = text(job.kind === "preview" ? "end_preview" : "pause");
+  const lines = byId("lines"), end = lines.scrollTop + lines.clientHeight >= lines.scrollHeight - 4;
+  lines.textContent = job.lines.join("\n");
+  if (end) lines.scrollTop = lines.scrollHeight;
+}
+
+function showStep(arrangement) {
+  const wanted = JSON.stringify(arrangement);
+  if (wanted === shownArrangement) return;
+  shownArrangement = wanted;
+  byId("step").replaceChildren(...(arrangement ? [stepPicture(arrangement)] : []));
+}
+
+function histogram(bins) {
+  const most = Math.max(1e-6, ...["r", "g", "b"].flatMap(channel => bins[channel]));
+  const curve = channel => "M0 100 " + bins[channel].map((part, i) => `L${i * 4 + 2} ${100 - 96 * Math.sqrt(part / most)}`).join(" ") + " L256 100 z";
+  return draw("svg", {viewBox: "0 0 256 100", preserveAspectRatio: "none", role: "img", "aria-label": text("histogram")},
+    ...["r", "g", "b"].map(channel => draw("path", {d: curve(channel), class: `channel ${channel}`})));
+}
+
+// Value between 0 and 1 with a mark where it should be.
+function bar(label, value, aim, words) {
+  const meter = draw("svg", {viewBox: "0 0 100 10", preserveAspectRatio: "none", role: "img", "aria-label": `${label}: ${words}`},
+    draw("rect", {x: 0, y: 0, width: 100, height: 10, class: "empty"}),
+    draw("rect", {x: 0, y: 0, width: 100 * Math.min(1, Math.max(0, value)), height: 10, class: "level"}),
+    ...(aim === null ? [] : [draw("line", {x1: 100 * aim, x2: 100 * aim, y1: 0, y2: 10, class: "aim"})]));
+  return make("div", {className: "meter"}, make("span", {textContent: label}), meter, make("strong", {textContent: words}));
+}
+
+function measures(frame) {
+  const found = [];
+  if (frame.exposure)
+    found.push(bar(text("exposure"), frame.exposure.level, frame.exposure.aim,
+                   `${(100 * frame.exposure.level).toFixed(0)} % · ${frame.exposure.exposure_s.toPrecision(2)} s · ${(100 * frame.exposure.saturated).toFixed(1)} % ${text("saturated")}`));
+  found.push(frame.focus
+    ? bar(text("focus"), 1 - frame.focus.blur_px / (frame.focus.bad_px * 1.5), 1 - frame.focus.doubtful_px / (frame.focus.bad_px * 1.5),
+          `${frame.focus.blur_px.toFixed(2)} px · ${text(frame.focus.blur_px > frame.focus.bad_px ? "bad" : frame.focus.blur_px > frame.focus.doubtful_px ? "doubtful" : "good")}`)
+    : make("div", {className: "meter"}, make("span", {textContent: text("focus")}), make("strong", {textContent: text("no_edge")})));
+  found.push(make("div", {className: "meter"}, make("span", {textContent: text("tags")}),
+    make("strong", {textContent: frame.tags.map(one => `${text("tags_" + one.where)} ${one.seen} / ${one.printed}`).join(" · ")})));
+  if (frame.lamp && frame.lamp.length) {
+    const values = frame.lamp.map(one => one.percent), last = values.at(-1);
+    const low = Math.min(95, ...values), high = Math.max(105, ...values), y = value => 30 - 30 * (value - low) / (high - low);
+    const line = draw("svg", {viewBox: "0 0 100 30", preserveAspectRatio: "none", role: "img", "aria-label": text("lamp_drift")},
+      draw("line", {x1: 0, x2: 100, y1: y(100), y2: y(100), class: "aim"}),
+      draw("polyline", {points: values.map((value, i) => `${values.length > 1 ? 100 * i / (values.length - 1) : 50},${y(value)}`).join(" "), class: "drift"}));
+    found.push(make("div", {className: "meter"}, make("span", {textContent: text("lamp_drift")}), line,
+                    make("strong", {textContent: `${last.toFixed(1)} %`})));
+  }
+  return found;
+}
+
+function devices(list) {
+  return list.map(device => make("li", {className: device.passed === null ? "" : device.passed ? "well" : "badly"},
+    make("strong", {textContent: `${device.device}: ${text(device.passed === null ? "never_checked" : device.passed ? "sound" : "failed")}`}),
+    ...device.rows.filter(one => !one.passed).map(one => make("p", {textContent: `${one.name}: ${one.what}`}))));
+}
+
+export async function showBench() {
+  const bench = await ask("/api/bench");
+  if (!bench) return;
+  byId("devices").replaceChildren(...devices(bench.devices));
+  byId("checked").textContent = bench.checked_ms === null ? "" : `${text("checked")} ${new Date(bench.checked_ms).toLocaleString()}`;
+  const frame = bench.frame;
+  byId("no-frame").hidden = frame !== null;
+  byId("frame").hidden = frame === null;
+  if (frame === null || frame.id === shownFrame) return;
+  shownFrame = frame.id;
+  byId("frame-source").textContent = `${frame.source || text("live_view")} · ${frame.width_px} × ${frame.height_px}`;
+  byId("histogram").replaceChildren(histogram(frame.histogram));
+  byId("measures").replaceChildren(...measures(frame));
+  byId("frame-picture").src = picture({of: "frame", id: frame.id});
+  await byId("frame-picture").decode().catch(() => {});  // the next picture waits for this one, or none would ever be seen
+}
+
+// Of the question that the person has read, not of one that has come meanwhile.
+export const answer = done => post("/api/answer", {done, question: Number(byId("question").dataset.number)});
+
+export function beginBench() {
+  byId("done").onclick = () => answer(true);
+  byId("decline").onclick = () => answer(false);
+  byId("pause").onclick = () => post("/api/pause");
+  byId("preview").onclick = () => startJob({kind: "preview"});
+  byId("check-form").onsubmit = event => {
+    event.preventDefault();
+    startJob({kind: "check", calibration: event.target.calibration.value});
+  };
+}

@@ -1,0 +1,107 @@
+#include "station/serve/page_pictures.h"
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <opencv2/imgproc.hpp>
+
+#include "renderer/image_file.h"
+#include "station/documents/draft_drawing.h"
+#include "station/documents/draft_file.h"
+#include "station/documents/thread_file.h"
+#include "station/documents/views_file.h"
+#include "station/invert/invert_session.h"
+#include "station/report/display.h"
+#include "station/report/fitted_twins.h"
+#include "station/serve/job_command.h"
+#include "station/serve/page_answers.h"
+
+namespace station {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Asked {
+  const HttpRequest& request;
+  const Workspace& workspace;
+
+  std::string word(const char* key) const {
+    const auto found = request.query.find(key);
+    return found == request.query.end() ? std::string() : found->second;
+  }
+  std::string name(const char* key) const { return checked_name(word(key)); }
+};
+
+HttpResponse png(const cv::Mat3b& rgb) {
+  return {.content_type = "image/png", .body = renderer::encode_png(rgb)};
+}
+
+HttpResponse png_file(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw Refused(404, "there is no " + file.filename().string() + " yet");
+  return {.content_type = "image/png", .body = {std::istreambuf_iterator<char>(stream), {}}};
+}
+
+// At most so wide: what a screen shows.
+cv::Mat3b narrowed(const cv::Mat3b& picture, int width_px) {
+  if (picture.cols <= width_px) return picture;
+  cv::Mat3b small;
+  cv::resize(picture, small, {width_px, std::max(1, picture.rows * width_px / picture.cols)}, 0, 0, cv::INTER_AREA);
+  return small;
+}
+
+HttpResponse raw(const Asked& asked) {
+  constexpr int kTile_px = 320;
+  const fs::path session = asked.workspace.existing_session(asked.word("session"));
+  const auto file = picture_of_step(session, asked.name("step"));
+  if (!file) throw Refused(404, "there is no picture of " + asked.word("step") + " yet");
+  return png(narrowed(shown_sensor_file(*file), kTile_px));
+}
+
+HttpResponse twin(const Asked& asked, const std::string& which) {
+  constexpr int kShown_px = 1200;
+  const fs::path session = asked.workspace.existing_session(asked.word("session"));
+  if (!fs::exists(thread_file_of(session))) throw Refused(404, "the session has no fitted thread yet");
+  DevelopedViews developed = read_views(session);
+  std::erase_if(developed.views, [&](const DevelopedView& one) { return one.view.id != asked.word("view"); });
+  if (developed.views.empty()) throw Refused(404, "there is no view " + asked.word("view").substr(0, 100));
+  read_view_pictures(session, developed);
+  const inversion::View& view = developed.views.front().view;
+  const FittedTwins twins = read_twins(session, view);
+  const int block_px = read_thread(thread_file_of(session)).fit.value("block_px", 1);
+  const cv::Mat3f picture = which == "photographed" ? twins.photographed
+                            : which == "fitted"     ? twins.fitted
+                                                    : residual_picture(view, twins, block_px);
+  return png(
+      narrowed(display(picture, twins.scale, developed.linear_srgb_from_camera)(twins.box).clone(), kShown_px));
+}
+
+HttpResponse cloth(const Asked& asked) {
+  const fs::path session = asked.workspace.existing_session(asked.word("session"));
+  return png_file(session / "result" / "cloth" / (asked.name("view") + ".png"));
+}
+
+HttpResponse draft(const Asked& asked) {
+  return {.content_type = "image/svg+xml", .body = draw_draft_svg(read_draft(ready_draft(asked.word("name"))))};
+}
+
+}  // namespace
+
+HttpResponse page_picture(const HttpRequest& request, const Workspace& workspace, const LastFrame& frame) {
+  static const std::map<std::string, std::function<HttpResponse(const Asked&)>> kinds{
+      {"raw", raw},
+      {"photographed", [](const Asked& asked) { return twin(asked, "photographed"); }},
+      {"fitted", [](const Asked& asked) { return twin(asked, "fitted"); }},
+      {"residual", [](const Asked& asked) { return twin(asked, "residual"); }},
+      {"cloth", cloth},
+      {"draft", draft}};
+  const Asked asked{request, workspace};
+  if (asked.word("of") == "frame") return png(frame.picture());
+  const auto found = kinds.find(asked.word("of"));
+  if (found == kinds.end()) throw Refused(404, "there is no such picture");
+  return found->second(asked);
+}
+
+}  // namespace station

@@ -1,0 +1,107 @@
+#include "station/serve/result_document.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cstdio>
+
+#include "inversion/energy_bands.h"
+#include "station/cloth_preview.h"
+#include "station/documents/reader.h"
+#include "station/invert/invert_session.h"
+#include "station/report/display.h"
+
+namespace station {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kCosines = 40;
+
+// Of the unknowns; nothing where the file has none of this model's size.
+std::optional<Eigen::MatrixXd> covariance_of(const ThreadFile& thread) {
+  constexpr auto kSize = static_cast<std::size_t>(renderer::kThreadParameterCount);
+  try {
+    const json& rows = thread.fit.at("certainty").at("covariance");
+    if (rows.size() != kSize) return std::nullopt;
+    Eigen::MatrixXd covariance(kSize, kSize);
+    for (std::size_t row = 0; row < kSize; ++row)
+      for (std::size_t column = 0; column < kSize; ++column)
+        covariance(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
+            rows.at(row).at(column).get<double>();
+    return covariance;
+  } catch (const json::exception&) {
+    return std::nullopt;
+  }
+}
+
+std::string colour_of(const std::vector<inversion::EnergyBand>& bands, const ThreadFile& thread) {
+  cv::Vec3f albedo(0, 0, 0);
+  for (const inversion::EnergyBand& band : bands)
+    for (int c = 0; c < 3; ++c)
+      albedo[c] += static_cast<float>(band.albedo[static_cast<std::size_t>(c)] / static_cast<double>(bands.size()));
+  const cv::Mat3b shown = display(cv::Mat3f(1, 1, albedo), 1, thread.linear_srgb_from_camera);
+  char text[8];
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", shown(0, 0)[0], shown(0, 0)[1], shown(0, 0)[2]);
+  return text;
+}
+
+json part_of(const json& fit, const char* key) {
+  const auto found = fit.find(key);
+  return found == fit.end() ? json::array() : *found;
+}
+
+json unknowns_of_fit(const ThreadFile& thread) {
+  json unknowns = json::array();
+  const auto certainty = thread.fit.find("certainty");
+  if (certainty == thread.fit.end()) return unknowns;
+  for (const json& one : part_of(*certainty, "unknowns"))
+    unknowns.push_back({{"name", one.at("name")},
+                        {"value", one.at("value")},
+                        {"sigma", one.at("sigma")},
+                        {"at_bound", one.at("at_bound")}});
+  return unknowns;
+}
+
+}  // namespace
+
+json thread_document(const ThreadFile& thread) {
+  std::vector<double> cosines;
+  for (int i = 0; i <= kCosines; ++i) cosines.push_back(static_cast<double>(i) / kCosines);
+  const auto covariance = covariance_of(thread);
+  constexpr Eigen::Index kSize = renderer::kThreadParameterCount;
+  const auto bands = inversion::energy_bands(inversion::unknowns_of(thread.parameters),
+                                             covariance.value_or(Eigen::MatrixXd::Zero(kSize, kSize)), cosines);
+  json curves = json::array();
+  for (const inversion::EnergyBand& band : bands) {
+    curves.push_back({{"cosine", band.cosine}, {"lambda", band.lambda}});
+    if (covariance) curves.back()["sigma"] = band.sigma;
+  }
+  json views = json::array();
+  for (const json& view : part_of(thread.fit, "views"))
+    views.push_back({{"id", view.at("id")},
+                     {"relative_rmse", view.at("relative_rmse")},
+                     {"relative_bias", view.at("relative_bias")}});
+  return {{"name", thread.name},
+          {"diameter_mm", thread.diameter_mm},
+          {"relative_rmse", thread.fit.value("relative_rmse", json())},
+          {"unknowns", unknowns_of_fit(thread)},
+          {"curves", curves},
+          {"views", views},
+          {"doubts", part_of(thread.fit, "doubts")},
+          {"colour", colour_of(bands, thread)}};
+}
+
+json result_document(const std::filesystem::path& session) {
+  json document = thread_document(read_thread(thread_file_of(session)));
+  document["cloth"] = json::array();
+  for (const std::filesystem::path& picture : cloth_pictures(session)) {
+    std::error_code error;
+    document["cloth"].push_back(
+        {{"name", picture.stem().string()},
+         {"made", std::filesystem::last_write_time(picture, error).time_since_epoch().count()}});
+  }
+  document["cloth_made_of"] = cloth_made_of(session);
+  return document;
+}
+
+}  // namespace station

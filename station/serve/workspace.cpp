@@ -1,0 +1,177 @@
+#include "station/serve/workspace.h"
+
+#include <algorithm>
+#include <functional>
+#include <stdexcept>
+
+#include "station/capture/file_name.h"
+#include "station/capture/folder_lock.h"
+#include "station/capture/picture_record.h"
+#include "station/capture/run_state.h"
+#include "station/capture/session_folder.h"
+#include "station/documents/reader.h"
+#include "station/documents/session_file.h"
+#include "station/library/library.h"
+#include "station/queue/spool_queue.h"
+#include "station/serve/page_answers.h"
+
+namespace station {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+std::vector<std::string> names_in(const fs::path& folder,
+                                  const std::function<std::string(const fs::directory_entry&)>& name_of_entry) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (const std::string name = name_of_entry(entry); !problem_with_name(name)) names.push_back(name);
+  std::ranges::sort(names);
+  return names;
+}
+
+json library_lines(const fs::path& folder) {
+  json lines = json::array();
+  if (!fs::exists(folder / "index.sqlite")) return lines;
+  for (const LibraryThread& thread : Library(folder, false).list()) {
+    lines.push_back({{"number", thread.number},
+                     {"name", thread.thread_name},
+                     {"sample", to_json(thread.sample)},
+                     {"added_utc", thread.added_utc},
+                     {"diameter_mm", thread.diameter_mm},
+                     {"session", fs::path(thread.session).filename().string()},
+                     {"relative_rmse", nullptr}});
+    if (thread.relative_rmse) lines.back()["relative_rmse"] = *thread.relative_rmse;
+  }
+  return lines;
+}
+
+// A spool as its form has it.
+json spool_line(const fs::path& spool, const fs::path& sample) {
+  json line{{"name", spool.stem().string()}, {"sample", nullptr}};
+  try {
+    const inversion::WrappedSpool wrapping = read_spool(spool).wrapping;
+    line["turns"] = wrapping.turns;
+    line["diameter_mm"] = wrapping.thread_diameter_mm;
+    if (fs::exists(sample)) line["sample"] = to_json(read_sample_file(sample));
+  } catch (const std::exception& problem) {
+    line["problem"] = problem.what();
+  }
+  return line;
+}
+
+}  // namespace
+
+std::vector<std::string> folders_in(const fs::path& folder) {
+  return names_in(folder, [](const fs::directory_entry& entry) {
+    std::error_code error;
+    return entry.is_directory(error) ? entry.path().filename().string() : std::string();
+  });
+}
+
+std::vector<std::string> files_in(const fs::path& folder, const std::string& ending) {
+  return names_in(folder, [&](const fs::directory_entry& entry) {
+    std::error_code error;
+    return entry.path().extension() == ending && entry.is_regular_file(error) ? entry.path().stem().string()
+                                                                              : std::string();
+  });
+}
+
+Workspace::Workspace(const fs::path& folder) : folder_(fs::absolute(folder)) {
+  for (const char* part : {"calibrations", "spools", "samples", "sessions", "queues", "exports", "jobs"}) {
+    std::error_code error;
+    fs::create_directories(folder_ / part, error);
+    if (error)
+      throw std::runtime_error("cannot make " + (folder_ / part).string() + ": " + error.message() +
+                               "; choose another --workspace");
+  }
+}
+
+// A lab has hundreds of sessions, and the page asks after every change: journals are read again only when they have grown.
+json Workspace::session_line(const fs::path& folder) {
+  const std::string name = folder.filename().string();
+  const fs::path journal = folder / "journal.jsonl";
+  std::error_code error;
+  ReadSession now{.journal_bytes = fs::file_size(journal, error),
+                  .journal_time = fs::last_write_time(journal, error),
+                  .in_use = folder_in_use(folder)};
+  const std::scoped_lock lock(sessions_mutex_);
+  ReadSession& known = sessions_[name];
+  const bool same = !known.line.is_null() && known.journal_bytes == now.journal_bytes &&
+                    known.journal_time == now.journal_time && known.in_use == now.in_use;
+  if (!same) {
+    now.line = {{"name", name}, {"state", "unreadable"}};
+    try {
+      const SessionFile session = read_session_file(folder);
+      now.line["state"] = state_name(state_of(read_journal(journal).records, now.in_use));
+      now.line["spool"] = session.sample && !session.sample->name.empty() ? session.sample->name : session.spool.name;
+      now.line["utc"] = session.utc;
+    } catch (const std::exception& problem) {
+      now.line["problem"] = problem.what();
+    }
+    known = std::move(now);
+  }
+  json line = known.line;
+  line["developed"] = fs::exists(folder / "linear", error);
+  line["inverted"] = fs::exists(folder / "result" / "thread.json", error);
+  line["cloth"] = fs::exists(folder / "result" / "cloth" / "swatch.png", error);
+  line["report"] = fs::exists(folder / "report.html", error);
+  return line;
+}
+
+json Workspace::queue_line(const std::string& name) {
+  json line{{"name", name}, {"spools", json::array()}};
+  try {
+    for (const QueuedSpool& row : read_queue(queue(name))) {
+      json spool{{"session", row.session}, {"sample", to_json(row.sample)}, {"state", nullptr}};
+      if (is_session(session(row.session))) spool["state"] = session_line(session(row.session))["state"];
+      line["spools"].push_back(spool);
+    }
+  } catch (const std::exception& problem) {
+    line["problem"] = problem.what();
+  }
+  return line;
+}
+
+json Workspace::contents() {
+  json document{{"calibrations", folders_in(folder_ / "calibrations")},
+                {"spools", json::array()},
+                {"sessions", json::array()},
+                {"queues", json::array()},
+                {"library", library_lines(library())},
+                {"exports", folders_in(folder_ / "exports")}};
+  for (const std::string& name : files_in(folder_ / "spools", ".json"))
+    document["spools"].push_back(spool_line(spool(name), sample(name)));
+  for (const std::string& name : folders_in(folder_ / "sessions"))
+    if (is_session(session(name))) document["sessions"].push_back(session_line(session(name)));
+  for (const std::string& name : files_in(folder_ / "queues", ".csv")) document["queues"].push_back(queue_line(name));
+  return document;
+}
+
+fs::path Workspace::existing_session(const std::string& name) const {
+  const fs::path found = session(checked_name(name));
+  if (!is_session(found)) throw Refused(404, "there is no session " + name);
+  return found;
+}
+
+json Workspace::session_document(const std::string& name) {
+  const fs::path folder = existing_session(name);
+  json document = session_line(folder);
+  const Plan plan = read_session_file(folder).plan;
+  const auto taken = taken_pictures(read_journal(folder / "journal.jsonl").records);
+  document["views"] = json::array();
+  for (const PlanStep& step : plan.steps) {
+    if (step.kind != StepKind::view) continue;
+    json view{{"number", document["views"].size() + 1}, {"step", step.id}, {"grade", nullptr}, {"reason", ""}};
+    if (const auto picture = taken.find(step.id); picture != taken.end()) {
+      view["grade"] = grade_name(picture->second.verdict.grade());
+      view["reason"] = picture->second.verdict.reason();
+      view["picture"] = picture->second.sha256;
+    }
+    document["views"].push_back(view);
+  }
+  return document;
+}
+
+}  // namespace station

@@ -1,0 +1,64 @@
+// The folder that the technician's page works in, and what it holds now, as JSON.
+//
+//   calibrations/<name>/   made by calibrate            sessions/<name>/   made by capture
+//   spools/<name>.json     spool files                  samples/<name>.json  what the lab knows of that spool
+//   queues/<name>.csv      tables of spools             library/           digitized threads
+//   exports/<name>/        made by export               jobs/              what each job said
+//   preview.jpg            the camera's live view
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace station {
+
+class Workspace {
+ public:
+  // Makes its folders. Errors: std::runtime_error when they cannot be made.
+  explicit Workspace(const std::filesystem::path& folder);
+
+  const std::filesystem::path& folder() const { return folder_; }
+  // Names must have been checked (page_answers.h).
+  std::filesystem::path calibration(const std::string& name) const { return folder_ / "calibrations" / name; }
+  std::filesystem::path session(const std::string& name) const { return folder_ / "sessions" / name; }
+  std::filesystem::path spool(const std::string& name) const { return folder_ / "spools" / (name + ".json"); }
+  std::filesystem::path sample(const std::string& name) const { return folder_ / "samples" / (name + ".json"); }
+  std::filesystem::path queue(const std::string& name) const { return folder_ / "queues" / (name + ".csv"); }
+  std::filesystem::path library() const { return folder_ / "library"; }
+  std::filesystem::path exported(const std::string& name) const { return folder_ / "exports" / name; }
+  std::filesystem::path preview() const { return folder_ / "preview.jpg"; }
+
+  // {"calibrations", "spools", "sessions", "library", "queues", "exports"}
+  nlohmann::json contents();
+  // Of one session: its line in contents(), and "views" with "number", "step", "grade", "reason", "picture" (which file
+  // it is, absent without one). Throws Refused (404) when there is none.
+  nlohmann::json session_document(const std::string& name);
+  // Throws Refused (404) when there is no such session.
+  std::filesystem::path existing_session(const std::string& name) const;
+
+ private:
+  nlohmann::json session_line(const std::filesystem::path& folder);
+  nlohmann::json queue_line(const std::string& name);
+
+  std::filesystem::path folder_;
+  // What was read of a session, good while its journal is as long and as old, and is held by a process or is not.
+  struct ReadSession {
+    std::uintmax_t journal_bytes = 0;
+    std::filesystem::file_time_type journal_time{};
+    bool in_use = false;
+    nlohmann::json line;
+  };
+  std::mutex sessions_mutex_;
+  std::map<std::string, ReadSession> sessions_;
+};
+
+// Names in a folder that may be parts of paths, sorted: of its folders, or of its files with this ending, without it.
+std::vector<std::string> folders_in(const std::filesystem::path& folder);
+std::vector<std::string> files_in(const std::filesystem::path& folder, const std::string& ending);
+
+}  // namespace station
