@@ -9,6 +9,7 @@
 #include "station/documents/patch_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/thread_file.h"
+#include "station/draft_of_one_thread.h"
 #include "station/invert/invert_session.h"
 #include "station/render_scene.h"
 #include "station/report/display.h"
@@ -30,21 +31,6 @@ constexpr int kQuickReduction = 2;  // of sizes and samples
 
 std::filesystem::path cloth_folder(const std::filesystem::path& session) {
   return session / "result" / "cloth";
-}
-
-renderer::Draft scaled_draft(renderer::Draft draft, double diameter_mm) {
-  const double scale = diameter_mm / draft.warp.diameter_mm;
-  for (renderer::YarnSystem* system : {&draft.warp, &draft.weft}) {
-    system->diameter_mm *= scale;
-    system->pitch_mm *= scale;
-    system->threads = {0};
-  }
-  draft.plies.radius_mm *= scale;
-  draft.plies.turns_per_mm /= scale;
-  draft.slubs.length_mm *= scale;
-  draft.slubs.shade_mm = 0;
-  draft.unevenness.shades = 1;
-  return draft;
 }
 
 json scene_of(const Stage& stage, bool quick) {
@@ -75,7 +61,7 @@ void preview_cloth(const ClothPreviewRequest& request) {
   if (code)
     throw std::runtime_error("cannot make " + folder.string() + ": " + code.message() +
                              "; is the session's folder writable?");
-  const renderer::Draft draft = scaled_draft(read_draft(request.draft), thread.diameter_mm);
+  const renderer::Draft draft = draft_of_one_thread(read_draft(request.draft), thread.diameter_mm);
   write_json_file(folder / "draft.json", to_json(draft));
   write_json_file(folder / "patch.json", to_json(renderer::woven_patch(draft).patch));
   for (const Stage& stage : kStages) {

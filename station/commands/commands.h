@@ -14,6 +14,7 @@ void add_compare_command(CLI::App& app);
 void add_demo_command(CLI::App& app);
 void add_develop_command(CLI::App& app);
 void add_devices_command(CLI::App& app);
+void add_export_command(CLI::App& app);
 void add_library_command(CLI::App& app);
 void add_plan_command(CLI::App& app);
 void add_predict_command(CLI::App& app);

@@ -1,0 +1,13 @@
+#include "station/commands/export_command.h"
+
+#include "station/commands/commands.h"
+
+namespace station {
+
+void add_export_command(CLI::App& app) {
+  CLI::App* exports = app.add_subcommand("export", "digitized threads for other programs");
+  exports->require_subcommand(1);
+  add_export_thread_command(*exports);
+}
+
+}  // namespace station
