@@ -27,8 +27,8 @@ using Direction = renderer::Vec3<double>;
 
 constexpr int kUnknowns = 6;  // eta, sigma_a (3), beta_m, beta_n
 constexpr double kLeastIndex = 1.01, kMostAbsorption = 50, kLeastRoughness = 0.02;
-constexpr double kAlbedoWeight = 100;  // of the albedos' squared relative error, that of f_cos counting 1
-// Index and azimuthal roughness change roles with each other: the search has several ends.
+// Of the squared relative errors of the albedo and of the light sent back, that of f_cos counting 1.
+constexpr double kEnergyWeight = 100;
 constexpr std::array<std::array<double, kUnknowns>, 6> kStarts{{{1.55, 0.3, 0.3, 0.3, 0.3, 0.3},
                                                                 {1.55, 0.3, 0.3, 0.3, 0.3, 0.6},
                                                                 {1.55, 0.05, 0.05, 0.05, 0.6, 0.95},
@@ -52,6 +52,7 @@ struct View {
   std::vector<double> solid_angle;          // of each direction i: 1 / (density x count)
   std::vector<std::vector<Array3d>> f_cos;  // [i][h]
   std::vector<Array3d> albedo;              // [h]
+  Array3d back = Array3d::Zero();           // of f_cos over the viewer's side, mean over h
 };
 
 struct Samples {
@@ -59,6 +60,11 @@ struct Samples {
   std::vector<View> views;
   double square = 0, square_far = 0, albedo_square = 0;  // of the thread, summed over the channels
 };
+
+// On the viewer's side of the thread: direction o is at azimuth 0.
+bool is_back(const Direction& wi) {
+  return wi.y() > 0;
+}
 
 double midpoint(int i, int count, double low, double high) {
   return low + (high - low) * (i + 0.5) / count;
@@ -124,6 +130,7 @@ Samples sample(const ThreadParameters& parameters, const Matrix3d& colours, cons
         samples.square += view.weight * view.solid_angle[i] * value.square().sum() / offsets;
         mean += value / offsets;
       }
+      if (is_back(view.wi[i])) view.back += view.solid_angle[i] * mean;
       samples.square_far += view.weight * view.solid_angle[i] * mean.square().sum();
     }
     for (const Array3d& albedo : view.albedo) samples.albedo_square += view.weight * albedo.square().sum() / offsets;
@@ -136,7 +143,7 @@ BasicFiberParameters<S> fiber_of(const S* u) {
   return {.eta = u[0], .sigma_a = {u[1], u[2], u[3]}, .beta_m = u[4], .beta_n = u[5]};
 }
 
-// Residuals whose squares sum to the two relative errors' squares.
+// Residuals whose squares sum to those of the three relative errors, weighted.
 struct DifferenceTerm {
   const Samples& samples;
 
@@ -144,25 +151,30 @@ struct DifferenceTerm {
   bool operator()(const S* u, S* residual) const {
     const FiberModel<S> fiber(fiber_of(u));
     const auto offsets = static_cast<double>(samples.offsets.size());
-    for (const View& view : samples.views)
+    for (const View& view : samples.views) {
+      Eigen::Array<S, 3, 1> back = Eigen::Array<S, 3, 1>::Constant(S(0.0));
       for (std::size_t h = 0; h < samples.offsets.size(); ++h) {
         const auto lobes = fiber.lobes_at(samples.offsets[h], view.wo.cast<renderer::Geometry<S>>());
-        const double albedo_scale = std::sqrt(kAlbedoWeight * view.weight / (offsets * samples.albedo_square));
+        const double albedo_scale = std::sqrt(kEnergyWeight * view.weight / (offsets * samples.albedo_square));
         for (int c = 0; c < 3; ++c)
           *residual++ = (S(lobes.attenuation.col(c).sum()) - S(view.albedo[h][c])) * S(albedo_scale);
         for (std::size_t i = 0; i < view.wi.size(); ++i) {
           const auto value = lobes.evaluate(view.wi[i]);
           const double scale = std::sqrt(view.weight * view.solid_angle[i] / (offsets * samples.square));
           for (int c = 0; c < 3; ++c) *residual++ = (value.f_cos[c] - S(view.f_cos[i][h][c])) * S(scale);
+          if (is_back(view.wi[i])) back += value.f_cos * S(view.solid_angle[i] / offsets);
         }
       }
+      const double back_scale = std::sqrt(kEnergyWeight * view.weight / samples.albedo_square);
+      for (int c = 0; c < 3; ++c) *residual++ = (back[c] - S(view.back[c])) * S(back_scale);
+    }
     return true;
   }
 };
 
 int residuals_of(const Samples& samples) {
   std::size_t count = 0;
-  for (const View& view : samples.views) count += 3 * samples.offsets.size() * (1 + view.wi.size());
+  for (const View& view : samples.views) count += 3 + 3 * samples.offsets.size() * (1 + view.wi.size());
   return static_cast<int>(count);
 }
 
@@ -218,8 +230,12 @@ FiberAgreement fiber_agreement(const FiberParameters& parameters, const ThreadPa
         means[i] += difference / offsets;
       }
     }
-    for (std::size_t i = 0; i < view.wi.size(); ++i)
+    found.thread_back += view.weight * view.back;
+    found.fiber_back += view.weight * view.back;
+    for (std::size_t i = 0; i < view.wi.size(); ++i) {
+      if (is_back(view.wi[i])) found.fiber_back += view.weight * view.solid_angle[i] * means[i];
       square_far += view.weight * view.solid_angle[i] * means[i].square().sum();
+    }
   }
   found.rms = std::sqrt(square / samples.square);
   found.rms_far = std::sqrt(square_far / samples.square_far);

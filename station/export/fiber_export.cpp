@@ -17,6 +17,12 @@ std::string text(const char* format, Numbers... numbers) {
   return line;
 }
 
+std::string of_channels(const char* what, const Eigen::Array3d& thread, const Eigen::Array3d& fiber) {
+  const Eigen::Array3d error = 100 * (fiber / thread - 1);
+  return text("%s R G B: thread %.4f %.4f %.4f, fiber %.4f %.4f %.4f, errors %+.1f %+.1f %+.1f %%", what, thread[0],
+              thread[1], thread[2], fiber[0], fiber[1], fiber[2], error[0], error[1], error[2]);
+}
+
 }  // namespace
 
 Eigen::Matrix3d srgb_scattering_from_camera(const ThreadFile& thread) {
@@ -41,14 +47,13 @@ FiberExport fiber_export(const ThreadFile& thread) {
 
 std::vector<std::string> approximation(const FiberExport& fiber) {
   const inversion::FiberAgreement& found = fiber.nearest.agreement;
-  const Eigen::Array3d &t = found.thread_albedo, &f = found.fiber_albedo, error = 100 * (f / t - 1);
   std::vector<std::string> lines{
       "The single fiber nearest to the thread " + nlohmann::json(fiber.thread).dump() + " (" +
           text("%.4g", fiber.diameter_mm) + " mm), by " + software_version() + "; an approximation:",
       text("error of f cos: %.1f %% (root mean square, relative), averaged over the thread's width %.1f %%",
            100 * found.rms, 100 * found.rms_far),
-      text("albedo R G B: thread %.4f %.4f %.4f, fiber %.4f %.4f %.4f, errors %+.1f %+.1f %+.1f %%", t[0], t[1], t[2],
-           f[0], f[1], f[2], error[0], error[1], error[2])};
+      of_channels("albedo", found.thread_albedo, found.fiber_albedo),
+      of_channels("light sent back", found.thread_back, found.fiber_back)};
   if (fiber.nearest.fiber.eta > 0.999 * inversion::kMostFiberIndex)
     lines.push_back("its refractive index is as high as was allowed: the thread reflects more than fibers do");
   if (fiber.far_side)
@@ -62,7 +67,9 @@ nlohmann::json to_json(const inversion::FiberAgreement& agreement) {
   return {{"rms", agreement.rms},
           {"rms_far", agreement.rms_far},
           {"thread_albedo", to_json(Eigen::Vector3d(agreement.thread_albedo))},
-          {"fiber_albedo", to_json(Eigen::Vector3d(agreement.fiber_albedo))}};
+          {"fiber_albedo", to_json(Eigen::Vector3d(agreement.fiber_albedo))},
+          {"thread_back", to_json(Eigen::Vector3d(agreement.thread_back))},
+          {"fiber_back", to_json(Eigen::Vector3d(agreement.fiber_back))}};
 }
 
 }  // namespace station
