@@ -1,6 +1,6 @@
 // A thread as a Cycles material (Principled Hair BSDF, Chiang's model), made by a Python script in Blender 3.4 or newer.
 //
-//   Cycles                 | here      | convention, from intern/cycles/kernel/closure/bsdf_hair_principled.h of Blender 3.6
+//   Cycles                 | here      | convention, from intern/cycles/kernel/closure/bsdf_hair_principled.h of Blender 3
 //   Roughness              | beta_m    | Chiang's map to the variance, the same as lobes.h; TT 1/4, TRT and the rest 4 times
 //   Radial Roughness       | beta_n    | Chiang's map to the logistic scale, the same
 //   Absorption Coefficient | sigma_a   | per fiber radius: multiplied by a way through a fiber of radius 1

@@ -2,6 +2,7 @@
 // it is: README.md of this folder.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>

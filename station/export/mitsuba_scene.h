@@ -1,6 +1,6 @@
 // A thread as the `hair` BSDF of Mitsuba 3, in a scene file of its own for <include>.
 //
-//   Mitsuba                | here      | convention, from src/bsdfs/hair.cpp of Mitsuba 3.6
+//   Mitsuba                | here      | convention, from src/bsdfs/hair.cpp of Mitsuba 3
 //   longitudinal_roughness | beta_m    | Chiang's map to the variance, the same as lobes.h; TT 1/4, TRT and the rest 4 times
 //   azimuthal_roughness    | beta_n    | Chiang's map to the logistic scale, the same
 //   sigma_a, scale         | sigma_a   | per fiber radius: multiplied by a way through a fiber of radius 1 (the manual says
