@@ -10,6 +10,7 @@
 #include "station/documents/patch_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/thread_file.h"
+#include "station/draft_of_one_thread.h"
 #include "station/interrupt.h"
 #include "station/invert/invert_session.h"
 #include "station/render_scene.h"
@@ -34,22 +35,6 @@ constexpr int kWarp = 0, kWeft = 1;  // threads of the draft
 
 std::filesystem::path cloth_folder(const std::filesystem::path& session) {
   return session / "result" / "cloth";
-}
-
-renderer::Draft scaled_draft(renderer::Draft draft, double diameter_mm) {
-  const double scale = diameter_mm / draft.warp.diameter_mm;
-  for (renderer::YarnSystem* system : {&draft.warp, &draft.weft}) {
-    system->diameter_mm *= scale;
-    system->pitch_mm *= scale;
-  }
-  draft.warp.threads = {kWarp};
-  draft.weft.threads = {kWeft};
-  draft.plies.radius_mm *= scale;
-  draft.plies.turns_per_mm /= scale;
-  draft.slubs.length_mm *= scale;
-  draft.slubs.shade_mm = 0;
-  draft.unevenness.shades = 1;
-  return draft;
 }
 
 json scene_of(const Stage& stage, const std::array<std::string, 2>& threads, bool quick) {
@@ -108,7 +93,8 @@ json preview_cloth(const ClothPreviewRequest& request) {
   if (code)
     throw std::runtime_error("cannot make " + folder.string() + ": " + code.message() +
                              "; is the session's folder writable?");
-  const renderer::Draft draft = scaled_draft(read_draft(request.draft), thread.diameter_mm);
+  renderer::Draft draft = draft_of_one_thread(read_draft(request.draft), thread.diameter_mm);
+  draft.warp.threads = {kWarp}, draft.weft.threads = {kWeft};
   const renderer::YarnPatch patch = renderer::woven_patch(draft).patch;
   write_json_file(folder / "draft.json", to_json(draft));
   write_json_file(folder / "patch.json", to_json(patch));

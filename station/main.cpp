@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
   station::add_predict_command(app);
   station::add_compare_command(app);
   station::add_library_command(app);
+  station::add_export_command(app);
   station::add_serve_command(app);
   station::add_scatter_command(app);
   station::add_target_command(app);

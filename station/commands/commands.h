@@ -16,7 +16,6 @@ void add_demo_command(CLI::App& app);
 void add_develop_command(CLI::App& app);
 void add_devices_command(CLI::App& app);
 void add_export_command(CLI::App& app);
-void add_export_cloth_command(CLI::App& export_app);
 void add_library_command(CLI::App& app);
 void add_pattern_command(CLI::App& app);
 void add_plan_command(CLI::App& app);

@@ -1,6 +1,6 @@
 #include <iostream>
 
-#include "station/commands/commands.h"
+#include "station/commands/export_command.h"
 #include "station/commands/output_options.h"
 #include "station/export/export_cloth.h"
 

@@ -12,6 +12,7 @@
 #include "station/capture/stored_file.h"
 #include "station/documents/session_file.h"
 #include "station/documents/thread_file.h"
+#include "station/new_folder.h"
 
 namespace station {
 namespace fs = std::filesystem;
@@ -35,14 +36,6 @@ constexpr const char* kSelect =
 std::string bytes_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-void require_new_or_empty(const fs::path& folder) {
-  std::error_code code;
-  if (fs::exists(folder) && (!fs::is_directory(folder) || !fs::is_empty(folder, code)))
-    throw std::runtime_error("'" + folder.string() + "' is there and not an empty folder; choose another --out");
-  fs::create_directories(folder, code);
-  if (code) throw std::runtime_error(write_problem(folder, code));
 }
 
 }  // namespace
@@ -235,7 +228,7 @@ void Library::export_thread(int number, const fs::path& out) const {
   if (sha256_hex(content) != thread.sha256)
     throw std::runtime_error("'" + thread_file(number).string() +
                              "' is not the file that was added; restore it from a copy, or add its session again");
-  require_new_or_empty(out);
+  make_new_folder(out);
   FileSystem disk;
   store_file(disk, out / "thread.json", std::as_bytes(std::span(content)));
   nlohmann::json sample = to_json(thread.sample);

@@ -27,24 +27,17 @@ const std::vector<std::string> kFiberColumns{"eta",    "sigma_a_r", "sigma_a_g",
 constexpr Range kOffset{-1, 1}, kAzimuth{-1e6, 1e6};
 constexpr Range kInclination{-1.5708, 1.5708};  // a right angle rounded up; what is beyond it counts as it
 
-struct Place {
-  double h;
-  renderer::Vec3<double> wi, wo;
-};
-
-Place place(const NumberTable& table, std::size_t row) {
+ScatteringPlace place(const NumberTable& table, std::size_t row) {
   const auto inclination = [&](const char* column) {
     return std::clamp(table.number(row, column, kInclination), -kPi / 2, kPi / 2);
   };
-  const double theta_i = inclination("theta_i_rad"), theta_o = inclination("theta_o_rad");
   const double phi = table.number(row, "phi_i_rad", kAzimuth) - table.number(row, "phi_o_rad", kAzimuth);
-  return {table.number(row, "h", kOffset),
-          {std::sin(theta_i), std::cos(theta_i) * std::cos(phi), std::cos(theta_i) * std::sin(phi)},
-          {std::sin(theta_o), std::cos(theta_o), 0}};
+  return scattering_place(table.number(row, "h", kOffset), inclination("theta_i_rad"), inclination("theta_o_rad"),
+                          phi);
 }
 
 template <class Model>
-Value value(const Model& model, const Place& at) {
+Value value(const Model& model, const ScatteringPlace& at) {
   return model.lobes_at(at.h, at.wo).evaluate(at.wi);
 }
 
@@ -102,6 +95,13 @@ std::vector<Value> values_of(const ScatteringQueries& queries) {
 }
 
 }  // namespace
+
+ScatteringPlace scattering_place(double h, double theta_i_rad, double theta_o_rad, double phi_rad) {
+  return {
+      h,
+      {std::sin(theta_i_rad), std::cos(theta_i_rad) * std::cos(phi_rad), std::cos(theta_i_rad) * std::sin(phi_rad)},
+      {std::sin(theta_o_rad), std::cos(theta_o_rad), 0}};
+}
 
 std::size_t evaluate_queries(const ScatteringQueries& queries) {
   const std::vector<Value> values = values_of(queries);

@@ -13,7 +13,16 @@
 #include <filesystem>
 #include <string>
 
+#include "renderer/scattering/lobes.h"
+
 namespace station {
+
+// Directions in the frame of lobes.h, direction o at azimuth 0.
+struct ScatteringPlace {
+  double h = 0;
+  renderer::Vec3<double> wi, wo;
+};
+ScatteringPlace scattering_place(double h, double theta_i_rad, double theta_o_rad, double phi_rad);  // phi_i - phi_o
 
 struct ScatteringQueries {
   std::string model;                 // fiber, thread or yarn

@@ -1,5 +1,6 @@
 #include "station/serve/job_command.h"
 
+#include <cstdint>
 #include <functional>
 #include <map>
 
@@ -13,6 +14,7 @@ using nlohmann::json;
 using Words = std::vector<std::string>;
 
 constexpr std::size_t kLongestText = 200;
+constexpr std::uint64_t kLargestNumber = 1'000'000;
 
 struct Asked {
   const json& fields;
@@ -27,12 +29,13 @@ struct Asked {
     if (text.size() > kLongestText) throw Refused(400, std::string("the text of \"") + key + "\" is too long");
     return text;
   }
-  std::string number(const char* key) const {
+  int number(const char* key) const {
     const auto found = fields.find(key);
-    if (found == fields.end() || !found->is_number_unsigned())
+    if (found == fields.end() || !found->is_number_unsigned() || found->get<std::uint64_t>() > kLargestNumber)
       throw Refused(400, std::string("expected \"") + key + "\": a number");
-    return std::to_string(found->get<unsigned>());
+    return found->get<int>();
   }
+  std::string thread() const { return workspace.library_thread(number("number")); }
   bool flag(const char* key) const {
     const auto found = fields.find(key);
     return found != fields.end() && found->is_boolean() && found->get<bool>();
@@ -92,16 +95,40 @@ Words cloth(const Asked& asked) {
 
 using Commands = std::map<std::string, std::function<Words(const Asked&)>>;
 
+Words folder_export(const Asked& asked) {
+  return {"library",
+          "export",
+          std::to_string(asked.number("number")),
+          "--library",
+          asked.workspace.library(),
+          "--out",
+          asked.workspace.exported(asked.name())};
+}
+
+Words materials_export(const Asked& asked) {
+  return {"export",
+          "thread",
+          asked.thread(),
+          "--only",
+          "mitsuba,blender,csv,numpy",
+          "--out",
+          asked.workspace.exported(asked.name())};
+}
+
+// A twill of the thread alone, coarse enough to wait for.
+Words textures_export(const Asked& asked) {
+  const std::string thread = asked.thread();
+  return {"export",  "cloth",
+          "--draft", ready_draft("twill_2_2"),
+          "--warp",  thread,
+          "--weft",  thread,
+          "--size",  "128",
+          "--spp",   "16",
+          "--out",   asked.workspace.exported(asked.name())};
+}
+
 // Of a thread in the library, into a new folder of exports/.
-const Commands kExports{{"folder", [](const Asked& asked) {
-                           return Words{"library",
-                                        "export",
-                                        asked.number("number"),
-                                        "--library",
-                                        asked.workspace.library(),
-                                        "--out",
-                                        asked.workspace.exported(asked.name())};
-                         }}};
+const Commands kExports{{"folder", folder_export}, {"materials", materials_export}, {"textures", textures_export}};
 
 Words exported(const Asked& asked) {
   const auto format = kExports.find(asked.text("format"));
@@ -127,7 +154,7 @@ const Commands kKinds{
      }},
     {"reshoot",
      [](const Asked& asked) {
-       return Words{"capture", "--out", asked.session(), "--reshoot", asked.number("view")};
+       return Words{"capture", "--out", asked.session(), "--reshoot", std::to_string(asked.number("view"))};
      }},
     {"develop",
      [](const Asked& asked) {

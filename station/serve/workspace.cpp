@@ -149,6 +149,15 @@ json Workspace::contents() {
   return document;
 }
 
+fs::path Workspace::library_thread(int number) const {
+  try {
+    const Library threads(library(), false);
+    return threads.thread_file(threads.show(number).number);
+  } catch (const std::runtime_error& problem) {
+    throw Refused(404, problem.what());
+  }
+}
+
 fs::path Workspace::existing_session(const std::string& name) const {
   const fs::path found = session(checked_name(name));
   if (!is_session(found)) throw Refused(404, "there is no session " + name);

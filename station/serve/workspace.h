@@ -30,6 +30,8 @@ class Workspace {
   std::filesystem::path sample(const std::string& name) const { return folder_ / "samples" / (name + ".json"); }
   std::filesystem::path queue(const std::string& name) const { return folder_ / "queues" / (name + ".csv"); }
   std::filesystem::path library() const { return folder_ / "library"; }
+  // The file of a thread in the library; refuses numbers that it does not have.
+  std::filesystem::path library_thread(int number) const;
   std::filesystem::path exported(const std::string& name) const { return folder_ / "exports" / name; }
   std::filesystem::path preview() const { return folder_ / "preview.jpg"; }
 

@@ -216,6 +216,10 @@ async function library(station) {
   await station.click('[data-export="2"]');
   await attend(station, "export", 30);
   await station.click('[data-screen="library"]');
+  await station.page.select("#export-format", "materials");
+  await station.click('[data-export="2"]');
+  await attend(station, "export", 300);
+  await station.click('[data-screen="library"]');
   await station.type("#search", " ");
   for (const number of [1, 2]) await station.click(`[aria-label="Compare ${number}"]`);
   await station.until("two threads side by side", () => document.querySelectorAll("#compared .thread").length === 2, 10);
@@ -245,7 +249,8 @@ try {
   await station.close();
   server.stop();
 }
-for (const file of [`sessions/${session}/report.html`, "exports/thread-2-folder/thread.json", "exports/thread-2-folder/manifest.json"])
+for (const file of [`sessions/${session}/report.html`, "exports/thread-2-folder/thread.json", "exports/thread-2-folder/manifest.json",
+  "exports/thread-2-materials/export.json"])
   assert.ok(existsSync(inWorkspace(file)), file);
 assert.match(execFileSync(program, ["verify", inWorkspace("sessions", session)]).toString(), /17/);
 note(`${station.shared.pictures} screenshots in ${station.folder}`);
