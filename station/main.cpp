@@ -58,7 +58,6 @@ int main(int argc, char** argv) {
   station::add_validate_cloth_command(app);
   station::add_weave_command(app);
   station::add_render_command(app);
-  station::add_export_command(app);
   try {
     app.parse(argc, argv);
     std::cout.flush();

@@ -35,7 +35,7 @@ struct Asked {
       throw Refused(400, std::string("expected \"") + key + "\": a number");
     return found->get<int>();
   }
-  std::string thread() const { return workspace.library_thread(number("number")); }
+  std::string thread() const { return workspace.thread_in_library(number("number")); }
   bool flag(const char* key) const {
     const auto found = fields.find(key);
     return found != fields.end() && found->is_boolean() && found->get<bool>();
@@ -100,7 +100,7 @@ Words folder_export(const Asked& asked) {
           "export",
           std::to_string(asked.number("number")),
           "--library",
-          asked.workspace.library(),
+          asked.workspace.threads_folder(),
           "--out",
           asked.workspace.exported(asked.name())};
 }
@@ -168,7 +168,7 @@ const Commands kKinds{
     {"cloth", cloth},
     {"add",
      [](const Asked& asked) {
-       return Words{"library", "add", asked.session(), "--library", asked.workspace.library()};
+       return Words{"library", "add", asked.session(), "--library", asked.workspace.threads_folder()};
      }},
     {"export", exported},
 };

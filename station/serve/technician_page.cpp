@@ -44,9 +44,9 @@ json thread_of(const Workspace& workspace, const std::string& number_text) {
   const char* end = number_text.data() + number_text.size();
   if (std::from_chars(number_text.data(), end, number) != std::from_chars_result{end, std::errc()})
     throw Refused(400, "expected the number of a thread");
-  if (!fs::exists(workspace.library() / "index.sqlite")) throw Refused(404, "the library is empty");
+  if (!fs::exists(workspace.threads_folder() / "index.sqlite")) throw Refused(404, "the library is empty");
   try {
-    return thread_document(read_thread(Library(workspace.library(), false).thread_file(number)));
+    return thread_document(read_thread(Library(workspace.threads_folder(), false).thread_file(number)));
   } catch (const std::runtime_error& problem) {
     throw Refused(404, problem.what());
   }

@@ -139,7 +139,7 @@ json Workspace::contents() {
                 {"spools", json::array()},
                 {"sessions", json::array()},
                 {"queues", json::array()},
-                {"library", library_lines(library())},
+                {"threads", library_lines(threads_folder())},
                 {"exports", folders_in(folder_ / "exports")}};
   for (const std::string& name : files_in(folder_ / "spools", ".json"))
     document["spools"].push_back(spool_line(spool(name), sample(name)));
@@ -149,9 +149,9 @@ json Workspace::contents() {
   return document;
 }
 
-fs::path Workspace::library_thread(int number) const {
+fs::path Workspace::thread_in_library(int number) const {
   try {
-    const Library threads(library(), false);
+    const Library threads(threads_folder(), false);
     return threads.thread_file(threads.show(number).number);
   } catch (const std::runtime_error& problem) {
     throw Refused(404, problem.what());

@@ -29,13 +29,13 @@ class Workspace {
   std::filesystem::path spool(const std::string& name) const { return folder_ / "spools" / (name + ".json"); }
   std::filesystem::path sample(const std::string& name) const { return folder_ / "samples" / (name + ".json"); }
   std::filesystem::path queue(const std::string& name) const { return folder_ / "queues" / (name + ".csv"); }
-  std::filesystem::path library() const { return folder_ / "library"; }
+  std::filesystem::path threads_folder() const { return folder_ / "library"; }
   // The file of a thread in the library; refuses numbers that it does not have.
-  std::filesystem::path library_thread(int number) const;
+  std::filesystem::path thread_in_library(int number) const;
   std::filesystem::path exported(const std::string& name) const { return folder_ / "exports" / name; }
   std::filesystem::path preview() const { return folder_ / "preview.jpg"; }
 
-  // {"calibrations", "spools", "sessions", "library", "queues", "exports"}
+  // {"calibrations", "spools", "sessions", "threads", "queues", "exports"}
   nlohmann::json contents();
   // Of one session: its line in contents(), and "views" with "number", "step", "grade", "reason", "picture" (which file
   // it is, absent without one). Throws Refused (404) when there is none.

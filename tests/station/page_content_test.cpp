@@ -191,7 +191,7 @@ TEST_F(TechnicianPage, AThreadOfTheLibraryIsShownWithItsCurves) {
   EXPECT_FALSE(thread["curves"][0].contains("sigma"));  // it was never fitted
   const std::string colour = thread.at("colour");
   EXPECT_GT(colour.substr(1, 2), colour.substr(3, 2));  // red silk
-  EXPECT_EQ(get("/api/state").at("library")[0].at("number"), 1);
+  EXPECT_EQ(get("/api/state").at("threads")[0].at("number"), 1);
 }
 
 TEST_F(TechnicianPage, AQueueIsShownRowByRowAndABadOneSaysWhy) {

@@ -40,7 +40,7 @@ async function showComparison() {
   const threads = (await Promise.all(chosen.map(number => ask("/api/thread", {number})))).filter(Boolean);
   byId("comparison").hidden = threads.length === 0;
   byId("compared").replaceChildren(...threads.map((thread, i) => {
-    const line = state.library.find(one => one.number === chosen[i]);
+    const line = state.threads.find(one => one.number === chosen[i]);
     const column = make("div", {className: "thread"}, make("h4", {textContent: `${chosen[i]} · ${thread.name}`}));
     const swatch = make("div", {className: "swatch"});
     swatch.style.backgroundColor = thread.colour;
@@ -54,12 +54,12 @@ async function showComparison() {
 }
 
 export function showLibrary() {
-  const words = byId("search").value.trim(), found = state.library.filter(thread => matches(thread, words));
+  const words = byId("search").value.trim(), found = state.threads.filter(thread => matches(thread, words));
   fill(byId("export-format"), state.export_formats, state.export_formats.map(format => text(`export_${format}`)));
   const mark = JSON.stringify([found, chosen, state.exports, byId("export-format").value, inControl()]);
   if (mark === shown) return;
   shown = mark;
-  byId("found").textContent = `${found.length} / ${state.library.length}`;
+  byId("found").textContent = `${found.length} / ${state.threads.length}`;
   byId("threads").replaceChildren(...found.map(thread => row(choice(thread), thread.number, thread.name, thread.sample.barcode,
     thread.sample.lot, thread.sample.colour, thread.diameter_mm, percent(thread.relative_rmse), exportButton(thread))));
   return showComparison();
