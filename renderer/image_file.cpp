@@ -324,10 +324,7 @@ cv::Mat3b encode_srgb(const cv::Mat3f& linear, double scale, const cv::Matx33f& 
 
 cv::Vec3f linear_of_srgb(const cv::Vec3b& shown) {
   cv::Vec3f linear;
-  for (int c = 0; c < 3; ++c) {
-    const float v = static_cast<float>(shown[c]) / 255;
-    linear[c] = v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
-  }
+  for (int c = 0; c < 3; ++c) linear[c] = srgb_decoded(static_cast<float>(shown[c]) / 255);
   return linear;
 }
 

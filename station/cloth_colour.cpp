@@ -60,24 +60,29 @@ Array3d even_light_reflectance(const renderer::YarnPatch& patch, const renderer:
   return {mean[0], mean[1], mean[2]};
 }
 
-ClothColours::ClothColours(const ThreadFile& thread, const renderer::YarnPatch& patch,
-                           const std::function<void(double)>& done)
-    : thread_(thread), curves_(curves_of(thread, patch, done)) {}
-
-ColouredThread ClothColours::thread_of(const Srgb8& colour) const {
-  const Matrix to_srgb = Eigen::Map<const Matrix>(thread_.linear_srgb_from_camera.data());
+ColouredThread coloured_thread(const ThreadFile& thread, const std::array<inversion::AbsorptionCurve, 3>& curves,
+                               const Srgb8& colour) {
+  const Matrix to_srgb = Eigen::Map<const Matrix>(thread.linear_srgb_from_camera.data());
   const cv::Vec3f decoded = renderer::linear_of_srgb({colour[0], colour[1], colour[2]});
   const Vector3d linear(decoded[0], decoded[1], decoded[2]), wanted = to_srgb.inverse() * linear;
-  ColouredThread made{.parameters = thread_.parameters};
+  ColouredThread made{.parameters = thread.parameters};
   Vector3d reached;
   for (int c = 0; c < 3; ++c) {
-    const inversion::AbsorptionCurve& curve = curves_[static_cast<std::size_t>(c)];
+    const inversion::AbsorptionCurve& curve = curves[static_cast<std::size_t>(c)];
     made.parameters.sigma_a[c] = curve.sigma_a(wanted[c]);
     reached[c] = curve.reflectance(made.parameters.sigma_a[c]);
   }
   made.delta_e_2000 = calibration::delta_e_2000(calibration::lab_of_linear_srgb(linear),
                                                 calibration::lab_of_linear_srgb((to_srgb * reached).cwiseMax(0)));
   return made;
+}
+
+ClothColours::ClothColours(const ThreadFile& thread, const renderer::YarnPatch& patch,
+                           const std::function<void(double)>& done)
+    : thread_(thread), curves_(curves_of(thread, patch, done)) {}
+
+ColouredThread ClothColours::thread_of(const Srgb8& colour) const {
+  return coloured_thread(thread_, curves_, colour);
 }
 
 }  // namespace station

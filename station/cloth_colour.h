@@ -25,6 +25,10 @@ struct ColouredThread {
   double delta_e_2000 = 0;  // of what it should look like from the wanted colour: above 0 out of gamut
 };
 
+// The thread with the absorption that has the colour by these curves, all else kept.
+ColouredThread coloured_thread(const ThreadFile& thread, const std::array<inversion::AbsorptionCurve, 3>& curves,
+                               const Srgb8& colour);
+
 class ClothColours {
  public:
   // `done` is told the finished part. Errors: std::runtime_error when ctrl-C stops it.

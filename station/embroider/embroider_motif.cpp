@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "calibration/colour_chart.h"
 #include "inversion/absorption_curve.h"
 #include "renderer/embroidery/stitch_curves.h"
 #include "renderer/image_file.h"
 #include "renderer/path_tracer.h"
+#include "station/cloth_colour.h"
 #include "station/documents/motif_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/scene_file.h"
@@ -37,12 +37,8 @@ constexpr double kCurveShare = 30;     // of the work, %
 constexpr double kSatinPitch = 0.875;  // of the diameter: stitches side by side
 
 Vector3d linear_of(const Srgb8& colour) {
-  Vector3d linear;
-  for (int c = 0; c < 3; ++c) {
-    const double v = colour[static_cast<std::size_t>(c)] / 255.0;
-    linear[c] = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-  }
-  return linear;
+  const cv::Vec3f decoded = renderer::linear_of_srgb({colour[0], colour[1], colour[2]});
+  return {decoded[0], decoded[1], decoded[2]};
 }
 
 renderer::Camera camera_above(const Vector2d& low, const Vector2d& high, double pixels_per_mm) {
@@ -132,17 +128,10 @@ EmbroideredThread dyed_thread(const std::optional<Srgb8>& wanted, const ThreadFi
   EmbroideredThread made;
   for (int c = 0; c < 3; ++c) made.sigma_a[static_cast<std::size_t>(c)] = digitized.parameters.sigma_a[c];
   if (!wanted) return made;
-  const Eigen::Matrix3d to_srgb = srgb_from_camera(digitized);
-  const Vector3d linear = linear_of(*wanted), camera_rgb = to_srgb.inverse() * linear;
-  Vector3d reached;
-  for (int c = 0; c < 3; ++c) {
-    const auto channel = static_cast<std::size_t>(c);
-    made.sigma_a[channel] = curves[channel].sigma_a(camera_rgb[c]);
-    reached[c] = curves[channel].reflectance(made.sigma_a[channel]);
-  }
+  const ColouredThread coloured = coloured_thread(digitized, curves, *wanted);
+  for (int c = 0; c < 3; ++c) made.sigma_a[static_cast<std::size_t>(c)] = coloured.parameters.sigma_a[c];
   made.wanted = *wanted;
-  made.delta_e_2000 = calibration::delta_e_2000(calibration::lab_of_linear_srgb(linear),
-                                                calibration::lab_of_linear_srgb((to_srgb * reached).cwiseMax(0)));
+  made.delta_e_2000 = coloured.delta_e_2000;
   return made;
 }
 

@@ -12,20 +12,9 @@ namespace {
 
 using Eigen::Array3d;
 
-const std::array<double, 256>& linear_of_srgb() {
-  static const std::array<double, 256> table = [] {
-    std::array<double, 256> linear{};
-    for (std::size_t i = 0; i < linear.size(); ++i) {
-      const double v = static_cast<double>(i) / 255;
-      linear[i] = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-    }
-    return linear;
-  }();
-  return table;
-}
-
 Array3d linear(const cv::Vec3b& srgb) {
-  return {linear_of_srgb()[srgb[0]], linear_of_srgb()[srgb[1]], linear_of_srgb()[srgb[2]]};
+  const cv::Vec3f decoded = renderer::linear_of_srgb(srgb);
+  return {decoded[0], decoded[1], decoded[2]};
 }
 
 cv::Vec3f color_of(const Array3d& a) {
