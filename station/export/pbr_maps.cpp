@@ -1,8 +1,6 @@
 #include "station/export/pbr_maps.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "renderer/image_file.h"
