@@ -1,7 +1,6 @@
 // threadstation: reads the command line, runs one command, and turns every failure into one line and an exit status.
 
 #include <csignal>
-#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -28,36 +27,18 @@ int main(int argc, char** argv) {
   app.name("threadstation");
   app.set_version_flag("--version", station::software_version());
   app.require_subcommand(1);
-  station::add_demo_command(app);
-  station::add_devices_command(app);
-  station::add_check_command(app);
-  station::add_preview_command(app);
-  station::add_camera_process_command(app);
-  station::add_simulate_hardware_command(app);
-  station::add_calibrate_command(app);
-  station::add_capture_command(app);
-  station::add_import_command(app);
-  station::add_pattern_command(app);
-  station::add_plan_command(app);
-  station::add_replay_command(app);
-  station::add_verify_command(app);
-  station::add_develop_command(app);
-  station::add_invert_command(app);
-  station::add_report_command(app);
-  station::add_cloth_command(app);
-  station::add_predict_command(app);
-  station::add_compare_command(app);
-  station::add_library_command(app);
-  station::add_export_command(app);
-  station::add_serve_command(app);
-  station::add_scatter_command(app);
-  station::add_target_command(app);
-  station::add_recover_command(app);
-  station::add_embroider_command(app);
-  station::add_validate_command(app);
-  station::add_validate_cloth_command(app);
-  station::add_weave_command(app);
-  station::add_render_command(app);
+  using namespace station;
+  for (const auto add : {add_demo_command,           add_devices_command,        add_check_command,
+                         add_preview_command,        add_camera_process_command, add_simulate_hardware_command,
+                         add_calibrate_command,      add_capture_command,        add_import_command,
+                         add_pattern_command,        add_plan_command,           add_replay_command,
+                         add_verify_command,         add_develop_command,        add_invert_command,
+                         add_report_command,         add_cloth_command,          add_predict_command,
+                         add_compare_command,        add_library_command,        add_export_command,
+                         add_serve_command,          add_scatter_command,        add_target_command,
+                         add_recover_command,        add_embroider_command,      add_validate_command,
+                         add_validate_cloth_command, add_weave_command,          add_render_command})
+    add(app);
   try {
     app.parse(argc, argv);
     std::cout.flush();

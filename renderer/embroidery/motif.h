@@ -12,7 +12,7 @@
 namespace renderer {
 
 struct MotifThread {
-  std::string name;                                  // of the colour chart; empty: unknown
+  std::string name;                                  // in the colour chart; empty: unknown
   std::optional<std::array<unsigned char, 3>> srgb;  // as shown on a screen; some formats have none
 };
 
@@ -36,15 +36,15 @@ struct MotifMeasures {
 };
 MotifMeasures measure(const Motif& motif);
 
-// Takes a motif down point by point, as machine files have it: relative moves, with or without the needle.
+// Records a motif move by move, as machine files have it: moves are relative, with or without the needle.
 class MotifRecorder {
  public:
   MotifRecorder() { motif_.threads.emplace_back(); }
 
-  void stitch(const Eigen::Vector2d& move_mm);  // and down with the needle
-  void jump(const Eigen::Vector2d& move_mm);    // without it; the thread follows with the next stitch
-  void trim();                                  // the thread is cut
-  void next_thread();                           // cut, and another one
+  void stitch(const Eigen::Vector2d& move_mm);  // moves, and sews down with the needle
+  void jump(const Eigen::Vector2d& move_mm);    // moves without the needle; the thread follows with the next stitch
+  void trim();                                  // cuts the thread
+  void next_thread();                           // cuts the thread and takes the next one
 
   const Eigen::Vector2d& at() const { return at_; }
   Motif& motif() { return motif_; }

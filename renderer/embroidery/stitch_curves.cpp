@@ -14,7 +14,7 @@ constexpr double kPerStep = 0.5;        // of the diameter, between points along
 constexpr double kReach = 0.35;         // of the diameter, to either side: what a crossing thread lies on
 constexpr double kMostCells = 1 << 24;  // of the relief
 
-// How high what has been sewn lies, over the cells of a grid.
+// The height of what has been sewn, over the cells of a grid.
 class Relief {
  public:
   Relief(const MotifMeasures& extents, double diameter_mm)
@@ -124,8 +124,7 @@ StitchCurves stitch_curves(const Motif& motif, double diameter_mm) {
         const auto k = static_cast<std::size_t>(place);
         const double z = std::max(heights[k], heights[k + 1]);
         if (z < radius / 2) continue;  // where the thread dips into the cloth nothing lies on it
-        relief.raise(from + place / steps * (to - from), kReach * diameter_mm,
-                     z + (kLayerHeight - 0.5) * diameter_mm);
+        relief.raise(from + place / steps * (to - from), kReach * diameter_mm, z + (kLayerHeight - 0.5) * diameter_mm);
       }
     }
   return result;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "renderer/scattering/azimuthal_profile.h"
 #include "renderer/scattering/density_fit.h"
@@ -69,8 +70,8 @@ std::array<ArrayXd, 3> add_lobes(const AzimuthalData& data, const VectorXd& u, c
   for (int p = 0; p < 3; ++p) {
     const auto i = static_cast<std::size_t>(p);
     const WithSlope scale = scale_of(u[p]);
-    const AzimuthalProfile profile = azimuthal_profile(
-        p, data.theta_rad, data.eta, scale.value, sigma < 0 ? 0 : u[sigma], static_cast<int>(data.density.size()));
+    const AzimuthalProfile profile = azimuthal_profile(p, data.theta_rad, data.eta, scale.value,
+                                                       sigma < 0 ? 0 : u[sigma], static_cast<int>(data.density.size()));
     density += lambda[i] * profile.density;
     if (by_unknown) {
       by_unknown->col(p) += (lambda[i] * scale.slope * profile.by_scale).matrix();
@@ -190,7 +191,7 @@ YarnFit fit_yarn(const std::vector<AzimuthalData>& data, double radius_ratio) {
       };
       // The lobes change with h only through the number of fibers on the chord: one profile for each number.
       constexpr int kOffsets = 1000;
-      const ArrayXd uniform = ArrayXd::Constant(bins, 1 / (2 * kPi)), none = ArrayXd::Zero(bins);
+      const ArrayXd uniform = ArrayXd::Constant(bins, 1 / (2 * std::numbers::pi)), none = ArrayXd::Zero(bins);
       for (int i = 0; i < kOffsets;) {
         const auto offset = [&](int index) { return (index + 0.5) / kOffsets; };
         const int n = fibers_on_chord(fibers, radius_ratio, offset(i));
@@ -198,7 +199,7 @@ YarnFit fit_yarn(const std::vector<AzimuthalData>& data, double radius_ratio) {
         while (i < kOffsets && fibers_on_chord(fibers, radius_ratio, offset(i)) == n) ++i;
         const CurveLobes<Jet> lobes = yarn.lobes_at(offset(from), wo);
         const Jet share(static_cast<double>(i - from) / kOffsets), scale = lobes.widths->s[1];
-        const AzimuthalProfile forward = logistic_profile(kPi, scale.a, bins);
+        const AzimuthalProfile forward = logistic_profile(std::numbers::pi, scale.a, bins);
         add(share * (lobes.attenuation(0, 0) + lobes.attenuation(2, 0)), uniform, none, Jet(0.0));
         add(share * lobes.attenuation(1, 0), forward.density, forward.by_scale, scale);
       }
@@ -224,17 +225,16 @@ YarnFit fit_yarn(const std::vector<AzimuthalData>& data, double radius_ratio) {
 AzimuthalFit fit_forward_and_uniform(const AzimuthalData& data) {
   const auto bins = static_cast<int>(data.density.size());
   DensityModel model;
-  model.unknowns = {{"beta_TT", kLeastRoughness, 1},
-                    {"forward energy", 0, kMostEnergyTerm},
-                    {"uniform energy", 0, kMostEnergyTerm}};
+  model.unknowns = {
+      {"beta_TT", kLeastRoughness, 1}, {"forward energy", 0, kMostEnergyTerm}, {"uniform energy", 0, kMostEnergyTerm}};
   model.evaluate = [&](std::size_t, const VectorXd& u, ArrayXd& density, MatrixXd* by_unknown) {
     const WithSlope scale = scale_of(u[0]);
     const AzimuthalProfile forward = azimuthal_profile(1, data.theta_rad, data.eta, scale.value, 0, bins);
-    density = u[1] * forward.density + u[2] / (2 * kPi);
+    density = u[1] * forward.density + u[2] / (2 * std::numbers::pi);
     if (!by_unknown) return;
     by_unknown->col(0) = (u[1] * scale.slope * forward.by_scale).matrix();
     by_unknown->col(1) = forward.density.matrix();
-    by_unknown->col(2).setConstant(1 / (2 * kPi));
+    by_unknown->col(2).setConstant(1 / (2 * std::numbers::pi));
   };
   AzimuthalFit fit;
   fit_densities({data}, model, {VectorXd{{0.3, 0.5, 0.3}}, VectorXd{{0.8, 0.5, 0.3}}}, fit);

@@ -9,12 +9,14 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <numbers>
 
 #include "renderer/scattering/packet.h"
 
 namespace renderer {
 
-// bessel_i0e as factor exp(-exponent), so that a caller who has another exponential needs no second one.
+// The value of bessel_i0e as factor exp(-exponent), so that a caller who multiplies it by another exponential needs to
+// compute only one.
 template <class S>
 struct ScaledBessel {
   S factor, exponent;
@@ -29,7 +31,6 @@ struct ScaledBessel {
 template <int order, class S>
 ScaledBessel<S> bessel_ie(const S& x) {
   using std::abs, std::sqrt;
-  constexpr double kPi = 3.14159265358979323846;
   if (x < S(20.0)) {
     const S quarter = x * x * S(0.25);
     S term = order == 0 ? S(1.0) : x * S(0.5), sum = term;
@@ -46,7 +47,7 @@ ScaledBessel<S> bessel_ie(const S& x) {
     term *= eighth * S((odd * odd - 4 * order * order) / k);
     sum += term;
   }
-  return {sum / sqrt(x * S(2 * kPi)), S(0.0)};
+  return {sum / sqrt(x * S(2 * std::numbers::pi)), S(0.0)};
 }
 
 template <class S>
@@ -60,8 +61,8 @@ S bessel_i0e_log_slope(const S& x) {
   return x * (bessel_ie<1>(x).value() / bessel_ie<0>(x).value() - S(1.0));
 }
 
-// Single precision. Up to kBesselNear I0 in powers of (x / kBesselNear)^2, from there sqrt(x) bessel_i0e in powers of
-// kBesselNear / x.
+// Single precision: up to kBesselNear the polynomial is one of I0 in powers of (x / kBesselNear)^2, from there one of
+// sqrt(x) bessel_i0e in powers of kBesselNear / x.
 inline constexpr float kBesselNear = 3.75f;
 
 template <int n>
@@ -79,8 +80,9 @@ ScaledBessel<Packet<n>> bessel_i0e(const Packet<n>& x) {
           select(is_near, x, Packet<n>(0.0f))};
 }
 
-// Below kBesselNear from the polynomials of I0 and I1, above a polynomial of w that was fitted to the exact function by
-// least squares; absolute error below 2e-6. (A quotient of both asymptotes would be off by 2e-7 times x.)
+// Single precision: below kBesselNear the slope comes from the polynomials of I0 and I1, above it from a polynomial of
+// w that was fitted to the exact function by least squares; absolute error below 2e-6. (A quotient of both asymptotes
+// would be off by 2e-7 times x.)
 template <int n>
 Packet<n> bessel_i0e_log_slope(const Packet<n>& x) {
   const Packet<n> ratio = x * (1 / kBesselNear), t = ratio * ratio, w = min(kBesselNear / x, 1.0f);
@@ -105,7 +107,7 @@ inline Eigen::Array4f bessel_i0e_log_slope(const Eigen::Array4f& x) {
   return slope;
 }
 
-// Lane by lane.
+// Arrays of other scalars are computed lane by lane.
 template <class S, int n>
 ScaledBessel<Eigen::Array<S, n, 1>> bessel_i0e(const Eigen::Array<S, n, 1>& x) {
   ScaledBessel<Eigen::Array<S, n, 1>> lanes;

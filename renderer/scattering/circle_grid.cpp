@@ -1,7 +1,6 @@
 #include "renderer/scattering/circle_grid.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace renderer {
 namespace {

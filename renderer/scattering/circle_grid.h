@@ -1,4 +1,5 @@
-// Equal circles that do not overlap, sorted into square cells, so that a ray asks only the circles near its way.
+// A grid of square cells over equal circles that do not overlap, so that a ray is tested only against the circles near
+// its way.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,19 +12,20 @@ namespace renderer {
 
 struct CircleHit {
   int circle = -1;      // -1: none
-  double distance = 0;  // to where the ray enters it; without a circle, to where the ray leaves the square
+  double distance = 0;  // along the ray to where it enters the circle, or leaves the square if it meets none
 };
 
 class CircleGrid {
  public:
   CircleGrid() : CircleGrid({}, 1, 1) {}
-  // Circles of `radius` around `centers`, all of them inside the square of half side `reach` around the origin.
+  // The grid of circles of `radius` around `centers`, all of which lie inside the square of half side `reach` around
+  // the origin.
   CircleGrid(const std::vector<Eigen::Vector2d>& centers, double radius, double reach);
 
   // The nearest circle that the ray from `origin` (inside the square, outside all circles) in unit `direction` enters;
   // circle number `leaving` (-1 for none), on whose border the ray starts, is passed over.
   CircleHit nearest(const Eigen::Vector2d& origin, const Eigen::Vector2d& direction, int leaving) const {
-    // From cell to cell (Amanatides and Woo 1987), with no branch but those that end it.
+    // The walk from cell to cell (Amanatides and Woo 1987) has no branches but those that end it.
     Walk x(origin.x(), direction.x(), reach_, cell_, inverse_cell_, side_);
     Walk y(origin.y(), direction.y(), reach_, cell_, inverse_cell_, side_);
     CircleHit best{-1, std::min(x.exit, y.exit)};
@@ -58,18 +60,18 @@ class CircleGrid {
     int circle;
   };
 
-  // A ray's way along one axis; distances along the ray.
+  // A ray's way through the cells along one axis; distances are measured along the ray.
   struct Walk {
     int cell, step;
-    double border, per_cell;  // to where the cell ends; from one border to the next
-    double exit;              // to where the square ends
+    double border, per_cell;  // distance to where the cell ends; distance from one border to the next
+    double exit;              // distance to where the square ends
 
     Walk(double origin, double direction, double reach, double size, double inverse_size, int side) {
       const double position = origin + reach;
       cell = std::clamp(static_cast<int>(position * inverse_size), 0, side - 1);
       const bool up = direction > 0;
       step = up ? 1 : -1;
-      // Almost parallel to the borders is parallel: borders then are too far away to be met.
+      // A ray almost parallel to the borders counts as parallel: they then are too far away to be met.
       const double inverse = 1 / (std::abs(direction) > 1e-30 ? direction : -1e-30);
       per_cell = size * std::abs(inverse);
       border = ((up ? cell + 1 : cell) * size - position) * inverse;
@@ -80,7 +82,7 @@ class CircleGrid {
   std::vector<Eigen::Vector2d> centers_;
   double radius2_, reach_, cell_, inverse_cell_;
   int side_;                          // cells across the square; a ring of empty cells lies around it
-  std::vector<std::uint32_t> first_;  // of each cell's entries; one more than there are cells
+  std::vector<std::uint32_t> first_;  // index of each cell's first entry, and the number of entries at the end
   std::vector<Entry> entries_;
 };
 

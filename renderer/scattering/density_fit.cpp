@@ -19,7 +19,7 @@ constexpr double kWeak = 0.1;        // standard deviation beyond which a direct
 constexpr double kAtBound = 1e-6;    // of the distance between the bounds
 constexpr double kLeastPart = 0.15;  // components of weak directions below this are left out
 
-// The distributions one below the other.
+// The number of bins of all distributions together, which stand one below the other in the vector of residuals.
 Eigen::Index bins_of(const std::vector<AzimuthalData>& data) {
   Eigen::Index bins = 0;
   for (const AzimuthalData& d : data) bins += d.density.size();

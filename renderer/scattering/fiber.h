@@ -7,10 +7,10 @@
 //   beta_n    | 0.02 .. 1         | 0.3     | yes   azimuthal roughness (perceptual)
 //   tilt_rad  | rad               | 0       | yes   cuticle tilt; textile fibers have none
 //
-// f_cos includes the cosine (lobes.h). theta, h and the attenuations belong to the known direction o; the model is
-// not exactly reciprocal. Without absorption the attenuations sum to 1 for every h and theta. Tilt turns theta_o by
-// -2, +1, +4 tilts for R, TT, TRT. Deviations from pbrt-v4's implementation of the same model: an accurate Bessel
-// function and a sampling of the lobes that does not cut their tails.
+// f_cos includes the cosine (lobes.h). theta, h and the attenuations belong to the known direction o; the model is not
+// exactly reciprocal. Without absorption the attenuations sum to 1 for every h and theta. A tilt turns theta_o by -2,
+// +1 and +4 times itself for R, TT and TRT. Deviations from pbrt-v4's implementation of the same model: the Bessel
+// function is accurate, and the sampling of the lobes does not cut their tails.
 #pragma once
 
 #include <Eigen/Core>
@@ -37,8 +37,8 @@ BasicFiberParameters<T> in_scalar(const BasicFiberParameters<S>& p) {
           static_cast<T>(p.tilt_rad)};
 }
 
-// A_p of the four lobes (rows R, TT, TRT, remainder) from Fresnel reflectance f and transmittance t along one inner
-// chord.
+// The attenuations A_p of the four lobes (rows R, TT, TRT, remainder) from the Fresnel reflectance f and the
+// transmittance t along one inner chord.
 template <class S>
 Eigen::Array<S, 4, 3> fiber_attenuation(const S& f, const Rgb<S>& t) {
   Eigen::Array<S, 4, 3> a;
@@ -54,7 +54,7 @@ Eigen::Array<S, 4, 3> fiber_attenuation(const S& f, const Rgb<S>& t) {
   return a;
 }
 
-// Parameters with everything computed that does not depend on directions.
+// The model with everything computed that depends on the parameters but not on directions.
 template <class S>
 class FiberModel {
  public:

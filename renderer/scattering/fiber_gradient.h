@@ -1,6 +1,9 @@
-// The fiber model's f_cos together with its derivatives with respect to absorption and roughness, in closed form; index
-// of refraction fixed, no tilt. Attenuations from fiber.h, densities and their derivatives from width_slopes.h.
+// The fiber model's f_cos together with its derivatives by absorption and roughness, in closed form. The index of
+// refraction is fixed and there is no tilt. Attenuations come from fiber.h, densities and their derivatives from
+// width_slopes.h.
 #pragma once
+
+#include <numbers>
 
 #include "renderer/scattering/fiber.h"
 #include "renderer/scattering/thread_gradient.h"
@@ -8,15 +11,18 @@
 
 namespace renderer {
 
-// Of one channel; the absorption is the channel's own.
+// The derivatives of one channel's f_cos in their order; the absorption is the channel's own, the roughnesses are
+// shared.
 enum FiberSlope { kFiberSlopeSigma, kFiberSlopeBetaM, kFiberSlopeBetaN, kFiberSlopeCount };
 
+// What value and slopes at one point and one direction are made of.
 template <class S>
 struct FiberFactors {
   Eigen::Array<S, 4, 3> attenuation, by_sigma;  // rows R, TT, TRT, remainder
   Eigen::Array<S, 4, 1> density, by_beta_m, by_beta_n;
 };
 
+// The fiber model for value and slopes; it is used in two steps like ThreadGradientModel (thread_gradient.h).
 template <class S>
 class FiberGradientModel {
  public:
@@ -42,9 +48,7 @@ class FiberGradientModel {
         dv_(other.dv_),
         ds_(other.ds_) {}
 
-  Factors factors(const ThreadPoint<S>& point, const LobeAngles<S>& at) const {
-    return all_factors(point, at, false);
-  }
+  Factors factors(const ThreadPoint<S>& point, const LobeAngles<S>& at) const { return all_factors(point, at, false); }
   Factors slope_factors(const ThreadPoint<S>& point, const LobeAngles<S>& at) const {
     return all_factors(point, at, true);
   }
@@ -56,7 +60,7 @@ class FiberGradientModel {
     return sum;
   }
 
-  // slopes(row, channel) += weight[channel] d f_cos[channel].
+  // Adds weight[channel] d f_cos[channel] / d parameter to slopes(row, channel).
   template <class Slopes>
   void add_slopes(const Factors& f, const Rgb<S>& weight, Slopes& slopes) const {
     for (int c = 0; c < 3; ++c)
@@ -78,7 +82,7 @@ class FiberGradientModel {
       using std::exp;
       const S t = exp(-sigma_a_[c] * point.chord_length), tf = t * reflectance;
       const S entering = S(1.0) - reflectance, through = entering * entering * t;
-      // 1 - tf without cancellation; where it vanishes so does `through`
+      // 1 - tf without cancellation; where it vanishes, so does `through`.
       const S left = entering + reflectance * (S(1.0) - t) + S(1e-12);
       f.attenuation.col(c) << reflectance, through, through * tf, through * tf * tf / left;
       if (slopes)
@@ -87,7 +91,7 @@ class FiberGradientModel {
             -point.chord_length * (S(3.0) + tf / left) * f.attenuation(3, c);
     }
     const Lanes<S> m = longitudinal_density(widths_.widths, at), n = azimuthal_density(widths_.widths, at);
-    constexpr double kUniform = 0.5 / kPi;
+    constexpr double kUniform = 0.5 / std::numbers::pi;
     f.density << m[0] * n[0], m[1] * n[1], m[2] * n[2], m[2] * S(kUniform);
     if (!slopes) return f;
     const Lanes<S> by_v = widths_.dlog_m(at), by_s = widths_.dlog_n(at);
@@ -97,8 +101,9 @@ class FiberGradientModel {
     return f;
   }
 
-  // The inner chord says at which offset the fiber was met: sin^2 gamma_t = 1 - (chord cos theta_t / 2)^2, and
-  // (cos theta_o cos gamma_o)^2 = cos^2 theta_o - sin^2 gamma_t (eta^2 - sin^2 theta_o).
+  // The Fresnel reflectance of the fiber at the point. The inner chord tells at which offset the fiber was met: sin^2
+  // gamma_t = 1 - (chord cos theta_t / 2)^2, and (cos theta_o cos gamma_o)^2 = cos^2 theta_o - sin^2 gamma_t (eta^2 -
+  // sin^2 theta_o).
   S fresnel(const ThreadPoint<S>& point) const {
     using std::sqrt, std::max, std::min;
     const S cos2 = point.cosine * point.cosine, eta2 = eta_ * eta_, bent = eta2 - S(1.0) + cos2;

@@ -4,8 +4,8 @@
 // (sin theta = w.x), phi = atan2(w.z, w.y). Directions are unit and point away from the curve. `o` is the direction
 // for which the offset h is known (while tracing: towards the viewer), `i` the other one. gamma_o = asin(h).
 //
-// Value convention: f_cos = sum_p M_p(theta_i, theta_o) N_p(phi) A_p, which contains the cosine and integrates to
-// sum_p A_p over the sphere of directions i. Multiply radiance by f_cos / pdf, with no further cosine.
+// Value convention: f_cos = sum_p M_p(theta_i, theta_o) N_p(phi) A_p, which contains the cosine and integrates to sum_p
+// A_p over the sphere of directions i. Radiance is multiplied by f_cos / pdf, with no further cosine.
 //
 // Sources: d'Eon et al. 2011 (M_p), Chiang et al. 2015 (N_p, roughness maps). Everything is templated on the scalar
 // S: float for rendering, packets of floats for many places at once (packet.h), double, or dual numbers for derivatives
@@ -14,6 +14,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <numbers>
 
 #include "renderer/scattering/bessel.h"
 #include "renderer/scattering/packet.h"
@@ -21,10 +22,8 @@
 
 namespace renderer {
 
-inline constexpr double kPi = 3.14159265358979323846;
-
-// One value per lobe; models with fewer lobes leave the last ones at zero. Packets (packet.h) calculate every lane in
-// full and serve threads only, which have three lobes.
+// One value per lobe. Models with fewer lobes leave the last values at zero. Packets (packet.h) calculate every lane in
+// full and serve threads only, so they have three lobes.
 template <class S>
 inline constexpr int kLanes = 4;
 template <int n>
@@ -40,7 +39,7 @@ using Rgb = Eigen::Array<S, 3, 1>;
 template <class S>
 using Vec3 = Eigen::Matrix<S, 3, 1>;
 
-// The scalar of directions: S itself, or what a dual number is made of.
+// The scalar of directions: S itself, or for a dual number the scalar that it is made of.
 template <class S>
 struct GeometryOf {
   using type = S;
@@ -56,26 +55,27 @@ template <class S>
 using Geometry = typename GeometryOf<S>::type;
 
 template <class S>
-S power(const S& base, int exponent) {  // exponent >= 0, by squaring
+S power(const S& base, int exponent) {  // by squaring; exponent >= 0
   if (exponent == 0) return S(1.0);
   const S half = power<S>(base, exponent / 2);
   return exponent % 2 ? half * half * base : half * half;
 }
 
-// Variance v of the longitudinal lobe from perceptual roughness in 0..1.
+// The variance v of the longitudinal lobe with this perceptual roughness in 0..1.
 template <class S>
 S longitudinal_variance(const S& beta_m) {
   const S root = S(0.726) * beta_m + S(0.812) * beta_m * beta_m + S(3.7) * power(beta_m, 20);
   return root * root;
 }
 
-// Scale s of the azimuthal logistic lobe from perceptual roughness in 0..1.
+// The scale s of the azimuthal logistic lobe with this perceptual roughness in 0..1.
 template <class S>
 S azimuthal_scale(const S& beta_n) {
-  return S(std::sqrt(kPi / 8)) * (S(0.265) * beta_n + S(1.194) * beta_n * beta_n + S(5.372) * power(beta_n, 22));
+  return S(std::sqrt(std::numbers::pi / 8)) *
+         (S(0.265) * beta_n + S(1.194) * beta_n * beta_n + S(5.372) * power(beta_n, 22));
 }
 
-// Unpolarised reflectance of a smooth dielectric seen from outside; cos_i in 0..1.
+// The unpolarised reflectance of a smooth dielectric seen from outside; cos_i in 0..1.
 template <class S>
 S fresnel_dielectric(const S& cos_i, const S& eta) {
   using std::sqrt;
@@ -88,7 +88,8 @@ S fresnel_dielectric(const S& cos_i, const S& eta) {
   return S(0.5) * (parallel * parallel + perpendicular * perpendicular) / (both * both);
 }
 
-// The straight way through the fiber after the first refraction, in the plane's effective index eta' (Bravais).
+// The straight way through the fiber after the first refraction, with the effective index eta' of the normal plane
+// (Bravais).
 template <class S>
 struct InnerChord {
   S gamma_t;
@@ -103,15 +104,15 @@ struct InnerChord {
   }
 };
 
-// Azimuth of the centre of lobe p relative to phi_o, within [-pi, pi].
+// The azimuth of the centre of lobe p relative to phi_o, within [-pi, pi].
 template <class S>
 S lobe_center(int p, const S& gamma_o, const S& gamma_t) {
   using std::floor;
-  const S center = S(2.0 * p) * gamma_t - S(2.0) * gamma_o + S(p * kPi);
-  return center - S(2 * kPi) * floor((center + S(kPi)) * S(0.5 / kPi));
+  const S center = S(2.0 * p) * gamma_t - S(2.0) * gamma_o + S(p * std::numbers::pi);
+  return center - S(2 * std::numbers::pi) * floor((center + S(std::numbers::pi)) * S(0.5 / std::numbers::pi));
 }
 
-// Everything about the lobes' widths, which does not depend on directions.
+// The lobes' widths, with everything computed that depends on them but not on directions.
 template <class S>
 struct LobeWidths {
   Lanes<S> v, s;  // longitudinal variance, azimuthal scale
@@ -128,14 +129,14 @@ struct LobeWidths {
     m_norm[p] = inv_v[p] / m_span[p];
     s[p] = scale;
     inv_s[p] = S(1.0) / scale;
-    n_span[p] = tanh(S(kPi / 2) * inv_s[p]);
+    n_span[p] = tanh(S(std::numbers::pi / 2) * inv_s[p]);
     n_norm[p] = inv_s[p] / n_span[p];
   }
-  // Uniform in azimuth: the logistic's limit for large s, in the form that needs no limit.
+  // Makes lobe p uniform in azimuth, which is the logistic's limit for large s, in the form that needs no limit.
   void set_uniform_azimuth(int p, const S& variance) {
     set(p, variance, S(1.0));
     inv_s[p] = S(0.0);
-    n_norm[p] = S(2.0 / kPi);
+    n_norm[p] = S(2.0 / std::numbers::pi);
   }
   template <class T>
   LobeWidths<T> cast() const {
@@ -144,7 +145,7 @@ struct LobeWidths {
   }
 };
 
-// Where direction i lies relative to each lobe, all that M_p and N_p depend on besides the widths.
+// Where direction i lies relative to each lobe: all that M_p and N_p depend on besides the widths.
 template <class S>
 struct LobeAngles {
   Lanes<S> distance2;    // squared distance of the directions across the specular cone, in (cos theta, sin theta)
@@ -152,15 +153,16 @@ struct LobeAngles {
   Lanes<S> from_center;  // |phi - Phi_p|, within [0, pi]
 };
 
-// M = exp(-b) I0(a) / (2 v sinh(1/v)) with a = cos cos / v, b = sin sin / v. The exponentials are merged into the
-// squared distance of the two directions across the specular cone, which stays exact in float for small v.
+// The longitudinal M = exp(-b) I0(a) / (2 v sinh(1/v)) of each lobe, with a = cos cos / v and b = sin sin / v. The
+// exponentials are merged into the squared distance of the two directions across the specular cone, which stays exact
+// in float for small v.
 template <class S>
 Lanes<S> longitudinal_density(const LobeWidths<S>& widths, const LobeAngles<S>& at) {
   const auto bessel = bessel_i0e(Lanes<S>(at.cos_cos * widths.inv_v));
   return widths.m_norm * bessel.factor * (at.distance2 * widths.inv_v * S(-0.5) - bessel.exponent).exp();
 }
 
-// Logistic trimmed to [-pi, pi] around each centre.
+// The azimuthal N of each lobe: the logistic around its centre, trimmed to [-pi, pi].
 template <class S>
 Lanes<S> azimuthal_density(const LobeWidths<S>& widths, const LobeAngles<S>& at) {
   const Lanes<S> e = (-at.from_center * widths.inv_s).exp();
@@ -170,11 +172,11 @@ Lanes<S> azimuthal_density(const LobeWidths<S>& widths, const LobeAngles<S>& at)
 template <class S>
 struct ScatteringValue {
   Rgb<S> f_cos;  // includes the cosine
-  S pdf;         // of sampling this direction, per solid angle
+  S pdf;         // density of sampling this direction, per solid angle
 };
 
 // The lobes as seen from one direction o with offset h; made by a model (fiber.h) once per hit, then evaluated and
-// sampled as often as wanted. Refers to the model's widths: must not outlive it.
+// sampled as often as wanted. They refer to the model's widths and must not outlive the model.
 template <class S>
 struct CurveLobes {
   using G = Geometry<S>;
@@ -208,7 +210,7 @@ struct CurveLobes {
     return value;
   }
 
-  // M_p N_p of each lobe: its density over solid angle.
+  // M_p N_p of each lobe, its density over solid angle.
   Lanes<S> lobe_densities(const Vec3<G>& wi) const {
     const LobeAngles<S> at = angles(wi);
     return longitudinal_density(*widths, at) * azimuthal_density(*widths, at);
@@ -222,10 +224,10 @@ struct CurveLobes {
     const Lanes<S> straight = (center - S(atan2(across, along))).abs();
     return {.distance2 = (cos_theta_o - S(cos_theta_i)).square() + (sin_theta_o + S(wi.x())).square(),
             .cos_cos = cos_theta_o * S(cos_theta_i),
-            .from_center = straight.min(Lanes<S>(S(2 * kPi) - straight))};
+            .from_center = straight.min(Lanes<S>(S(2 * std::numbers::pi) - straight))};
   }
 
-  // A direction i with density evaluate(i).pdf; u in [0, 1).
+  // A random direction i, drawn with the density evaluate(i).pdf; all u in [0, 1).
   Vec3<G> sample(const S& u_lobe, const S& u_theta, const S& u_ring, const S& u_phi) const {
     using std::cos, std::sin, std::sqrt;
     const int p = choose_lobe(u_lobe);
@@ -244,14 +246,15 @@ struct CurveLobes {
     return probability[3] > S(0.0) ? 3 : 0;  // rounding can leave a little u over for models of three lobes
   }
 
-  // d'Eon 2013: a cone angle around the specular cone and a position on it.
+  // A random sin theta_i of lobe p, from an angle to the specular direction and a position on the ring at that angle
+  // (d'Eon 2013).
   S sample_longitudinal(int p, const S& u_theta, const S& u_ring) const {
     using std::cos, std::log1p, std::sqrt;
     S one_minus_cos = -widths->v[p] * log1p(-(S(1.0) - u_theta) * widths->m_span[p]);
     if (!(one_minus_cos < S(2.0))) one_minus_cos = S(2.0);
     const S sine = sqrt(one_minus_cos * (S(2.0) - one_minus_cos));
     const S sin_theta_i =
-        (one_minus_cos - S(1.0)) * sin_theta_o[p] + sine * cos(S(2 * kPi) * u_ring) * cos_theta_o[p];
+        (one_minus_cos - S(1.0)) * sin_theta_o[p] + sine * cos(S(2 * std::numbers::pi) * u_ring) * cos_theta_o[p];
     if (sin_theta_i > S(1.0)) return S(1.0);
     return sin_theta_i < S(-1.0) ? S(-1.0) : sin_theta_i;
   }
@@ -259,11 +262,11 @@ struct CurveLobes {
   S sample_azimuthal(int p, const S& u) const {
     using std::log;
     const S centered = S(2.0) * u - S(1.0);
-    if (widths->inv_s[p] == S(0.0)) return S(kPi) * centered;
+    if (widths->inv_s[p] == S(0.0)) return S(std::numbers::pi) * centered;
     const S t = centered * widths->n_span[p];
     const S x = widths->s[p] * log((S(1.0) + t) / (S(1.0) - t));
-    if (x > S(kPi)) return S(kPi);
-    return x < S(-kPi) ? S(-kPi) : x;
+    if (x > S(std::numbers::pi)) return S(std::numbers::pi);
+    return x < S(-std::numbers::pi) ? S(-std::numbers::pi) : x;
   }
 };
 

@@ -7,14 +7,15 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <thread>
 
-#include "renderer/random_stream.h"
 #include "renderer/scattering/circle_grid.h"
+#include "renderer/scattering/degree.h"
 #include "renderer/scattering/lobes.h"
+#include "renderer/scattering/random_stream.h"
 
 namespace renderer {
 namespace {
@@ -22,7 +23,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kFaint = 0.05;  // rays below this energy play Russian roulette
-constexpr double kSteepest = 89.9 * kPi / 180;
+constexpr double kSteepest = 89.9 * kDegree;
 
 // What the rays of one block did; energies are sums over rays.
 struct Tally {
@@ -42,15 +43,14 @@ struct Tally {
 // A smooth fiber seen under one inclination.
 class FiberOptics {
  public:
-  explicit FiberOptics(const MultiFiberOptions& options)
-      : cos_theta_(std::cos(options.theta_rad)), eta_(options.eta) {
+  explicit FiberOptics(const MultiFiberOptions& options) : cos_theta_(std::cos(options.theta_rad)), eta_(options.eta) {
     const double sin_theta = std::sin(options.theta_rad);
     const double inside2 = eta_ * eta_ - sin_theta * sin_theta;  // (eta cos theta_t)^2
     inverse_plane_eta_ = cos_theta_ / std::sqrt(inside2);
     length_per_cos_ = 2 * eta_ / std::sqrt(inside2);
   }
 
-  // A ray that enters the unit circle at normal n; n and direction become those where it leaves it.
+  // A ray's visit of a fiber: it enters the unit circle at normal n; n and the direction become those where it leaves.
   struct Visit {
     int chords = 0;     // 0: reflected outside
     double length = 0;  // in space, in radii
@@ -89,7 +89,7 @@ class FiberOptics {
 class Simulation {
  public:
   explicit Simulation(const MultiFiberOptions& options)
-      : options_(options), optics_(options), bins_per_radian_(options.bins / (2 * kPi)) {}
+      : options_(options), optics_(options), bins_per_radian_(options.bins / (2 * std::numbers::pi)) {}
 
   // Rays first..last of the configuration whose fibers `grid` holds (unit radius).
   Tally trace(const CircleGrid& grid, double reach, int first, int last, std::uint64_t stream) const {
@@ -129,7 +129,7 @@ class Simulation {
       }
       hit = grid.nearest(position, direction, hit.circle);
     }
-    const auto bin = static_cast<int>((std::atan2(direction.y(), direction.x()) + kPi) * bins_per_radian_);
+    const auto bin = static_cast<int>((std::atan2(direction.y(), direction.x()) + std::numbers::pi) * bins_per_radian_);
     tally.energy[static_cast<std::size_t>(std::min(bin, options_.bins - 1))] += energy;
     tally.by_fibers_passed[std::min(passed, tally.by_fibers_passed.size() - 1)] += energy;
   }
@@ -159,7 +159,7 @@ void check(const MultiFiberOptions& o) {
           "the number of bins must be a multiple of 4 up to 100000, so that none lies across front and back");
 }
 
-// Independent pieces of work on the cores asked for; progress as in MultiFiberOptions.
+// Runs independent pieces of work on the cores asked for; `progress` is called as MultiFiberOptions says.
 class Workers {
  public:
   Workers(const MultiFiberOptions& options, std::int64_t pieces) : options_(options), pieces_(pieces) {
@@ -209,7 +209,7 @@ struct Accumulator {
 MultiFiberScattering summary(const Accumulator& all, const MultiFiberOptions& options) {
   const Tally& sum = all.sum;
   const double met = static_cast<double>(std::max<std::uint64_t>(sum.met, 1));
-  const double per_radian = options.bins / (2 * kPi), configurations = options.configurations;
+  const double per_radian = options.bins / (2 * std::numbers::pi), configurations = options.configurations;
   MultiFiberScattering result;
   result.rays = sum.met;
   result.miss = 1 - static_cast<double>(sum.met) / (static_cast<double>(options.rays) * configurations);

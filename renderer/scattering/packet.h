@@ -1,8 +1,8 @@
 // n floats that calculate as one number: a scalar for the templates of this folder that evaluates n places at once.
 //
-// Arithmetic is that of compiler vectors (GCC's and Clang's), split or joined to what the processor has. Comparisons
-// give masks, choices are select() (select.h); a formula with branches on values does not compile. Functions of single
-// precision, largest error over their arguments against exact ones:
+// Arithmetic is that of compiler vectors (GCC's and Clang's), split or joined to fit the processor. Comparisons give
+// masks, and choices are made by select() (select.h); a formula that branches on values does not compile. The functions
+// have single precision; their largest errors over their arguments, against exact values, are:
 //
 //   exp     1e-7 relative, zero below -87   argument at most 88
 //   asin    2e-7 absolute                   argument within [-1, 1]
@@ -13,14 +13,16 @@
 //
 // Packets have copy constructors of their own, so that they are passed in memory whatever registers the processor has.
 //
-// Wider packets than the build's processors have are slower than narrow ones; choosing the width at run time was tried
-// and given up: GCC 12 does not carry target attributes (target_clones, flatten) through the templates, and sources
-// compiled for newer processors leave their instantiations of shared templates to the whole program.
+// Packets wider than the registers of the processors that the build is for are slower than narrow ones. Choosing the
+// width at run time was tried and given up: GCC 12 does not carry target attributes (target_clones, flatten) through
+// the templates, and sources compiled for newer processors leave their instantiations of shared templates to the whole
+// program.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
 #include <cstring>
+#include <numbers>
 
 #if defined(__SSE__)
 #include <xmmintrin.h>
@@ -139,11 +141,11 @@ class Packet {
     const Packet p = polynomial(z, -3.33329491539e-1f, 1.99777106478e-1f, -1.38776856032e-1f, 8.05374449538e-2f);
     Packet angle = q + q * z * p + select(outer, Packet(0.785398163397448310f), Packet(0.0f));
     angle = select(ay > ax, 1.57079632679489662f - angle, angle);
-    angle = select(x < 0.0f, 3.14159265358979324f - angle, angle);
+    angle = select(x < 0.0f, std::numbers::pi_v<float> - angle, angle);
     return with_sign_of(y, angle);
   }
 
-  // c0 + c1 x + c2 x^2 + ...
+  // The polynomial c0 + c1 x + c2 x^2 + ...
   template <class... More>
   friend Packet polynomial(const Packet& x, float c0, More... more) {
     if constexpr (sizeof...(more) == 0)
@@ -164,7 +166,7 @@ class Packet {
   Floats v_;
 };
 
-// What the processors that the build is for calculate in one instruction.
+// The number of floats that the processors that the build is for calculate in one instruction.
 #if defined(__AVX512F__)
 inline constexpr int kPacketWidth = 16;
 #elif defined(__AVX2__)

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
+
+#include "renderer/scattering/degree.h"
 
 namespace renderer {
 namespace {
@@ -10,9 +13,9 @@ namespace {
 using Eigen::ArrayXd;
 
 constexpr int kInclinations = 16, kAbsorptions = 16;
-constexpr double kSteepest = 85 * kPi / 180, kLeastAbsorption = 0.003, kMostAbsorption = 3;
+constexpr double kSteepest = 85 * kDegree, kLeastAbsorption = 0.003, kMostAbsorption = 3;
 
-// Node below `x` and how far x is on the way to the next one; the ends hold beyond.
+// The node below `x` and how far x is on the way to the next one; beyond the ends it is the end node.
 struct Between {
   std::size_t below;
   double share;
@@ -79,7 +82,7 @@ TabulatedModel::TabulatedModel(const AzimuthalTable& table, const TabulatedParam
       const ArrayXd& next = by_absorption[std::min(at.below + 1, by_absorption.size() - 1)];
       row.density.col(c) = (1 - at.share) * by_absorption[at.below] + at.share * next;
     }
-    // A little of everything, so that nothing with light is never sampled.
+    // Every bin gets a small chance, so that no bin that has light is never sampled.
     ArrayXd chance = row.density.rowwise().mean();
     chance += 1e-3 * chance.mean() + 1e-12;
     row.cumulative = chance / chance.sum();
@@ -107,7 +110,8 @@ ScatteringValue<double> TabulatedLobes::evaluate(const Vec3<double>& wi) const {
   const double along = azimuth_o_.x() * wi.y() + azimuth_o_.y() * wi.z();
   const double across = azimuth_o_.x() * wi.z() - azimuth_o_.y() * wi.y();
   const double phi = std::atan2(across, along);
-  const int bin = std::min(static_cast<int>((phi + kPi) / (2 * kPi) * model_->bins_), model_->bins_ - 1);
+  const int bin =
+      std::min(static_cast<int>((phi + std::numbers::pi) / (2 * std::numbers::pi) * model_->bins_), model_->bins_ - 1);
   LobeAngles<double> at;
   at.distance2.setConstant((cos_theta_o_ - cos_i) * (cos_theta_o_ - cos_i) +
                            (sin_theta_o_ + wi.x()) * (sin_theta_o_ + wi.x()));
@@ -116,7 +120,7 @@ ScatteringValue<double> TabulatedLobes::evaluate(const Vec3<double>& wi) const {
   const auto& low = model_->rows_[below_];
   const auto& high = model_->rows_[std::min(below_ + 1, model_->rows_.size() - 1)];
   const auto chance = [&](const TabulatedModel::Row& row) {
-    return (row.cumulative[bin] - (bin > 0 ? row.cumulative[bin - 1] : 0)) * model_->bins_ / (2 * kPi);
+    return (row.cumulative[bin] - (bin > 0 ? row.cumulative[bin - 1] : 0)) * model_->bins_ / (2 * std::numbers::pi);
   };
   ScatteringValue<double> value;
   value.f_cos = m * ((1 - share_) * low.density.row(bin) + share_ * high.density.row(bin)).transpose();
@@ -131,7 +135,7 @@ Vec3<double> TabulatedLobes::sample(double u_lobe, double u_theta, double u_ring
       std::min<std::ptrdiff_t>(std::upper_bound(first, first + model_->bins_, u_phi) - first, model_->bins_ - 1);
   const double start = bin > 0 ? first[bin - 1] : 0;
   const double within = std::clamp((u_phi - start) / (first[bin] - start), 0.0, 1.0);
-  const double phi = -kPi + (static_cast<double>(bin) + within) * 2 * kPi / model_->bins_;
+  const double phi = -std::numbers::pi + (static_cast<double>(bin) + within) * 2 * std::numbers::pi / model_->bins_;
   CurveLobes<double> cone;  // the longitudinal part is sampled as all lobes' is
   cone.widths = &model_->widths_;
   cone.sin_theta_o.setConstant(sin_theta_o_);
@@ -144,7 +148,7 @@ Vec3<double> TabulatedLobes::sample(double u_lobe, double u_theta, double u_ring
 Rgb<double> TabulatedLobes::albedo() const {
   const auto& low = model_->rows_[below_];
   const auto& high = model_->rows_[std::min(below_ + 1, model_->rows_.size() - 1)];
-  return (((1 - share_) * low.density + share_ * high.density).colwise().sum() * (2 * kPi / model_->bins_))
+  return (((1 - share_) * low.density + share_ * high.density).colwise().sum() * (2 * std::numbers::pi / model_->bins_))
       .transpose();
 }
 

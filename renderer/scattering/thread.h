@@ -1,5 +1,5 @@
-// Scattering of a whole thread seen as one cylinder (Xia et al. 2025, equations 4 and 5): three lobes whose widths
-// and energies are free, because they stand for everything that happens between the thread's many fibers.
+// Scattering of a whole thread seen as one cylinder (Xia et al. 2025, equations 4 and 5): three lobes whose widths and
+// energies are free parameters, because they stand for everything that happens between the thread's many fibers.
 //
 //   f_cos = sum over p = R, TT, TRT of  M(theta_o, theta_i; v(alpha_p)) N(phi; s(beta_p), Phi_p) A_p        (RGB)
 //   A_R = lambda_0(c),  A_TT = lambda_1(c) T,  A_TRT = lambda_2(c) T,  T = exp(-sigma_a 2 cos gamma_t / cos theta_t)
@@ -11,17 +11,17 @@
 //   beta       | 0.02 .. 1         | 3     | yes   azimuthal roughness of each lobe (perceptual, mapped as fibers')
 //   r          | -                 | 7     | yes   energies of the lobes, all colours alike; each lambda must stay >= 0
 //
-// Three options that fits leave alone; the first two are equal to the printed model by default:
+// Three options that fits leave alone; the defaults of the first two are the printed model:
 //
-//   lambda0_rgb          | 0 .. 1 | 1 1 1 | dual numbers only   tint of A_R: highlights of metallic threads have a colour
-//   transmittance_powers | >= 0   | 1 1   | no                  A_TT = lambda_1 T^first, A_TRT = lambda_2 T^second
-//   exit                 | -      | far_side |                  where scattered light leaves (ThreadExit)
+//   lambda0_rgb          | 0 .. 1 | 1 1 1    | dual numbers only tint of A_R: metallic threads have coloured highlights
+//   transmittance_powers | >= 0   | 1 1      | no                A_TT = lambda_1 T^first, A_TRT = lambda_2 T^second
+//   exit                 | -      | far_side |                   where scattered light leaves (ThreadExit)
 //
-// f_cos includes the cosine (lobes.h). theta_o, h and the attenuations belong to the known direction o, as for
-// fibers. Lobe centres Phi_p are a fiber's, with the refractive index fixed at kThreadEta. Nothing in the paper bounds
-// lambda_0 + lambda_1 + lambda_2, the albedo without absorption, and fits exceed 1 near grazing angles; `limit_energy`
-// scales the three down to kMostEnergy where their sum exceeds it. Fits of parameters leave it off and penalise the
-// excess instead.
+// f_cos includes the cosine (lobes.h). theta_o, h and the attenuations belong to the known direction o, as for fibers.
+// Lobe centres Phi_p are a fiber's, with the refractive index fixed at kThreadEta. Nothing in the paper bounds lambda_0
+// + lambda_1 + lambda_2, the albedo without absorption, and fits exceed 1 near grazing angles; `limit_energy` scales
+// the three down to kMostEnergy where their sum exceeds it. Fits of parameters leave `limit_energy` off and penalise
+// the excess instead.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,13 +34,13 @@ namespace renderer {
 
 inline constexpr double kThreadEta = 1.55;
 inline constexpr double kMostEnergy = 0.999;
-// Each lobe is sampled at least this often, so that derivatives with respect to a lobe without energy can be
-// estimated.
+// The least probability with which each lobe is sampled, so that derivatives by a lobe without energy can be estimated.
 inline constexpr double kLobeFloor = 0.05;
 
-// Where scattered light leaves a thread (path_vertex.h, leaving_position).
-//   entry_point | where it came in, as curves with a fiber's scattering do
-//   far_side    | there if it leaves on that side, else anywhere across the far side: what many fibers do
+// Where scattered light leaves a thread (far_side_position in renderer/trace/path_vertex.h).
+//   entry_point | where it came in, as with curves that scatter like a single fiber
+//   far_side    | where it came in if it leaves on that side, otherwise anywhere across the far side, as light that
+//               | has wandered among many fibers does
 enum class ThreadExit { entry_point, far_side };
 
 template <class S>
@@ -88,7 +88,7 @@ BasicThreadParameters<T> in_scalar(const BasicThreadParameters<S>& p) {
           p.exit};
 }
 
-// T^first and T^second, what is left of TT and TRT after a chord, RGB.
+// The transmittances T^first of TT and T^second of TRT along one chord, RGB.
 template <class S>
 struct ThreadTransmittance {
   Rgb<S> tt, trt;
@@ -106,7 +106,7 @@ ThreadTransmittance<S> thread_transmittance(const BasicThreadParameters<S>& p, c
   return thread_transmittance(p, p.sigma_a, chord_length);
 }
 
-// lambda_0, lambda_1, lambda_2 at c = |cos theta_o|, limited when the parameters say so.
+// The energies lambda_0, lambda_1, lambda_2 at c = |cos theta_o|, limited when `limit_energy` is set.
 template <class S>
 std::array<S, 3> thread_lobe_energies(const BasicThreadParameters<S>& p, const Geometry<S>& c) {
   const S cosine(c);
@@ -120,7 +120,7 @@ std::array<S, 3> thread_lobe_energies(const BasicThreadParameters<S>& p, const G
   return lambda;
 }
 
-// Parameters with everything computed that does not depend on directions.
+// The model with everything computed that depends on the parameters but not on directions.
 template <class S>
 class ThreadModel {
  public:
@@ -140,7 +140,7 @@ class ThreadModel {
   CurveLobes<S> lobes_at(const Geometry<S>& h, const Vec3<Geometry<S>>& wo) const {
     return lobes_at(h, wo, parameters_.sigma_a);
   }
-  // Of the same thread with another absorption.
+  // The lobes of the same thread with another absorption.
   CurveLobes<S> lobes_at(const Geometry<S>& h, const Vec3<Geometry<S>>& wo, const Vec3<S>& sigma_a) const {
     using std::asin, std::sqrt;
     const Geometry<S> sin_o = wo.x(), cos_o = sqrt(wo.y() * wo.y() + wo.z() * wo.z());
@@ -168,15 +168,14 @@ class ThreadModel {
   template <class>
   friend class ThreadModel;
 
-  // In proportion to the lobes' mean energies, mixed with the floor.
+  // Sets the probabilities in proportion to the lobes' mean energies, mixed with kLobeFloor.
   static void set_probabilities(CurveLobes<S>& lobes) {
     const Lanes<S> energy = lobes.attenuation.rowwise().sum().max(S(0.0));
     const S total = energy.sum();
     const S share = S(1.0 - 3 * kLobeFloor);
     const auto bright = total > S(0.0);
-    for (int p = 0; p < 3; ++p) {
+    for (int p = 0; p < 3; ++p)
       lobes.probability[p] = S(kLobeFloor) + share * select(bright, S(energy[p] / total), S(1.0 / 3));
-    }
   }
 
   BasicThreadParameters<S> parameters_;

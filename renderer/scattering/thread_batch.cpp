@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kWidth = kPacketWidth;
 using P = Packet<kPacketWidth>;
 
-// The packet that starts at `first`; past the end the last number again.
+// The packet of the numbers from `first` on, filled up with the last number beyond the end.
 P load(std::span<const float> numbers, std::size_t first) {
   if (first + kWidth <= numbers.size()) return P::load(&numbers[first]);
   P packet(numbers.back());

@@ -1,6 +1,6 @@
-// One thread model at many places at once: values and densities for arrays of offsets and directions, in packets of
-// floats. The formula is that of thread.h; agreement with it is that of single precision. About three times as many per
-// second as one by one on any x86-64 processor; a build for x86-64-v3 has packets of 8 instead of 4.
+// Evaluation of one thread model at many places at once: values and densities for arrays of offsets and directions, in
+// packets of floats. The results equal those of thread.h within single precision. On any x86-64 processor about three
+// times as many places per second are evaluated as one by one; a build for x86-64-v3 has packets of 8 instead of 4.
 #pragma once
 
 #include <array>
@@ -10,16 +10,17 @@
 
 namespace renderer {
 
-// Component by component; all spans of one call have the same length.
+// Arrays of places, component by component; all spans of one call have the same length.
 struct ThreadPlaces {
   std::span<const float> h;                      // offsets, -1 .. 1
   std::array<std::span<const float>, 3> wo, wi;  // x, y, z of unit directions (lobes.h)
 };
 struct ThreadValues {
   std::array<std::span<float>, 3> f_cos;  // RGB, includes the cosine
-  std::span<float> pdf;                   // of sampling wi, per solid angle
+  std::span<float> pdf;                   // density of sampling wi, per solid angle
 };
 
+// Fills `values` with the model's values at `places`.
 void evaluate_batch(const ThreadModel<float>& model, const ThreadPlaces& places, const ThreadValues& values);
 
 }  // namespace renderer

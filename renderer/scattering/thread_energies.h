@@ -1,11 +1,12 @@
-// The lobes' energies lambda_p of the thread model in coordinates whose simple bounds are exactly what eq. 5 needs
+// The lobes' energies lambda_p of the thread model in coordinates in which simple bounds are exactly what eq. 5 needs
 // [Xia 2025]: every lambda_p >= 0 for all c in 0..1, lambda_0 concave, lambda_2 falling.
 //
 //   lambda_0 = L0 (1-c) + L1 c + k c(1-c)                      L0, L1, k >= 0
 //   lambda_1 = r1a c                                           r1a >= 0
 //   lambda_2 = 1/(r2a c + r2b) - 1/(r2a + r2b) + n2            r2a, r2b > 0 (logarithms), n2 >= 0
 //
-// The paper clamps r0c and penalises r0a + r0b > 0 instead; that is a trend, not positivity (models.md 1.7).
+// The paper instead clamps r0c and penalises r0a + r0b > 0, which fixes a trend but does not make the energies positive
+// (models.md 1.7).
 #pragma once
 
 #include <cmath>
@@ -14,15 +15,16 @@
 
 namespace renderer {
 
-// Their order.
+// The order of the unknowns.
 enum EnergyUnknown { kEnergyL0, kEnergyL1, kEnergyConcavity, kEnergyR1a, kEnergyLogR2a, kEnergyLogR2b, kEnergyN2 };
 inline constexpr int kEnergyUnknownCount = 7;
 
-// lambda_2 near grazing is not seen by any view; without this bound 1 / r2b runs away.
+// Bounds of r2a and r2b. No view sees lambda_2 near grazing angles, and without the bound 1 / r2b would grow without
+// end.
 inline constexpr double kLeastR2b = 1e-2, kLeastR2a = 1e-4, kMostR2 = 1e4;
-inline constexpr double kMostEnergyTerm = 4;  // of L0, L1, k, r1a, n2; sums of energies are near 1
+inline constexpr double kMostEnergyTerm = 4;  // upper bound of L0, L1, k, r1a and n2; sums of energies are near 1
 
-// The paper's r0a ... r2c from the seven unknowns.
+// Sets the paper's r0a ... r2c of `p` from the seven unknowns `u`.
 template <class S>
 void set_energies(const S* u, BasicThreadParameters<S>& p) {
   using std::exp;

@@ -1,9 +1,8 @@
-// The thread model's f_cos together with its derivatives with respect to all 16 parameters, in closed form.
+// The thread model's f_cos together with its derivatives by all 16 parameters, in closed form.
 //
-// One formula with the renderer: values come from the densities of lobes.h and the energies of thread.h, derivatives of
-// the densities from width_slopes.h.
-// The energy limit of thread.h is left off: fits penalise the excess instead (thread.h). The options of thread.h are
-// constants here.
+// The formula is the renderer's: values come from the densities of lobes.h and the energies of thread.h, derivatives of
+// the densities from width_slopes.h. The energy limit of thread.h is left off, because fits penalise the excess
+// instead. The options of thread.h count as constants.
 #pragma once
 
 #include "renderer/scattering/thread.h"
@@ -11,7 +10,8 @@
 
 namespace renderer {
 
-// Of one channel, in this order; the absorption is the channel's own, the others are shared by all channels.
+// The derivatives of one channel's f_cos in their order; the absorption is the channel's own, the others are shared by
+// all channels.
 enum ThreadSlope {
   kSlopeSigma = 0,
   kSlopeAlpha = 1,  // 3
@@ -32,8 +32,8 @@ struct ThreadGradient {
   ThreadSlopes<S> slopes;
 };
 
-// What does not change from direction to direction at one point: c = |cos theta_o| and the way through the thread in
-// radii (InnerChord).
+// What stays the same for all directions at one point: c = |cos theta_o| and the length of the way through the thread
+// in radii (InnerChord).
 template <class S>
 struct ThreadPoint {
   S cosine = S(0), chord_length = S(0);
@@ -85,8 +85,8 @@ class ThreadGradientModel {
   // The value alone.
   Rgb<S> f_cos(const ThreadPoint<S>& point, const LobeAngles<S>& at) const { return value(factors(point, at)); }
 
-  // In two steps, for those who learn how much a direction counts only after its value: factors of the value alone or
-  // of the slopes too, then `slopes` += weight d f_cos.
+  // The same in two steps, for callers that learn how much a direction counts only after its value: first the factors,
+  // those of the value alone or those of the slopes too, then value() and add_slopes().
   ThreadFactors<S> factors(const ThreadPoint<S>& point, const LobeAngles<S>& at) const {
     return {.point = point,
             .lambda = thread_lobe_energies<S>(parameters_, point.cosine),
@@ -105,7 +105,7 @@ class ThreadGradientModel {
            f.transmittance.tt * (f.density[1] * f.lambda[1]) + f.transmittance.trt * (f.density[2] * f.lambda[2]);
   }
 
-  // slopes(row, channel) += weight[channel] d f_cos[channel].
+  // Adds weight[channel] d f_cos[channel] / d parameter to slopes(row, channel).
   template <class Slopes>
   void add_slopes(const Factors& f, const Rgb<S>& weight, Slopes& slopes) const {
     const S c = f.point.cosine, inverse = S(1.0) / (parameters_.r2a * c + parameters_.r2b);

@@ -1,10 +1,10 @@
 #include "renderer/scattering/thread_prior.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "renderer/scattering/azimuthal_fit.h"
+#include "renderer/scattering/degree.h"
 #include "renderer/scattering/multi_fiber.h"
 #include "renderer/scattering/thread_prior_json.h"  // the document as text, from thread_prior.json
 
@@ -23,7 +23,7 @@ LibraryFit fit_thread(const LibraryThread& thread, const PriorOptions& options) 
                                   .min_gap = thread.gap,
                                   .eta = thread.eta,
                                   .sigma_a = thread.absorptions[c],
-                                  .theta_rad = theta_deg * kPi / 180,
+                                  .theta_rad = theta_deg * kDegree,
                                   .rays = options.rays,
                                   .configurations = options.configurations,
                                   .bins = options.bins,

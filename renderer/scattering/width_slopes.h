@@ -1,4 +1,4 @@
-// Widths of the lobes together with the derivatives of their densities by these widths, in closed form [models of
+// The widths of lobes together with the derivatives of the lobes' densities by these widths, in closed form [models of
 // d'Eon 2011 and Chiang 2015, differentiated]:
 //
 //   dlogM/dv = D / 2v^2 - a/v (I1(a)/I0(a) - 1) - 1/v + 2 e^(-2/v) / (v^2 (1 - e^(-2/v))),   a = cos cos / v
@@ -7,11 +7,13 @@
 // with D the squared distance across the cone and x the distance from the lobe's centre.
 #pragma once
 
+#include <numbers>
+
 #include "renderer/scattering/lobes.h"
 
 namespace renderer {
 
-// d longitudinal_variance / d beta_m and d azimuthal_scale / d beta_n.
+// The derivatives d longitudinal_variance / d beta_m and d azimuthal_scale / d beta_n.
 template <class S>
 S longitudinal_variance_slope(const S& beta_m) {
   const S root = S(0.726) * beta_m + S(0.812) * beta_m * beta_m + S(3.7) * power(beta_m, 20);
@@ -19,23 +21,23 @@ S longitudinal_variance_slope(const S& beta_m) {
 }
 template <class S>
 S azimuthal_scale_slope(const S& beta_n) {
-  return S(std::sqrt(kPi / 8)) * (S(0.265) + S(2.388) * beta_n + S(118.184) * power(beta_n, 21));
+  return S(std::sqrt(std::numbers::pi / 8)) * (S(0.265) + S(2.388) * beta_n + S(118.184) * power(beta_n, 21));
 }
 
 template <class S>
 struct WidthSlopes {
   LobeWidths<S> widths;
-  Lanes<S> m_constant, n_constant;  // what of the derivatives does not depend on directions
+  Lanes<S> m_constant, n_constant;  // the part of each derivative that does not depend on directions
 
   void set(int p, const S& variance, const S& scale) {
     using std::exp, std::sinh;
     widths.set(p, variance, scale);
     const S v = widths.v[p], s = widths.s[p], tail = exp(S(-2.0) / v);
     m_constant[p] = S(2.0) * tail / (v * v * (S(1.0) - tail)) - S(1.0) / v;
-    const S turn = S(kPi) / s;
+    const S turn = S(std::numbers::pi) / s;
     n_constant[p] = (turn < S(80.0) ? turn / (s * sinh(turn)) : S(0.0)) - S(1.0) / s;
   }
-  // dlogN/ds means nothing then.
+  // Makes lobe p uniform in azimuth; dlog_n() has no meaning for it then.
   void set_uniform_azimuth(int p, const S& variance) {
     set(p, variance, S(1.0));
     widths.set_uniform_azimuth(p, variance);

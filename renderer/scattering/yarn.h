@@ -1,39 +1,42 @@
-// A baseline: a yarn as one cylinder whose scattering is aggregated analytically from that of its fibers, in the manner
-// of Zhu et al. 2023 ("A practical and hierarchical yarn-based shading model for cloth").
+// The yarn model, a baseline: a yarn as one cylinder whose scattering is aggregated analytically from that of its
+// fibers, in the manner of Zhu et al. 2023 ("A practical and hierarchical yarn-based shading model for cloth").
 //
-// This is a reconstruction, not that model: its formulas were not at hand. Known of it from its abstract and from Xia et
-// al. 2025: light on the fibers is aggregated by dual scattering (Zinke et al. 2008); the number of fibers is a discrete
-// parameter; the fibers' R lobe and the yarn's back lobe are uniform in azimuth. Fibers of that lineage (Khungurn et
-// al. 2015) reflect F = C_R + (1 - C_R) (1 - |cos theta|)^5 and transmit (1 - F) C_TT. Everything else is our choice.
+// This is a reconstruction and not their model, whose formulas were not at hand. What their abstract and Xia et al.
+// 2025 tell of it: light on the fibers is aggregated by dual scattering (Zinke et al. 2008); the number of fibers is a
+// discrete parameter; the fibers' R lobe and the yarn's back lobe are uniform in azimuth. Fibers of that lineage
+// (Khungurn et al. 2015) reflect F = C_R + (1 - C_R) (1 - |cos theta|)^5 and transmit (1 - F) C_TT. Everything else is
+// our choice.
 //
 //   parameter    | unit            | default | differentiable
-//   fiber_count  | >= 1            | 20      | no    fibers of the yarn
-//   radius_ratio | 0 .. 1          | 0.15    | no    fiber radius / yarn radius; fiber_count radius_ratio^2 is the packing
-//   eta          | -               | 1.55    | yes   relative index of refraction: C_R = ((eta - 1) / (eta + 1))^2
-//   sigma_a      | 1 / yarn radius | 0       | yes   absorption within fibers, RGB; per yarn radius as in thread.h
-//   beta_r       | 0.02 .. 1       | 0.2     | yes   longitudinal roughness of a fiber's R (perceptual, as fibers')
-//   beta_tt      | 0.02 .. 1       | 0.2     | yes   longitudinal roughness of a fiber's TT
-//   gamma_tt     | 0.02 .. 1       | 0.3     | yes   azimuthal roughness of a fiber's TT
+//   fiber_count  | >= 1            | 20      | no   fibers of the yarn
+//   radius_ratio | 0 .. 1          | 0.15    | no   fiber radius / yarn radius; packing fiber_count radius_ratio^2
+//   eta          | -               | 1.55    | yes  relative index of refraction: C_R = ((eta - 1) / (eta + 1))^2
+//   sigma_a      | 1 / yarn radius | 0       | yes  absorption within fibers, RGB; per yarn radius as in thread.h
+//   beta_r       | 0.02 .. 1       | 0.2     | yes  longitudinal roughness of a fiber's R (perceptual, as fibers')
+//   beta_tt      | 0.02 .. 1       | 0.2     | yes  longitudinal roughness of a fiber's TT
+//   gamma_tt     | 0.02 .. 1       | 0.3     | yes  azimuthal roughness of a fiber's TT
 //
-// A ray at offset h meets n(h) = (4 / pi) fiber_count radius_ratio sqrt(1 - h^2) fibers, rounded, one at least (threads
-// are taken as opaque here too). Three lobes, f_cos as in lobes.h:
+// A ray at offset h meets n(h) = (4 / pi) fiber_count radius_ratio sqrt(1 - h^2) fibers, rounded and at least one
+// (threads are taken as opaque here too). There are three lobes; f_cos is as in lobes.h:
 //
-//   R        of the outermost fiber, uniform in azimuth, variance v_R; its energy F leaves the yarn
-//   forward  TT through the outermost fiber and forward scattering by the others, around phi = pi; variances add:
-//            n v_TT along the yarn and n s_TT^2 across
-//   back     turned back once or three times inside and out through the outermost fiber, uniform in azimuth; the light
-//            turns half way through on average, so that the variance is n v_TT + v_R
+//   R        light that the outermost fiber reflects, uniform in azimuth, variance v_R; its energy F leaves the yarn
+//   forward  light that passes the outermost fiber by TT and is scattered forward by the others, around phi = pi; the
+//            variances add up: n v_TT along the yarn and n s_TT^2 across
+//   back     light that is turned back once or three times inside and leaves through the outermost fiber, uniform in
+//            azimuth; it turns half way through on average, so that the variance is n v_TT + v_R
 //
 // The energies are those of disjoint paths through a row of n fibers, each of which scatters a_f = F / 2 + (1 - F) C_TT
-// forward and a_b = F / 2 back: their sum never exceeds 1, and stays below 1 without absorption by what turns twice or
-// more than three times. With n without bound the back lobe's sums become those of Zinke et al. C_TT is the
-// transmittance along the chord at the root mean square of a fiber's offsets, 0.7 % from the mean chord at most.
+// forward and a_b = F / 2 back. Their sum never exceeds 1; without absorption it stays below 1 by the light that turns
+// twice or more than three times. As n grows without bound, the back lobe's sums become those of Zinke et al. C_TT is
+// the transmittance along the chord at the root mean square of a fiber's offsets, which is at most 0.7 % off the mean
+// chord.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <vector>
 
 #include "renderer/scattering/lobes.h"
@@ -64,18 +67,18 @@ BasicYarnParameters<T> in_scalar(const BasicYarnParameters<S>& p) {
           static_cast<T>(p.gamma_tt)};
 }
 
-// Fibers on the chord at offset h.
+// The number of fibers on the chord at offset h, at least 1.
 inline int fibers_on_chord(int fiber_count, double radius_ratio, double h) {
-  const double expected = 4 / kPi * fiber_count * radius_ratio * std::sqrt(1 - h * h);
+  const double expected = 4 / std::numbers::pi * fiber_count * radius_ratio * std::sqrt(1 - h * h);
   return expected < 1.5 ? 1 : static_cast<int>(std::lround(expected));
 }
 
-// Energies of R, forward and back lobe of a row of n fibers, each with reflectance f and transmittance t.
+// The energies of R, forward and back lobe of a row of n fibers, each with reflectance f and transmittance t.
 template <class S>
 std::array<S, 3> yarn_lobe_energies(int n, const S& f, const S& t) {
   const S through = (S(1.0) - f) * t, a_b = S(0.5) * f, a_f = a_b + through, round_trip = a_f * a_f;
   S forward = through, once(0.0), thrice(0.0);
-  for (int k = 1; k < n; ++k) {  // another fiber behind; once = 1 + q + ... + q^(k-1), q = round_trip
+  for (int k = 1; k < n; ++k) {  // one fiber more behind; once = 1 + q + ... + q^(k-1), q = round_trip
     forward *= a_f;
     once = S(1.0) + round_trip * once;
     thrice = round_trip * thrice + once * once;
@@ -83,7 +86,7 @@ std::array<S, 3> yarn_lobe_energies(int n, const S& f, const S& t) {
   return {f, forward, through * a_f * a_b * (once + a_b * a_b * thrice)};
 }
 
-// Parameters with everything computed that does not depend on directions.
+// The model with everything computed that depends on the parameters but not on directions.
 template <class S>
 class YarnModel {
  public:
@@ -114,7 +117,7 @@ class YarnModel {
     lobes.set_azimuth(wo);
     lobes.sin_theta_o = Lanes<S>::Constant(S(sin_o));
     lobes.cos_theta_o = Lanes<S>::Constant(S(cos_o));
-    lobes.center << S(0.0), S(kPi), S(0.0), S(0.0);
+    lobes.center << S(0.0), S(std::numbers::pi), S(0.0), S(0.0);
 
     const S f = normal_reflectance_ + (S(1.0) - normal_reflectance_) * S(power(G(1 - cos_o), 5));
     const InnerChord<S> chord(G(std::sqrt(1.0 / 3)), sin_o, cos_o, parameters_.eta);

@@ -1,8 +1,8 @@
-// The yarn baseline's f_cos together with its derivatives with respect to absorption and roughness, in closed form but
-// for the energies, which are dual numbers; fibers and index of refraction fixed. Energies from yarn.h, densities and
-// their derivatives from width_slopes.h.
+// The yarn baseline's f_cos together with its derivatives by absorption and roughness, in closed form except for the
+// energies, which are dual numbers. The number of fibers and the index of refraction are fixed. Energies come from
+// yarn.h, densities and their derivatives from width_slopes.h.
 //
-// The second number of a place (ThreadPoint) is the number of fibers on the chord.
+// ThreadPoint's second member, chord_length, is the number of fibers on the chord here.
 #pragma once
 
 #include <ceres/jet.h>
@@ -13,16 +13,18 @@
 
 namespace renderer {
 
-// Of one channel; the absorption is the channel's own.
+// The derivatives of one channel's f_cos in their order; the absorption is the channel's own, the others are shared.
 enum YarnSlope { kYarnSlopeSigma, kYarnSlopeBetaR, kYarnSlopeBetaTt, kYarnSlopeGammaTt, kYarnSlopeCount };
 
+// What value and slopes at one point and one direction are made of.
 template <class S>
 struct YarnFactors {
   Eigen::Array<S, 3, 3> energy, by_sigma;  // rows R, forward, back
   Eigen::Array<S, 3, 1> density, by_beta_r, by_beta_tt, by_gamma_tt;
 };
 
-// S: float or double.
+// The yarn model for value and slopes; it is used in two steps like ThreadGradientModel (thread_gradient.h). S is float
+// or double.
 template <class S>
 class YarnGradientModel {
  public:
@@ -62,7 +64,7 @@ class YarnGradientModel {
 
   Rgb<S> value(const Factors& f) const { return (f.energy.transpose().matrix() * f.density.matrix()).array(); }
 
-  // slopes(row, channel) += weight[channel] d f_cos[channel].
+  // Adds weight[channel] d f_cos[channel] / d parameter to slopes(row, channel).
   template <class Slopes>
   void add_slopes(const Factors& f, const Rgb<S>& weight, Slopes& slopes) const {
     for (int c = 0; c < 3; ++c) {
@@ -79,7 +81,7 @@ class YarnGradientModel {
     using Jet = ceres::Jet<S, 1>;
     const S sine = std::sqrt(std::max(S(0.0), S(1.0) - cosine * cosine));
     const Jet reflectance(normal_reflectance_ + (S(1.0) - normal_reflectance_) * power(S(S(1.0) - cosine), 5));
-    // As in YarnModel: the chord at the root mean square of a fiber's offsets.
+    // The chord at the root mean square of a fiber's offsets, as in YarnModel.
     const S chord =
         S(parameters_.radius_ratio) * InnerChord<S>(S(std::sqrt(1.0 / 3)), sine, cosine, parameters_.eta).length;
     for (int c = 0; c < 3; ++c) {

@@ -13,8 +13,8 @@ Eigen::Vector2d in_plan(const YarnPatch& patch, const Eigen::Vector3d& differenc
   return {std::remainder(difference.x(), patch.period_x_mm), std::remainder(difference.y(), patch.period_y_mm)};
 }
 
-// Parameter at which a yarn that runs along `axis` passes `value` (up to periods): it rises by one period per turn,
-// and no relaxed yarn strays far from even, so knots are searched.
+// The knot at which a yarn that runs along `axis` comes nearest to `value` (up to periods). The coordinate rises by one
+// period per turn, and no relaxed yarn strays far from even, so that a start for Newton's method is among the knots.
 double nearest_knot(const PeriodicSpline& line, int axis, double value, double period) {
   double best = 0, least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < line.control_points.size(); ++k) {

@@ -35,9 +35,8 @@ Problem problem_of_structure(const Draft& draft) {
   if (rows.empty() || rows.front().empty()) return "the structure is empty; give at least 2 picks of 2 ends";
   for (std::size_t pick = 0; pick < rows.size(); ++pick) {
     if (rows[pick].size() != rows.front().size())
-      return "the structure is ragged: pick " + std::to_string(pick + 1) + " has " +
-             std::to_string(rows[pick].size()) + " ends, pick 1 has " + std::to_string(rows.front().size()) +
-             "; make all picks equally long";
+      return "the structure is ragged: pick " + std::to_string(pick + 1) + " has " + std::to_string(rows[pick].size()) +
+             " ends, pick 1 has " + std::to_string(rows.front().size()) + "; make all picks equally long";
   }
   return {};
 }
@@ -60,7 +59,8 @@ Problem problem_of_floats(const Draft& draft) {
   return {};
 }
 
-// How many yarns come along when warp end 0 is lifted (or pressed down): all that lie over (under) a yarn that moves.
+// The number of yarns that move when warp end 0 is lifted (or pressed down): all that lie over (under) a yarn that
+// moves.
 std::size_t yarns_moved_with_the_first(const std::vector<std::vector<bool>>& warp_over, bool lifted) {
   const std::size_t picks = warp_over.size(), ends = warp_over.front().size();
   std::vector<bool> moved(ends + picks, false);
@@ -111,8 +111,7 @@ Problem problem_of_mechanics(const char* kind, const YarnSystem& system, bool fr
   const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
   if (!within(system.tex, 0, 1e6)) return refused("tex", system.tex, "grams per kilometre of yarn, 0 when unknown");
   if (!within(system.bending_n_mm2, 0, 1e6))
-    return refused("bending stiffness", system.bending_n_mm2,
-                   "newtons x mm^2, 0 for that of a bundle of loose fibers");
+    return refused("bending stiffness", system.bending_n_mm2, "newtons x mm^2, 0 for that of a bundle of loose fibers");
   if (!within(system.tension_n, 0, 1e6)) return refused("tension", system.tension_n, "newtons, 0 or more");
   if (!within(system.contraction, 0, kMostContraction))
     return refused("contraction", system.contraction, "a share of the yarn's length from 0 to 0.3");
@@ -150,8 +149,7 @@ Problem problem_of_extent(const Draft& draft) {
   const std::int64_t crossings = std::int64_t{ends_in_patch(draft)} * picks_in_patch(draft);
   if (crossings > most)
     return too_large("the patch is too large: " + std::to_string(ends_in_patch(draft)) + " ends x " +
-                     std::to_string(picks_in_patch(draft)) + " picks are " + std::to_string(crossings) +
-                     " crossings");
+                     std::to_string(picks_in_patch(draft)) + " picks are " + std::to_string(crossings) + " crossings");
   return {};
 }
 

@@ -1,9 +1,8 @@
-// Draft: what the weaver prescribes for one repeat of a cloth; which yarn lies on top where, yarn sizes, sett,
-// threads.
+// A draft: what the weaver prescribes for one repeat of a cloth, which is which yarn lies on top where, yarn sizes,
+// sett and threads.
 //
-// Frame of the cloth, here and in patch.h: warp ends run along +y and stand side by side along +x, weft picks run
-// along +x and follow one another along +y; +z is the face. Row 0 of the structure is the first pick, at the smallest
-// y.
+// Frame of the cloth, here and in patch.h: warp ends run along +y and stand side by side along +x, weft picks run along
+// +x and follow one another along +y; +z is the face. Row 0 of the structure is the first pick, at the smallest y.
 #pragma once
 
 #include <cstdint>
@@ -19,36 +18,36 @@ struct YarnSystem {
   double pitch_mm = 0.9;        // from one yarn of this system to the next
   std::vector<int> threads{0};  // yarn k is spun from thread threads[k % size], an index into the scene's threads
 
-  double tex = 0.0;  // g per km of yarn; 0: unknown, then so is the cloth's mass
+  double tex = 0.0;  // g per km of yarn; 0: unknown, and the cloth's mass with it
 
-  // For the relaxation (relaxation.h); of forces only ratios change the shape.
-  double bending_n_mm2 = 0.0;  // stiffness; 0: bending_of() takes that of a bundle of loose fibers
+  // For the relaxation (relaxation.h). Only the ratios of forces change the shape.
+  double bending_n_mm2 = 0.0;  // stiffness; 0: that of a bundle of loose fibers (bending_of())
   double tension_n = 0.5;      // dead load on each yarn
-  double flatness = 1.0;     // width / height of the section, an ellipse of the round yarn's area, wide in the plane
-  double contraction = 0.0;  // above 0: instead of the load, a spring that wants this share less than the drawn path
+  double flatness = 1.0;       // width / height of the section, an ellipse of the round yarn's area, wide in the plane
+  double contraction = 0.0;  // above 0: instead of the load a spring, by this share shorter at rest than the drawn path
 };
 
-// Bending stiffness: as given, or kBundleBending x diameter^2, 0.0125 N mm^2 for a yarn of 0.5 mm.
+// The bending stiffness of a system's yarns: as given, or kBundleBending x diameter^2, 0.0125 N mm^2 for 0.5 mm.
 double bending_of(const YarnSystem& system);
 inline constexpr double kBundleBending = 0.05;  // N
 
-// Yarns that differ from each other. Normal deviations cut at twice their scale.
+// How yarns differ from each other. Deviations are normal, cut at twice their scale.
 struct Unevenness {
-  double radius = 0;  // scale of the deviation of a yarn's radius, of the radius
-  double pitch = 0;   // of its place from the even sett, of the room between its neighbours and it
+  double radius = 0;  // scale of the deviations of yarns' radii, as a share of the radius
+  double pitch = 0;   // scale of their shifts from the even sett, as a share of the free room between yarns
   int shades = 1;     // thread t becomes one of the threads t shades .. t shades + shades - 1
   std::uint64_t seed = 1;
 };
 
-// Yarns that differ along themselves (unevenness.h).
+// How yarns differ along themselves (unevenness.h).
 struct Slubs {
-  double radius = 0;     // standard deviation along a yarn of its radius, of the radius
-  double twist = 0;      // of the turns of its plies, of their number per mm
-  double length_mm = 5;  // along the yarn, at which the correlation of either has fallen to 1 / e
-  double shade_mm = 0;   // mean length of a yarn's pieces of one shade; 0: a yarn has one shade
+  double radius = 0;     // standard deviation of the radius along a yarn, as a share of the radius
+  double twist = 0;      // standard deviation of the turns of its plies per mm, as a share of their mean
+  double length_mm = 5;  // distance along the yarn at which the correlation of either has fallen to 1 / e
+  double shade_mm = 0;   // mean length of the pieces of a yarn that have one shade; 0: each yarn has one shade
 };
 
-// Yarns of plies twisted round their centre line.
+// How yarns are made of plies twisted round their centre line.
 struct Plies {
   int count = 1;
   double turns_per_mm = 0.5;  // rounded to whole turns in a period, so that the patch repeats
@@ -59,33 +58,34 @@ struct Draft {
   std::string name;
   std::vector<std::vector<bool>> warp_over;  // [pick][end]: true where the warp lies on top
   YarnSystem warp, weft;
-  bool free_periods = false;  // relaxation: the cell takes the size at which it pulls at nothing; needs contraction
-  double height_scale = 1.0;  // multiplies the heights of all centre lines; not 1: no longer a contact shape
+  bool free_periods = false;  // in relaxation the cell takes the size at which nothing pulls at it; needs contraction
+  double height_scale = 1.0;  // multiplies the heights of all centre lines; other than 1, yarns no longer just touch
   bool relaxed = true;        // false: yarns keep the shapes of initial_patch(), for figures too large to be relaxed
 
-  // What makes yarns less ideal than round, equal ones: for woven_patch(), not for relax().
-  // N / mm^2. A yarn under a load of q per length is lower than round by 1 + q / (modulus x diameter), and so much wider: an
-  // ellipse of the same area, as wide as the sett lets it be at most. 0: sections keep their system's flatness.
+  // What makes yarns less ideal than round, equal ones; woven_patch() uses it, relax() does not. The modulus: a yarn
+  // under a load of q per length becomes lower by the factor 1 + q / (modulus x diameter), and as much wider: an
+  // ellipse of the same area, at most as wide as the sett lets it be. 0: sections keep their system's flatness.
   double transverse_modulus_n_mm2 = 0.0;
   Unevenness unevenness{};
   Slubs slubs{};
   Plies plies{};
 };
 
-// The common weaves; sizes, sett and threads are those of YarnSystem until the caller changes them.
+// The common weaves. Sizes, sett and threads are those of YarnSystem until the caller changes them.
 Draft plain_draft();
 Draft twill_draft(int over, int under);  // warp over `over` picks, under `under`, the diagonal rising to the right
 Draft satin_draft(int ends, int step);   // warp-faced; `step` is coprime to `ends`, neither 1 nor ends - 1
 Draft basket_draft(int yarns);           // plain weave of groups of `yarns` ends and picks
 
-// Yarns in one patch: the least common multiple of the structure's repeat and the order of the threads.
+// The number of yarns in one patch: the least common multiple of the structure's repeat and the order of the threads.
 int ends_in_patch(const Draft& draft);
 int picks_in_patch(const Draft& draft);
 
-// What keeps this draft from being woven, as one line, or nothing: empty or ragged structure, a yarn that never
-// interlaces, yarns that lie loose on the others, sizes that are not positive, neighbouring yarns that overlap
-// (pitch < diameter), a patch of more than kMostCrossings crossings (kMostUnrelaxedCrossings), or what only relaxation can do.
-// A sett in which round yarns jam is woven; its overlap is measured (YarnPatch::least_gap_mm).
+// What keeps this draft from being woven, as one line, or nothing: an empty or ragged structure, a yarn that never
+// interlaces, yarns that lie loose on the others, sizes that are not positive, neighbouring yarns that overlap (pitch <
+// diameter), a patch of more than kMostCrossings crossings (kMostUnrelaxedCrossings where yarns are not relaxed), or
+// unrelaxed yarns with settings that only relaxation can follow. A sett in which round yarns jam is woven; its overlap
+// is measured (YarnPatch::least_gap_mm).
 std::optional<std::string> check_draft(const Draft& draft);
 
 inline constexpr int kPointsPerCrossing = 8;  // of a yarn's curve, from one crossing to the next

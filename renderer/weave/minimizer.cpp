@@ -19,8 +19,9 @@ double largest(const VectorXd& v) {
   return v.size() ? v.cwiseAbs().maxCoeff() : 0;
 }
 
-// Halves the step until the energy falls by a tenth of what the slope promises (less lets Newton hop between two sets of
-// touching samples); false when no step does. Where the promise is lost in rounding, the gradient decides.
+// Halves the step until the energy falls by a tenth of what the slope promises (less lets Newton hop between two sets
+// of touching samples); returns false when no step does. Where the promised fall is lost in rounding, the gradient
+// decides.
 bool search_line(const Objective& objective, const VectorXd& direction, double first_length, Place& place) {
   constexpr double kArmijo = 0.1, kRounding = 1e-13;
   constexpr int kMostHalvings = 30;
@@ -97,10 +98,11 @@ void run_quasi_newton(const Objective& objective, const MinimizerOptions& option
   }
 }
 
-// One thread, so the same bits everywhere; a factor with a diagonal tells how many eigenvalues are negative.
+// The factors of the second derivatives. One thread makes them, so that the bits are the same everywhere; their
+// diagonal tells how many eigenvalues are negative.
 class Factorization {
  public:
-  // Of the matrix + shift x its mean diagonal; false where that is not positive definite.
+  // Factorizes the matrix + shift x its mean diagonal; returns false where that is not positive definite.
   bool compute(BorderedMatrix matrix, double shift, MinimizerReport& report) {
     const Eigen::Index unknowns = matrix.lower.rows() - matrix.borders;
     const Eigen::VectorXd diagonal = matrix.lower.diagonal().head(unknowns);
@@ -122,8 +124,9 @@ class Factorization {
   Eigen::Index borders_ = 0;
 };
 
-// Newton's direction with the true second derivatives, or where they lead uphill somewhere, with their positive part. (Shifts
-// of the true ones, eight times larger until one worked, took twice the factors for no fewer steps.)
+// Newton's direction with the true second derivatives or, where these lead uphill somewhere, with their positive part.
+// (Adding shifts to the true ones, eight times larger until one worked, took twice the factorizations for no fewer
+// steps.)
 VectorXd newton_direction(const Objective& objective, const Place& place, MinimizerReport& report) {
   constexpr double kShift = 1e-9, kPositiveShift = 1e-6;  // of the mean diagonal
   Factorization factors;

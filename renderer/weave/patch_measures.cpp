@@ -39,7 +39,7 @@ Eigen::Vector3d nearest_image(const YarnPatch& patch, Eigen::Vector3d difference
   return difference;
 }
 
-// Samples of all yarns, sorted into the squares of a periodic grid over the cell.
+// The samples of all yarns, sorted into the squares of a periodic grid over the cell.
 class SampleGrid {
  public:
   explicit SampleGrid(const YarnPatch& patch) : patch_(patch) {
@@ -49,7 +49,7 @@ class SampleGrid {
       size = std::max(size, 2 * yarn.radius_mm * profile_bound(yarn.thickness));
       ++yarns[yarn.warp ? 0 : 1];
     }
-    // One diameter or pitch, so that neighbouring squares hold the neighbouring yarns.
+    // A square is one diameter or one pitch wide, so that neighbouring squares hold the neighbouring yarns.
     columns_ = squares_along(patch.period_x_mm, std::max(size, patch.period_x_mm / std::max(1.0, yarns[0])));
     rows_ = squares_along(patch.period_y_mm, std::max(size, patch.period_y_mm / std::max(1.0, yarns[1])));
     squares_.resize(static_cast<std::size_t>(columns_ * rows_));
@@ -64,9 +64,8 @@ class SampleGrid {
           for (int dx = columns_ < 3 ? 0 : -1; dx <= (columns_ < 2 ? 0 : 1); ++dx) {
             const auto& others = square(row + dy, column + dx);
             for (const Sample& a : square(row, column)) {
-              for (const Sample& b : others) {
+              for (const Sample& b : others)
                 if (a.yarn < b.yarn) visit(a, b);
-              }
             }
           }
         }
@@ -105,8 +104,8 @@ double reach(const YarnPatch& patch, std::size_t a, double s, std::size_t b, dou
   return first.radius_mm * thickness(first, s) + second.radius_mm * thickness(second, t);
 }
 
-// Gap at the closest points of two centre lines near a pair of samples: a few Gauss-Newton steps, each at most one sample
-// long.
+// The gap at the closest points of two centre lines near a pair of samples, by a few Gauss-Newton steps of at most one
+// sample each.
 double refined_gap(const YarnPatch& patch, const Pair& pair) {
   const PeriodicSpline a = center_line(patch, patch.yarns[pair.a.yarn]),
                        b = center_line(patch, patch.yarns[pair.b.yarn]);
@@ -151,12 +150,11 @@ SurfaceRange surface_range(const YarnPatch& patch) {
 
 double cover(const YarnPatch& patch) {
   double warp = 0, weft = 0;
-  for (const Yarn& yarn : patch.yarns) {
+  for (const Yarn& yarn : patch.yarns)
     if (yarn.warp)
       warp += 2 * half_width(yarn) / patch.period_x_mm;
     else
       weft += 2 * half_width(yarn) / patch.period_y_mm;
-  }
   return 1 - (1 - std::min(warp, 1.0)) * (1 - std::min(weft, 1.0));
 }
 

@@ -2,7 +2,8 @@
 // period.
 //
 // The parameter t counts knots: t = 0 .. n is one period, and knot k lies at (c_(k-1) + 4 c_k + c_(k+1)) / 6. Segment
-// k, from knot k to knot k + 1, has the four control points c_(k-1) .. c_(k+2). C2 everywhere, across the period too.
+// k, from knot k to knot k + 1, has the four control points c_(k-1) .. c_(k+2). The splines are C2 everywhere, across
+// the period too.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,16 +18,17 @@ struct PeriodicSpline {
   Eigen::Vector3d control_point(int k) const;  // any k
 };
 
-// The spline whose knot k is points[k]; at least 3 points. Linear in the points, exact to rounding.
+// The spline whose knot k is points[k]; at least 3 points. It is linear in the points and exact to rounding.
 PeriodicSpline spline_through(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& period);
 
-// d-th derivative to t (d = 0: the point itself; d <= 2), any t.
+// The derivative of this order by t (0: the point itself; at most 2), at any t.
 Eigen::Vector3d spline_value(const PeriodicSpline& spline, double t, int derivative = 0);
 
-// Weights of the four control points c_(k-1) .. c_(k+2) at u in [0, 1] of segment k, for the d-th derivative to t.
+// The weights of the four control points c_(k-1) .. c_(k+2) at u in [0, 1] of segment k, for the derivative of this
+// order by t.
 Eigen::Vector4d spline_weights(double u, int derivative = 0);
 
-// Arc length of one period, mm (five Gauss points per segment).
+// The arc length of one period, mm (five Gauss points per segment).
 double spline_length(const PeriodicSpline& spline);
 
 }  // namespace renderer

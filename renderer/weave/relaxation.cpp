@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "renderer/weave/crossings.h"
+#include "renderer/weave/initial_patch.h"
 #include "renderer/weave/patch_measures.h"
 #include "renderer/weave/weave_model.h"
 #include "renderer/weave/yarn_contact.h"
@@ -58,8 +59,8 @@ Cell cell_of(const YarnPatch& patch, const Draft& draft) {
   return cell;
 }
 
-// The cloth moves about as a whole at no cost: the mean heights of all yarns and the mean places of each system across
-// it are held, softly.
+// Anchors the cloth softly, because it moves about as a whole at no cost: the mean heights of all yarns and the mean
+// places of each system across it are held.
 void add_anchors(Cell& cell, double stiffness_n_mm) {
   for (const int axis : {0, 1, 2}) {
     Eigen::Matrix3Xd weights = Eigen::Matrix3Xd::Zero(3, cell.model.points);
@@ -79,7 +80,7 @@ double thinnest_radius(const WeaveModel& model) {
   return radius;
 }
 
-// What pulls at the yarns: the load, or the spring with its contraction, and bending.
+// The largest force that pulls at a yarn: the load, or the spring with its contraction, and bending.
 double force_scale(const WeaveModel& model) {
   double scale = 0;
   for (const ModelYarn& yarn : model.yarns) {
@@ -98,7 +99,7 @@ WeaveDerivatives derivatives(Cell& cell, const Eigen::Matrix3Xd& points, Curvatu
   return sum;
 }
 
-// Slope of the energy to the periods of the cell when all in it is widened with it.
+// The slope of the energy by the periods of the cell when all in it is widened with it.
 Eigen::Vector2d cell_force(const Cell& cell, const WeaveDerivatives& sum) {
   return sum.period_gradient +
          sum.gradient.cwiseProduct(cell.points).rowwise().sum().head<2>().cwiseQuotient(cell.model.period_mm);
@@ -153,7 +154,8 @@ double overlap(Cell& cell) {
   return cell.contacts.deepest_overlap(cell.model, cell.points) / thinnest_radius(cell.model);
 }
 
-// Contact begins so soft that the first overlaps are some percent of a radius, and stiffens until they are small.
+// Stiffens the contact, which begins so soft that the first overlaps are some percent of a radius, until overlaps are
+// small.
 void stiffen_contact(Cell& cell, const RelaxationOptions& options, RelaxationReport& report) {
   const double radius = thinnest_radius(cell.model);
   cell.model.contact_n_mm2 = 100 * report.force_scale_n / (4 * radius * radius);
@@ -168,7 +170,7 @@ void stiffen_contact(Cell& cell, const RelaxationOptions& options, RelaxationRep
   report.overlap = overlap(cell);
 }
 
-// Moves the cell and all in it to another size.
+// Brings the cell and all in it to another size.
 void resize(Cell& cell, const Eigen::Vector2d& period_mm) {
   const Eigen::Vector2d ratio = period_mm.cwiseQuotient(cell.model.period_mm);
   cell.points.topRows<2>().array().colwise() *= ratio.array();
@@ -176,7 +178,8 @@ void resize(Cell& cell, const Eigen::Vector2d& period_mm) {
   cell.model.period_mm = period_mm;
 }
 
-// The size at which the cell pulls at nothing: Broyden's method on its two forces, yarns at rest at every size.
+// Brings the cell to the size at which nothing pulls at it: Broyden's method on its two forces, with yarns at rest at
+// every size.
 void settle_periods(Cell& cell, const RelaxationOptions& options, RelaxationReport& report) {
   constexpr int kMostSteps = 40;
   constexpr double kLargestStep = 0.02, kDifference = 1e-4;  // of the period

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace renderer {
 namespace {
@@ -12,7 +13,7 @@ double uniform(std::mt19937_64& random) {
   return static_cast<double>(random() >> 11) * 0x1p-53;
 }
 
-// The same numbers everywhere: the generator is specified, the standard's normal distribution is not.
+// A normal number that is the same everywhere: the generator is specified, the standard's normal distribution is not.
 double normal(std::mt19937_64& random) {
   double sum = -6;
   for (int i = 0; i < 12; ++i) sum += uniform(random);
@@ -30,7 +31,7 @@ int any_shade(int shades, std::mt19937_64& random) {
   return static_cast<int>(random() % static_cast<std::uint64_t>(shades));
 }
 
-// Control points of 1 + scale x noise, with mean 1.
+// The control points of 1 + scale x noise, with mean 1.
 std::vector<double> uneven_profile(double scale, int count, double length_mm, double correlation_mm,
                                    std::mt19937_64& random) {
   std::vector<Vector3d> knots;
@@ -45,7 +46,7 @@ std::vector<double> uneven_profile(double scale, int count, double length_mm, do
   return profile;
 }
 
-// A thread for each segment: pieces of random length and shade.
+// The thread of each segment: the yarn is cut into pieces of random length and shade.
 std::vector<int> shades_along(int thread, int shades, int count, double length_mm, double piece_mm,
                               std::mt19937_64& random) {
   const int pieces = std::max(1, static_cast<int>(std::lround(length_mm / piece_mm)));
@@ -93,11 +94,11 @@ void make_slubs(YarnPatch& patch, const Draft& draft) {
 
 }  // namespace
 
-// Fourier sum whose cycles have normal amplitudes; the transform of exp(-(d / c)^2) is exp(-(pi c k / length)^2) in cycles k
-// per length.
+// The noise is a Fourier sum whose cycles have normal amplitudes; the transform of exp(-(d / c)^2) is exp(-(pi c k /
+// length)^2) in cycles k per length.
 std::vector<double> closed_noise(int count, double length_mm, double correlation_mm, std::mt19937_64& random) {
   constexpr double kLeastPower = 1e-14;
-  const double decay = std::pow(M_PI * correlation_mm / length_mm, 2);
+  const double decay = std::pow(std::numbers::pi * correlation_mm / length_mm, 2);
   std::vector<double> power;
   double sum = 0;
   for (int k = 1; 2 * k < count; ++k) {
@@ -108,10 +109,9 @@ std::vector<double> closed_noise(int count, double length_mm, double correlation
   }
   std::vector<double> noise(static_cast<std::size_t>(count), 0.0);
   for (std::size_t k = 1; k <= power.size(); ++k) {
-    const double scale = std::sqrt(power[k - 1] / sum), cosine = scale * normal(random),
-                 sine = scale * normal(random);
+    const double scale = std::sqrt(power[k - 1] / sum), cosine = scale * normal(random), sine = scale * normal(random);
     for (std::size_t i = 0; i < noise.size(); ++i) {
-      const double angle = 2 * M_PI * static_cast<double>(k * i % noise.size()) / count;
+      const double angle = 2 * std::numbers::pi * static_cast<double>(k * i % noise.size()) / count;
       noise[i] += cosine * std::cos(angle) + sine * std::sin(angle);
     }
   }

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
+#include "renderer/weave/initial_patch.h"
 #include "renderer/weave/unevenness.h"
 
 namespace renderer {
@@ -22,8 +24,7 @@ std::vector<double> flatness_under_load(const RelaxedPatch& relaxed, const Draft
     const Yarn& yarn = relaxed.patch.yarns[i];
     const YarnSystem& system = yarn.warp ? draft.warp : draft.weft;
     const double length_mm = spline_length(center_line(relaxed.patch, yarn));
-    const double load =
-        relaxed.report.contact_loads_n[static_cast<Eigen::Index>(i)] / 2 / length_mm;  // from each side
+    const double load = relaxed.report.contact_loads_n[static_cast<Eigen::Index>(i)] / 2 / length_mm;  // from each side
     const double lower = 1 + load / (draft.transverse_modulus_n_mm2 * 2 * yarn.radius_mm);
     const double widest = system.pitch_mm / (2 * yarn.radius_mm);
     const double most = std::max(system.flatness, std::min(kMostFlatness, widest * widest));
@@ -32,7 +33,8 @@ std::vector<double> flatness_under_load(const RelaxedPatch& relaxed, const Draft
   return flatness;
 }
 
-// Sections and loads that belong to each other: each round relaxes with sections halfway to those that its loads ask for.
+// The patch at rest with sections and loads that belong to each other: each round relaxes with sections halfway to
+// those that the loads of the last one ask for.
 RelaxedPatch flattened(YarnPatch start, const Draft& draft, const RelaxationOptions& options) {
   constexpr int kMostRounds = 12;
   constexpr double kGoal = 1e-3;
@@ -51,7 +53,7 @@ RelaxedPatch flattened(YarnPatch start, const Draft& draft, const RelaxationOpti
   return relaxed;
 }
 
-// Of the yarn's thickness at its strands' knots.
+// The control points of a strand's thickness, which is the yarn's at the strand's knots.
 std::vector<double> thickness_of_strands(const Yarn& yarn, int per_knot) {
   std::vector<Vector3d> knots;
   for (std::size_t i = 0; i < yarn.thickness.size() * static_cast<std::size_t>(per_knot); ++i)
@@ -62,7 +64,7 @@ std::vector<double> thickness_of_strands(const Yarn& yarn, int per_knot) {
   return control;
 }
 
-// Of all turns of the plies in a period, the share that is done at each of their knots.
+// The share of all turns of the plies in a period that is done at each of their knots.
 std::vector<double> shares_of_turns(const Yarn& yarn, int knots, int per_knot) {
   std::vector<double> shares;
   double sum = 0;
@@ -74,9 +76,9 @@ std::vector<double> shares_of_turns(const Yarn& yarn, int knots, int per_knot) {
   return shares;
 }
 
-// A strand inside a yarn, with `per_knot` knots of its own for each of the yarn's; place(i): of its i-th knot in the round
-// section, mm (Strands::places). A flat yarn is the round one with its strands, pressed: they are as flat as it is, so
-// those that touch keep touching.
+// A strand inside a yarn, with `per_knot` knots of its own for each of the yarn's; place(i) is that of its i-th knot in
+// the round section, mm (Strands::places). A flat yarn is the round one pressed with its strands: they are as flat as
+// it is, so that those that touch keep touching.
 Yarn strand_of(const YarnPatch& patch, const Yarn& yarn, double radius_mm, int per_knot,
                const std::function<Vector2d(int)>& place) {
   if (radius_mm > yarn.radius_mm)
@@ -95,7 +97,8 @@ Yarn strand_of(const YarnPatch& patch, const Yarn& yarn, double radius_mm, int p
   for (int i = 0; i < knots; ++i) {
     if (!yarn.threads.empty()) strand.threads.push_back(thread_of_segment(yarn, i / per_knot));
     const double t = static_cast<double>(i) / per_knot;
-    // Yarns of a cloth never run upright, so a frame with one axis in its plane turns as little as they do.
+    // Yarns of a cloth never run upright, so that a frame with one axis in the cloth's plane turns as little as they
+    // do.
     const Vector3d along = spline_value(line, t, 1).normalized(), up = along.cross(side).normalized();
     const Vector2d at = thickness(yarn, t) * place(i);
     points.push_back(spline_value(line, t) + flat * at.x() * up.cross(along) + at.y() / flat * up);
@@ -108,7 +111,7 @@ Yarn strand_of(const YarnPatch& patch, const Yarn& yarn, double radius_mm, int p
 
 double ply_radius_mm(const Plies& plies, double yarn_radius_mm) {
   if (plies.radius_mm > 0) return plies.radius_mm;
-  const double sine = std::sin(M_PI / plies.count);
+  const double sine = std::sin(std::numbers::pi / plies.count);
   return plies.count == 1 ? yarn_radius_mm : yarn_radius_mm * sine / (1 + sine);
 }
 
@@ -126,7 +129,7 @@ YarnPatch with_plies(const YarnPatch& patch, const Plies& plies) {
     for (int k = 0; k < plies.count; ++k) {
       Yarn ply = strand_of(patch, yarn, radius_mm, per_knot, [&](int i) {
         const double angle =
-            2 * M_PI * (turns * turned[static_cast<std::size_t>(i)] + static_cast<double>(k) / plies.count);
+            2 * std::numbers::pi * (turns * turned[static_cast<std::size_t>(i)] + static_cast<double>(k) / plies.count);
         return Vector2d((yarn.radius_mm - radius_mm) * Vector2d(std::cos(angle), std::sin(angle)));
       });
       ply.tex = yarn.tex / plies.count;

@@ -1,11 +1,11 @@
-// From a draft to the patch that is rendered: yarns at rest, and what makes them less ideal than round, equal ones, as far
-// as the draft asks for it.
+// The patch that is rendered, from a draft: yarns at rest, and as far as the draft asks for it, what makes them less
+// ideal than round, equal ones.
 //
 // Slubs are there while the yarns come to rest: contact knows the thickness of each place, so that crowns rise and
-// neighbours give way where yarns are thick. (Thickening the yarns of an even patch afterwards presses them into each other
-// by the sum of both deviations.) Stiffness and load are those of the mean yarn all along. Flattening is one number per yarn:
-// the ray tracer's elliptical yarns are round ones stretched as a whole (patch_curves.h), and steps between differently
-// stretched pieces would show.
+// neighbours give way where yarns are thick. (To thicken the yarns of an even patch afterwards would press them into
+// each other by the sum of both deviations.) Stiffness and load are those of the mean yarn all along. Flattening is one
+// number per yarn: the ray tracer's elliptical yarns are round ones stretched as a whole (patch_curves.h), and steps
+// between differently stretched pieces would show.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,24 +15,25 @@
 
 namespace renderer {
 
-// Unrelaxed drafts keep the analytic shapes, and an empty report. Errors: std::runtime_error, one line: those of
-// check_draft() and check_at_rest(); plies thicker than their yarn.
+// The patch of a draft. An unrelaxed draft keeps the analytic shapes, and its report is empty. Errors:
+// std::runtime_error, one line: those of check_draft() and check_at_rest(); plies thicker than their yarn.
 RelaxedPatch woven_patch(const Draft& draft, const RelaxationOptions& options = {});
 
-// Each yarn of the patch as its plies; what was measured stays that of the yarns.
+// The patch with its plies instead of each yarn; what was measured stays that of the yarns.
 YarnPatch with_plies(const YarnPatch& patch, const Plies& plies);
-// Round strands that keep their places in a yarn's section all along it, as untwisted fibers do.
+// The round strands of one yarn, which keep their places in its section all along it, as untwisted fibers do.
 struct Strands {
   double radius_mm = 0;
-  // mm, of the round section: across the yarn in the cloth's plane, and by the third axis of a frame that is right-handed
-  // along the yarn (up for the weft, down for the warp).
+  // In mm, in the round section: across the yarn in the cloth's plane, and along the third axis of a frame that is
+  // right-handed along the yarn (up for the weft, down for the warp).
   std::vector<Eigen::Vector2d> places{};
 };
-// Each yarn of the patch as its strands, `of_yarns` in the order of its yarns; what was measured stays that of the yarns. A
-// flat yarn's strands are pressed as it is. Errors: std::invalid_argument when the counts differ; std::runtime_error when a
-// strand is thicker than its yarn.
+// The patch with its strands instead of each yarn, `of_yarns` in the order of its yarns; what was measured stays that
+// of the yarns. A flat yarn's strands are pressed as it is. Errors: std::invalid_argument when the counts differ;
+// std::runtime_error when a strand is thicker than its yarn.
 YarnPatch with_strands(const YarnPatch& patch, const std::vector<Strands>& of_yarns);
 
+// The radius of a ply: as given, or as large as lets the plies touch each other inside the yarn.
 double ply_radius_mm(const Plies& plies, double yarn_radius_mm);
 
 }  // namespace renderer

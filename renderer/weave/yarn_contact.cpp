@@ -14,7 +14,8 @@ int floor_divide(int a, int b) {
   return a >= 0 ? a / b : -((b - 1 - a) / b);
 }
 
-// Squares of at least `reach`, so that neighbouring squares hold all that is near; few squares mean many images.
+// Squares over the cell, each at least `reach` wide, so that neighbouring squares hold all that is near. Where squares
+// are few, their neighbours are periodic images of themselves.
 struct Grid {
   Eigen::Vector2i squares;
   std::vector<std::vector<int>> members;
@@ -56,7 +57,7 @@ struct ContactList::Metric {
 
 struct ContactList::Touch {
   std::size_t pair;
-  Eigen::Vector3d slope;  // of the distance to the difference a - b
+  Eigen::Vector3d slope;  // of the distance, by the difference a - b
   Eigen::Vector3d scale;
   double distance, contact;
   double factor;  // energy = factor f(distance / contact)
@@ -106,7 +107,7 @@ void ContactList::update(const WeaveModel& model, const Eigen::Matrix3Xd& points
   if (!same) search(model, points);
 }
 
-// Segments first, by the spheres round their samples; then the samples of those that are near each other.
+// Finds the pairs: first segments that are near each other, by the spheres round their samples, then their samples.
 void ContactList::search(const WeaveModel& model, const Eigen::Matrix3Xd& points) {
   searched_at_ = points;
   searched_period_mm_ = model.period_mm;
@@ -255,7 +256,7 @@ void ContactList::add(const WeaveModel& model, const Eigen::Matrix3Xd& points, W
         across.block<3, 3>(3 * p, 3 * r) -= sample(pair.a).weights[p] * sample(pair.b).weights[r] * second;
   });
   close_group();
-  // Samples hand on to control points, segment by segment.
+  // What was summed at samples is handed on to control points, segment by segment.
   for (std::size_t first = 0, last = 0; first < samples_.size(); first = last) {
     Eigen::Matrix<double, 3, 4> slope = Eigen::Matrix<double, 3, 4>::Zero();
     Block12 second = Block12::Zero();

@@ -11,7 +11,7 @@ struct Density {
   double value = 0, a = 0, c = 0, d = 0, aa = 0, ac = 0, ad = 0, dd = 0;
 };
 
-// Of bending and of a pull along the yarn.
+// The energy density of bending and of a pull along the yarn.
 Density density(double bending_n_mm2, double pull_n, double A, double C, double D) {
   const double speed = std::sqrt(A);
   Density e;
@@ -92,8 +92,7 @@ double add_spring(const WeaveModel& model, const ModelYarn& yarn, const Eigen::M
     }
   }
   const double strain = length / yarn.rest_length_mm - 1;
-  sum.energy +=
-      yarn.axial_n * (strain * strain * yarn.rest_length_mm / 2 - strain * length);  // the pull adds the last
+  sum.energy += yarn.axial_n * (strain * strain * yarn.rest_length_mm / 2 - strain * length);  // the pull adds the last
   if (sum.curvature != Curvature::none)
     sum.add_border(yarn.first, std::sqrt(yarn.axial_n / yarn.rest_length_mm) * slope);
   return yarn.axial_n * strain;

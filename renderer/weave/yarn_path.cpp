@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace renderer {
 namespace {
@@ -24,7 +25,7 @@ HalfWave rounded_half_wave(double pitch_mm, double crown_mm) {
   const double slope = 2 * crown_mm / pitch_mm;
   const auto across = [](double t) { return std::sin(t) + q * t * std::cos(t); };
   const auto drop = [](double t) { return 1 - std::cos(t) + q * t * std::sin(t); };
-  double low = 0, high = M_PI / 2;
+  double low = 0, high = std::numbers::pi / 2;
   for (int step = 0; step < 60; ++step) {
     const double middle = (low + high) / 2;
     (drop(middle) < slope * across(middle) ? low : high) = middle;

@@ -16,15 +16,14 @@
 
 namespace renderer {
 
-// Heights of the crowns over the mid-plane; warp + weft = contact distance, so that yarns touch where they cross.
+// The heights of the crowns over the mid-plane; warp + weft = contact distance, so that yarns touch where they cross.
 struct CrownHeights {
   double warp_mm = 0.0, weft_mm = 0.0;
 };
 
-// The split is Peirce's crimp interchange h1 / h2 = (B2 p2^3) / (B1 p1^3) (p2 = weft pitch, along the warp) with
-// the yarns' bending stiffness (bending_of); equal for square cloth. Where that would press yarns
-// into each other it is moved to the nearest split that does not; where no split is free (the sett jams), to the
-// middle.
+// The crown heights by Peirce's crimp interchange h1 / h2 = (B2 p2^3) / (B1 p1^3) (p2 = weft pitch, along the warp)
+// with the yarns' bending stiffness (bending_of); equal for square cloth. Where that split would press yarns into each
+// other, it is moved to the nearest one that does not; where no split is free (the sett jams), to the middle.
 CrownHeights split_heights(const YarnSystem& warp, const YarnSystem& weft);
 
 // Half a wave: from the crown at 0 down to the middle of the way to the next crossing, where the path's height is 0.
@@ -42,16 +41,17 @@ struct HalfWave {
 // pitch allows (no straight part, radius below the contact distance) and cuts into the crossing yarns.
 HalfWave taut_half_wave(double pitch_mm, double crown_mm, double crossing_crown_mm);
 
-// The half-wave that is woven: the taut one, or where its arc is less than kLeastArcShare of it, the one of that
-// share.
+// The half-wave that is woven: the taut one or, where its arc takes less than kLeastArcShare of it, the one whose arc
+// takes that share.
 HalfWave half_wave(double pitch_mm, double crown_mm, double crossing_crown_mm);
 
-// One period, (along, height) at n = `points_per_crossing` (even) equal steps of arc length from one crossing to the
-// next, starting half a pitch before the first crossing (along = 0); crossing i is point n i + n / 2.
+// The path of one period as (along, height) at n = `points_per_crossing` (even) equal steps of arc length from one
+// crossing to the next, starting half a pitch before the first crossing (along = 0); crossing i is point n i + n / 2.
 std::vector<Eigen::Vector2d> yarn_path(const std::vector<bool>& on_top, double pitch_mm, const HalfWave& wave,
                                        int points_per_crossing = kPointsPerCrossing);
 
-// The arc's share a of a shallow half-wave has the crimp (1 - 2 a / 3) / (2 (1 - a / 2)^2) (h/p)^2; 0.6 at this a.
+// The least share of the path that arcs take. With the arc's share a, the crimp of a shallow half-wave is (1 - 2 a / 3)
+// / (2 (1 - a / 2)^2) (h/p)^2, which is 0.6 (h/p)^2 at this a.
 inline constexpr double kLeastArcShare = 0.53752;
 
 }  // namespace renderer

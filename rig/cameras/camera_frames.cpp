@@ -1,6 +1,5 @@
 #include "rig/cameras/camera_frames.h"
 
-#include <cmath>
 #include <stdexcept>
 
 #include "rig/cameras/ptp_bytes.h"
@@ -24,25 +23,16 @@ void CameraFrames::add(std::string_view piece) {
 }
 
 bool CameraFrames::next(CameraFrame& frame) {
-  if (waiting_.compare(0, std::min(kMark.size(), waiting_.size()), kMark, 0,
-                       std::min(kMark.size(), waiting_.size())) != 0) {
+  if (waiting_.compare(0, std::min(kMark.size(), waiting_.size()), kMark, 0, std::min(kMark.size(), waiting_.size())) !=
+      0)
     refuse();
-  }
-  if (waiting_.size() < kHeader) {
-    return false;
-  }
+  if (waiting_.size() < kHeader) return false;
   const std::size_t text = *ptp_number<std::uint32_t>(waiting_, 4), bytes = *ptp_number<std::uint32_t>(waiting_, 8);
-  if (text > kLongestText || bytes > kMostBytes) {
-    refuse();
-  }
-  if (waiting_.size() < kHeader + text + bytes) {
-    return false;
-  }
+  if (text > kLongestText || bytes > kMostBytes) refuse();
+  if (waiting_.size() < kHeader + text + bytes) return false;
   const std::string_view whole = waiting_;
   frame.text = nlohmann::json::parse(whole.substr(kHeader, text), nullptr, false);
-  if (!frame.text.is_object()) {
-    refuse();
-  }
+  if (!frame.text.is_object()) refuse();
   const auto* data = reinterpret_cast<const std::byte*>(waiting_.data()) + kHeader + text;
   frame.bytes.assign(data, data + bytes);
   waiting_.erase(0, kHeader + text + bytes);
@@ -57,11 +47,11 @@ std::string encode_frame(const CameraFrame& frame) {
   return out.take();
 }
 
-nlohmann::json settings_to_json(const ExposureSettings& settings) {
+nlohmann::json settings_to_json(const CameraSettings& settings) {
   return {{"exposure_s", settings.exposure_s}, {"iso", settings.iso}, {"f_number", settings.f_number}};
 }
 
-ExposureSettings settings_from_json(const nlohmann::json& document) {
+CameraSettings settings_from_json(const nlohmann::json& document) {
   return {.exposure_s = document.at("exposure_s").get<double>(),
           .iso = document.at("iso").get<int>(),
           .f_number = document.at("f_number").get<double>()};

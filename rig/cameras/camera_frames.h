@@ -1,15 +1,16 @@
-// What the program and its camera process say to each other, over one socket: frames.
+// The messages ("frames") that the program and its camera process exchange over one socket.
 //
-// A frame: the four characters "TSC1", the length of its JSON text and the length of its bytes (both 4 bytes, little
-// endian), the JSON text (an object, UTF-8), the bytes (a picture; mostly none). The program asks, the process answers
-// each question once, in order.
+// A frame is the four characters "TSC1", the length of its JSON text and the length of its bytes (both 4 bytes, little
+// endian), the JSON text (an object, UTF-8), then the bytes (a picture; mostly none). The program asks; the process
+// answers each question once, in order.
 //
 //   {"ask": "connect", "port", "width_px", "height_px", "shortest_shutter_s", "least_battery_percent"}
 //                                              -> {"identity": {...}, "shutter_times_s": [...]}
 //   {"ask": "configure", "settings": {...}}    -> {"settings": {...}}, read back
 //   {"ask": "capture"}                         -> {"settings": {...}, "extension", "utc"} and the picture's bytes
 //   {"ask": "preview"}                         -> {} and the bytes of a JPEG
-//   any of them                                -> {"error": "one line for people", "lost": whether it may be asked again}
+//   any question                               -> {"error": "one line for people", "lost": true or false}; "lost" says
+//                                                 that the connection broke (CameraLost), so that asking again may help
 #pragma once
 
 #include <cstddef>
@@ -18,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-#include "rig/camera.h"
+#include "rig/devices/camera.h"
 
 namespace rig {
 
@@ -27,11 +28,11 @@ struct CameraFrame {
   std::vector<std::byte> bytes;
 };
 
-// Puts frames together from pieces of any size. Errors: std::runtime_error when what comes is none.
+// Puts frames together from pieces of any size. Errors: std::runtime_error when the bytes are not a frame.
 class CameraFrames {
  public:
   void add(std::string_view piece);
-  bool next(CameraFrame& frame);  // false: not yet whole
+  bool next(CameraFrame& frame);  // takes the next whole frame; false when none is complete yet
 
  private:
   std::string waiting_;
@@ -39,7 +40,7 @@ class CameraFrames {
 
 std::string encode_frame(const CameraFrame& frame);
 
-nlohmann::json settings_to_json(const ExposureSettings& settings);
-ExposureSettings settings_from_json(const nlohmann::json& document);
+nlohmann::json settings_to_json(const CameraSettings& settings);
+CameraSettings settings_from_json(const nlohmann::json& document);
 
 }  // namespace rig

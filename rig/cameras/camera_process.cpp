@@ -27,10 +27,11 @@ namespace {
 using nlohmann::json;
 
 constexpr int kProcessSocket = 3;
-// A process that ends is quickly replaced; one that hangs costs its whole time.
+// How often one question may make the process end, hang or lose the camera. A process that ends is quickly replaced,
+// one that hangs costs its whole time-out.
 constexpr int kMostEnded = 3, kMostHung = 2, kMostLost = 2;
 
-// The process is gone or says nothing: it is to be started again.
+// The process is gone or does not answer and has to be started again.
 struct ProcessLost : std::runtime_error {
   explicit ProcessLost(const std::string& how, bool hangs = false) : std::runtime_error(how), hung(hangs) {}
   bool hung;
@@ -39,17 +40,13 @@ struct ProcessLost : std::runtime_error {
 void send_all(int socket, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t sent = ::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR) {
-      continue;
-    }
-    if (sent <= 0) {
-      throw ProcessLost("its process ended");
-    }
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent <= 0) throw ProcessLost("its process ended");
     bytes.remove_prefix(static_cast<std::size_t>(sent));
   }
 }
 
-// One process with its socket; ended with this object.
+// One process with its socket. The process is ended when this object is destroyed.
 class Process {
  public:
   explicit Process(const std::vector<std::string>& command) {
@@ -60,17 +57,15 @@ class Process {
     }
     socket_ = ends[0];
     std::vector<char*> arguments;
-    for (const std::string& argument : command) {
-      arguments.push_back(const_cast<char*>(argument.c_str()));
-    }
+    for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
     arguments.push_back(nullptr);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, ends[1], kProcessSocket);
-    // The library talks on these two; they belong to the program's own lines.
+    // libgphoto2 prints on standard output and standard error, which belong to the program's own lines.
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    // Ctrl-C at the terminal is for the program: it ends the process in order.
+    // The process gets its own group, so that ctrl-C at the terminal reaches only the program, which then ends it.
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
@@ -107,17 +102,12 @@ class Process {
       const double left_s = std::chrono::duration<double>(deadline - std::chrono::steady_clock::now()).count();
       pollfd watched{.fd = socket_, .events = POLLIN, .revents = 0};
       const int ready = left_s > 0 ? ::poll(&watched, 1, static_cast<int>(std::ceil(left_s * 1e3))) : 0;
-      if (ready < 0 && errno == EINTR) {
-        continue;
-      }
+      if (ready < 0 && errno == EINTR) continue;
       std::array<char, 1 << 16> piece{};
       const ssize_t got = ready > 0 ? ::recv(socket_, piece.data(), piece.size(), 0) : -1;
-      if (ready <= 0) {
+      if (ready <= 0)
         throw ProcessLost("it did not answer within " + std::to_string(std::lround(timeout_s)) + " s", true);
-      }
-      if (got <= 0) {
-        throw ProcessLost("its process ended");
-      }
+      if (got <= 0) throw ProcessLost("its process ended");
       frames_.add({piece.data(), static_cast<std::size_t>(got)});
     }
     return answer;
@@ -126,7 +116,7 @@ class Process {
  private:
   int socket_ = -1;
   pid_t process_ = -1;
-  bool ended_ = false;  // and its number may be another process's now
+  bool ended_ = false;  // once true, the process number may belong to another process
   CameraFrames frames_;
 };
 
@@ -147,13 +137,13 @@ class ProcessCamera final : public Camera {
   CameraIdentity identity() override { return identity_; }
   std::vector<double> shutter_times_s() override { return shutter_times_s_; }
 
-  ExposureSettings configure(const ExposureSettings& wanted) override {
+  CameraSettings configure(const CameraSettings& wanted) override {
     if (!std::isfinite(wanted.exposure_s) || !std::isfinite(wanted.f_number)) {
       throw std::runtime_error("an exposure of " + std::to_string(wanted.exposure_s) + " s at f/" +
                                std::to_string(wanted.f_number) + " was asked; both must be positive numbers");
     }
     wanted_.reset();
-    ExposureSettings found;
+    CameraSettings found;
     with_process("set its exposure", [&] { found = configure_there(wanted); });
     wanted_ = wanted;
     return found;
@@ -179,20 +169,16 @@ class ProcessCamera final : public Camera {
   }
 
  private:
-  // A camera that refuses is asked no second time: what it said is for the person. It is connected anew for the next
-  // question.
+  // Does `work` with a running process, started again when it is lost. When the camera itself refuses, the question is
+  // not repeated: its message goes to the person, and the camera is connected anew for the next question.
   template <typename Work>
   void with_process(const std::string& asked, const Work& work) {
     std::string why;
-    if (process_ && !process_->lives()) {
-      process_.reset();  // died while nothing was asked, which costs nothing
-    }
+    if (process_ && !process_->lives()) process_.reset();  // it died while nothing was asked: not counted
     int ended = 0, hung = 0, lost = 0;
     while (ended < kMostEnded && hung < kMostHung) {
       try {
-        if (!process_) {
-          start();
-        }
+        if (!process_) start();
         work();
         return;
       } catch (const ProcessLost& gone) {
@@ -201,9 +187,7 @@ class ProcessCamera final : public Camera {
         process_.reset();
       } catch (const CameraLost&) {
         process_.reset();
-        if (++lost == kMostLost) {
-          throw;
-        }
+        if (++lost == kMostLost) throw;
       } catch (const json::exception&) {
         why = "its process answered something else";
         ++ended;
@@ -233,12 +217,10 @@ class ProcessCamera final : public Camera {
     }
     identity_ = found;
     shutter_times_s_ = answer.text.at("shutter_times_s").get<std::vector<double>>();
-    if (wanted_) {
-      configure_there(*wanted_);
-    }
+    if (wanted_) configure_there(*wanted_);
   }
 
-  ExposureSettings configure_there(const ExposureSettings& wanted) {
+  CameraSettings configure_there(const CameraSettings& wanted) {
     const CameraFrame answer = ask({{"ask", "configure"}, {"settings", settings_to_json(wanted)}}, 0);
     return settings_from_json(answer.text.at("settings"));
   }
@@ -246,9 +228,7 @@ class ProcessCamera final : public Camera {
   CameraFrame ask(const json& question, double exposure_s) {
     CameraFrame answer = process_->ask({.text = question, .bytes = {}}, setup_.answer_timeout_s + exposure_s);
     if (const auto error = answer.text.find("error"); error != answer.text.end()) {
-      if (answer.text.value("lost", false)) {
-        throw CameraLost(error->get<std::string>());
-      }
+      if (answer.text.value("lost", false)) throw CameraLost(error->get<std::string>());
       throw std::runtime_error(error->get<std::string>());
     }
     return answer;
@@ -258,7 +238,7 @@ class ProcessCamera final : public Camera {
   std::unique_ptr<Process> process_;
   CameraIdentity identity_;
   std::vector<double> shutter_times_s_;
-  std::optional<ExposureSettings> wanted_;
+  std::optional<CameraSettings> wanted_;
 };
 
 GphotoSetup setup_from_json(const json& document) {
@@ -284,11 +264,9 @@ CameraFrame answer_to(const json& question, std::unique_ptr<Camera>& camera,
                      {"shutter_times_s", camera->shutter_times_s()}},
             .bytes = {}};
   }
-  if (!camera) {
-    throw std::runtime_error("the camera process was asked to " + asked + " before it was connected");
-  }
+  if (!camera) throw std::runtime_error("the camera process was asked to " + asked + " before it was connected");
   if (asked == "configure") {
-    const ExposureSettings found = camera->configure(settings_from_json(question.at("settings")));
+    const CameraSettings found = camera->configure(settings_from_json(question.at("settings")));
     return {.text = {{"settings", settings_to_json(found)}}, .bytes = {}};
   }
   if (asked == "capture") {
@@ -298,9 +276,7 @@ CameraFrame answer_to(const json& question, std::unique_ptr<Camera>& camera,
                      {"utc", picture.utc}},
             .bytes = std::move(picture.bytes)};
   }
-  if (asked == "preview") {
-    return {.text = json::object(), .bytes = camera->preview()};
-  }
+  if (asked == "preview") return {.text = json::object(), .bytes = camera->preview()};
   throw std::runtime_error("the camera process was asked to \"" + asked + "\", which it cannot");
 }
 

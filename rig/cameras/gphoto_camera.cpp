@@ -11,15 +11,15 @@
 #include <string_view>
 #include <vector>
 
-#include "rig/clock.h"
+#include "rig/devices/clock.h"
 
 namespace rig {
 namespace {
 
 constexpr int kDrainMs = 50;
-constexpr int kMostDrained = 50;         // events in a row; a camera that never ends is broken
+constexpr int kMostDrained = 50;         // events in a row; a camera that reports more is broken
 constexpr std::size_t kRemembered = 64;  // pictures whose hash is kept
-constexpr int kMostTries = 2;            // of a picture that was a stale one
+constexpr int kMostTries = 2;            // how often a picture is taken when an old one comes instead
 
 using Context = std::unique_ptr<GPContext, void (*)(GPContext*)>;
 using Handle = std::unique_ptr<::Camera, int (*)(::Camera*)>;
@@ -57,8 +57,8 @@ std::string what_to_do(int status) {
   }
 }
 
-// A broken connection, a question without an answer, noise: none of it says what the camera did. When the list of
-// settings does not come, the library says that the setting asked for is none.
+// True for a broken connection, a missing answer or noise: none of them says what the camera did.
+// GP_ERROR_BAD_PARAMETERS is among them because the library returns it when the camera's list of settings did not come.
 bool is_lost(int status) {
   return status == GP_ERROR || status == GP_ERROR_IO || status == GP_ERROR_IO_READ || status == GP_ERROR_IO_WRITE ||
          status == GP_ERROR_TIMEOUT || status == GP_ERROR_BAD_PARAMETERS || status == GP_ERROR_CORRUPTED_DATA;
@@ -67,16 +67,12 @@ bool is_lost(int status) {
 [[noreturn]] void refuse(const std::string& asked, int status) {
   const std::string message = "the camera was to " + asked + " and libgphoto2 answered \"" +
                               gp_result_as_string(status) + "\"; " + what_to_do(status);
-  if (is_lost(status)) {
-    throw CameraLost(message);
-  }
+  if (is_lost(status)) throw CameraLost(message);
   throw std::runtime_error(message);
 }
 
 void check(const std::string& asked, int status) {
-  if (status < GP_OK) {
-    refuse(asked, status);
-  }
+  if (status < GP_OK) refuse(asked, status);
 }
 
 std::optional<double> number(std::string_view text) {
@@ -86,17 +82,15 @@ std::optional<double> number(std::string_view text) {
   return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-// "1/125", "5/10", "30"; nothing for Bulb.
+// The shutter time that the text names ("1/125", "5/10", "30"), in seconds; nothing for "Bulb".
 std::optional<double> seconds_from(std::string_view text) {
   const std::size_t slash = text.find('/');
-  if (slash == std::string_view::npos) {
-    return number(text);
-  }
+  if (slash == std::string_view::npos) return number(text);
   const auto above = number(text.substr(0, slash)), below = number(text.substr(slash + 1));
   return above && below && *below > 0 ? std::optional(*above / *below) : std::nullopt;
 }
 
-// "f/5.6"
+// The f-number that the text names ("f/5.6").
 std::optional<double> f_number_from(std::string_view text) {
   return number(text.starts_with("f/") ? text.substr(2) : text);
 }
@@ -133,20 +127,17 @@ class GphotoCamera final : public Camera {
     std::vector<double> times_s;
     for (const std::string& choice : choices_of("shutterspeed")) {
       const auto time_s = seconds_from(choice);
-      if (time_s && *time_s >= setup_.shortest_shutter_s * (1 - 1e-6)) {
-        times_s.push_back(*time_s);
-      }
+      if (time_s && *time_s >= setup_.shortest_shutter_s * (1 - 1e-6)) times_s.push_back(*time_s);
     }
     std::ranges::sort(times_s);
     times_s.erase(std::unique(times_s.begin(), times_s.end(), same_number), times_s.end());
     return times_s;
   }
 
-  ExposureSettings configure(const ExposureSettings& wanted) override {
+  CameraSettings configure(const CameraSettings& wanted) override {
     const double exposure_s = nearest_shutter_s(shutter_times_s(), wanted.exposure_s);
-    if (!std::isfinite(wanted.f_number) || wanted.f_number <= 0) {
+    if (!std::isfinite(wanted.f_number) || wanted.f_number <= 0)
       throw std::runtime_error("f/" + std::to_string(wanted.f_number) + " was asked; it must be a positive number");
-    }
     choose("iso", wanted.iso, number);
     choose("f-number", wanted.f_number, f_number_from);
     choose("shutterspeed", exposure_s, seconds_from);
@@ -155,16 +146,12 @@ class GphotoCamera final : public Camera {
   }
 
   Picture capture() override {
-    if (!configured_) {
-      configured_ = settings();
-    }
+    if (!configured_) configured_ = settings();
     for (int tries = 0; tries < kMostTries; ++tries) {
       drain();
       Picture picture = take();
       require_kept_settings(picture.settings);
-      if (remember(picture.bytes)) {
-        return picture;
-      }
+      if (remember(picture.bytes)) return picture;
     }
     throw std::runtime_error("the camera delivered a picture that it had delivered before, " +
                              std::to_string(kMostTries) +
@@ -186,21 +173,18 @@ class GphotoCamera final : public Camera {
     choose_model();
     choose_port();
     const int status = gp_camera_init(handle_.get(), context_.get());
-    if (status == GP_ERROR) {  // on the network nothing more is said
+    if (status == GP_ERROR)  // on the network the library says no more than this
       throw CameraLost("the camera at " + setup_.port + " is there and turns the program away: " + kHeldByAnother);
-    }
-    // The library's word for an address on USB at which nothing is.
+    // The library answers GP_ERROR_FILE_NOT_FOUND when there is nothing at a USB address.
     check("be connected at " + setup_.port, status == GP_ERROR_FILE_NOT_FOUND ? GP_ERROR_IO_USB_FIND : status);
-    // Some answer properly only after this question.
+    // Some cameras answer properly only after this question.
     CameraText summary{};
     check("tell about itself", gp_camera_get_summary(handle_.get(), &summary, context_.get()));
   }
 
-  // On the network nobody says which camera it is; over USB the library sees it.
+  // Over USB the library sees which camera it is; on the network it has to be told the driver.
   void choose_model() {
-    if (!setup_.port.starts_with("ptpip:")) {
-      return;
-    }
+    if (!setup_.port.starts_with("ptpip:")) return;
     CameraAbilitiesList* list = nullptr;
     check("be prepared", gp_abilities_list_new(&list));
     const std::unique_ptr<CameraAbilitiesList, int (*)(CameraAbilitiesList*)> owner(list, gp_abilities_list_free);
@@ -213,9 +197,7 @@ class GphotoCamera final : public Camera {
   }
 
   void choose_port() {
-    if (setup_.port == "usb:") {
-      return;  // the only one there is
-    }
+    if (setup_.port == "usb:") return;  // the only one there is
     GPPortInfoList* list = nullptr;
     check("be prepared", gp_port_info_list_new(&list));
     const std::unique_ptr<GPPortInfoList, int (*)(GPPortInfoList*)> owner(list, gp_port_info_list_free);
@@ -259,8 +241,8 @@ class GphotoCamera final : public Camera {
     check("set its " + name + " to " + value, status);
   }
 
-  // The choice whose number is nearest to the wanted one in proportion; read back, because a setting that was accepted
-  // is not always done.
+  // Sets the choice whose number is nearest to the wanted one in proportion, and reads it back, because the camera does
+  // not always do what it accepts.
   template <typename Parse>
   void choose(const std::string& name, double wanted, const Parse& parse) const {
     std::string best;
@@ -277,9 +259,7 @@ class GphotoCamera final : public Camera {
                                " and does not offer it; set its dial to M and switch ISO AUTO off");
     }
     const double chosen = *parse(best);
-    if (const auto now = parse(text_of(name)); now && same_number(*now, chosen)) {
-      return;
-    }
+    if (const auto now = parse(text_of(name)); now && same_number(*now, chosen)) return;
     set_text(name, best);
     const std::string found = text_of(name);
     if (const auto now = parse(found); !now || !same_number(*now, chosen)) {
@@ -288,22 +268,22 @@ class GphotoCamera final : public Camera {
     }
   }
 
-  ExposureSettings settings() const {
+  CameraSettings settings() const {
     const auto exposure_s = seconds_from(text_of("shutterspeed"));
     const auto iso = number(text_of("iso"));
     const auto aperture = f_number_from(text_of("f-number"));
     if (!exposure_s || !iso || !aperture) {
-      throw std::runtime_error("the camera was asked for its exposure and answered shutter " +
-                               text_of("shutterspeed") + ", ISO " + text_of("iso") + ", aperture " +
-                               text_of("f-number") + "; set its dial to M, switch ISO AUTO off, and check the lens");
+      throw std::runtime_error("the camera was asked for its exposure and answered shutter " + text_of("shutterspeed") +
+                               ", ISO " + text_of("iso") + ", aperture " + text_of("f-number") +
+                               "; set its dial to M, switch ISO AUTO off, and check the lens");
     }
     return {.exposure_s = *exposure_s, .iso = static_cast<int>(std::lround(*iso)), .f_number = *aperture};
   }
 
   void require_text(const std::string& name, const std::string& wanted, const std::string& where) const {
     if (const std::string found = text_of(name); found != wanted) {
-      throw std::runtime_error("the camera's " + name + " is \"" + found + "\" and has to be \"" + wanted +
-                               "\"; set " + where);
+      throw std::runtime_error("the camera's " + name + " is \"" + found + "\" and has to be \"" + wanted + "\"; set " +
+                               where);
     }
   }
 
@@ -326,19 +306,15 @@ class GphotoCamera final : public Camera {
     CameraStorageInformation* stores = nullptr;
     int count = 0;
     const int status = gp_camera_get_storageinfo(handle_.get(), &stores, &count, context_.get());
-    if (status == GP_ERROR_NOT_SUPPORTED) {
-      return;
-    }
+    if (status == GP_ERROR_NOT_SUPPORTED) return;
     check("tell about its card", status);
     const std::unique_ptr<CameraStorageInformation, void (*)(void*)> owner(stores, std::free);
-    for (int i = 0; i < count; ++i) {
-      if ((stores[i].fields & GP_STORAGEINFO_FREESPACEKBYTES) != 0 && stores[i].freekbytes == 0) {
+    for (int i = 0; i < count; ++i)
+      if ((stores[i].fields & GP_STORAGEINFO_FREESPACEKBYTES) != 0 && stores[i].freekbytes == 0)
         throw std::runtime_error("the camera's card is full; empty the card, then resume");
-      }
-    }
   }
 
-  // Takes out of the camera what nobody asked for: what waits there would come in the place of the next picture.
+  // Takes pictures that nobody asked for out of the camera: one that waits there would come in place of the next one.
   void drain() {
     for (int events = 0; events < kMostDrained; ++events) {
       CameraEventType type = GP_EVENT_UNKNOWN;
@@ -362,14 +338,14 @@ class GphotoCamera final : public Camera {
     CameraFilePath path{};
     const int status = gp_camera_capture(handle_.get(), GP_CAPTURE_IMAGE, &path, context_.get());
     if (status < GP_OK) {
-      require_battery();  // either says more than the library does
+      require_battery();  // this message and the next say more than the library's
       require_space();
       refuse("take a picture", status);
     }
     picture.bytes = download(path);
     const std::string_view name = path.name;
     picture.extension = name.substr(name.rfind('.') == std::string_view::npos ? name.size() : name.rfind('.') + 1);
-    picture.settings = settings();  // fresh: taking the picture asked the camera for everything
+    picture.settings = settings();  // up to date: taking the picture made the library ask for all settings again
     if (picture.bytes.empty() || picture.extension != "arw") {
       throw std::runtime_error("the camera was to deliver a raw picture and delivered \"" + std::string(name) +
                                "\" of " + std::to_string(picture.bytes.size()) +
@@ -398,11 +374,11 @@ class GphotoCamera final : public Camera {
         gp_camera_file_get(handle_.get(), path.folder, path.name, GP_FILE_TYPE_NORMAL, file.get(), context_.get());
     check("deliver " + std::string(path.name), status);
     std::vector<std::byte> bytes = bytes_of(file, path.name);
-    gp_camera_file_delete(handle_.get(), path.folder, path.name, context_.get());  // only kept in memory there
+    gp_camera_file_delete(handle_.get(), path.folder, path.name, context_.get());  // from the camera's memory
     return bytes;
   }
 
-  void require_kept_settings(const ExposureSettings& found) const {
+  void require_kept_settings(const CameraSettings& found) const {
     if (!same_number(found.exposure_s, configured_->exposure_s) || found.iso != configured_->iso ||
         !same_number(found.f_number, configured_->f_number)) {
       throw std::runtime_error("the camera's exposure was changed since it was set (shutter " +
@@ -411,24 +387,19 @@ class GphotoCamera final : public Camera {
     }
   }
 
-  // False when the same bytes came before. Equal hashes of different pictures would cost a picture, no more.
+  // False when the same bytes came before. Should two different pictures have one hash, one picture is taken again.
   bool remember(const std::vector<std::byte>& bytes) {
-    const std::size_t hash =
-        std::hash<std::string_view>{}({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    if (std::ranges::find(delivered_, hash) != delivered_.end()) {
-      return false;
-    }
+    const std::size_t hash = std::hash<std::string_view>{}({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    if (std::ranges::find(delivered_, hash) != delivered_.end()) return false;
     delivered_.push_back(hash);
-    if (delivered_.size() > kRemembered) {
-      delivered_.pop_front();
-    }
+    if (delivered_.size() > kRemembered) delivered_.pop_front();
     return true;
   }
 
   GphotoSetup setup_;
   Context context_;
   Handle handle_;
-  std::optional<ExposureSettings> configured_;
+  std::optional<CameraSettings> configured_;
   std::deque<std::size_t> delivered_;
 };
 

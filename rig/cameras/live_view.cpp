@@ -9,9 +9,7 @@ namespace rig {
 
 std::string live_view_jpeg(const cv::Mat3f& radiance) {
   float brightest = 1e-6F;
-  for (const cv::Vec3f& pixel : radiance) {
-    brightest = std::max({brightest, pixel[0], pixel[1], pixel[2]});
-  }
+  for (const cv::Vec3f& pixel : radiance) brightest = std::max({brightest, pixel[0], pixel[1], pixel[2]});
   cv::Mat3b shown(radiance.size());
   std::transform(radiance.begin(), radiance.end(), shown.begin(), [&](const cv::Vec3f& pixel) {
     const auto tone = [&](float value) {

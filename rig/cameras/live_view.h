@@ -1,4 +1,4 @@
-// A small JPEG of what stands on the simulated bench, as a camera's display shows it.
+// The simulated camera's live view: a small JPEG of what stands on the bench.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -6,7 +6,7 @@
 
 namespace rig {
 
-// `radiance`: RGB, any scale; the brightest becomes white. Bytes of a JPEG file.
+// The bytes of a JPEG file of `radiance` (linear RGB, any scale; the brightest becomes white).
 std::string live_view_jpeg(const cv::Mat3f& radiance);
 
 }  // namespace rig

@@ -8,17 +8,13 @@ PtpWriter& PtpWriter::bytes(std::string_view raw) {
 }
 
 PtpWriter& PtpWriter::text(std::string_view ascii) {
-  if (ascii.empty()) {
-    return put(std::uint8_t{0});
-  }
+  if (ascii.empty()) return put(std::uint8_t{0});
   put(static_cast<std::uint8_t>(ascii.size() + 1));
   return wide_text(ascii);
 }
 
 PtpWriter& PtpWriter::wide_text(std::string_view ascii) {
-  for (const char c : ascii) {
-    put(static_cast<std::uint16_t>(static_cast<unsigned char>(c)));
-  }
+  for (const char c : ascii) put(static_cast<std::uint16_t>(static_cast<unsigned char>(c)));
   return put(std::uint16_t{0});
 }
 

@@ -1,4 +1,4 @@
-// A line that carries bytes to and from a motor controller: a serial port, a pseudo-terminal, or no wire at all.
+// A line that carries bytes to and from a motor controller: a serial port, a pseudo-terminal, or memory alone.
 #pragma once
 
 #include <stdexcept>
@@ -7,7 +7,7 @@
 
 namespace rig {
 
-// The other end is gone: plug pulled, power off, port closed. Never used for a device that is only silent.
+// The other end is gone (plug pulled, power off, port closed). Never thrown for a device that is only silent.
 struct Unplugged : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -16,8 +16,8 @@ struct Unplugged : std::runtime_error {
 class ByteLine {
  public:
   virtual ~ByteLine() = default;
-  virtual std::string read(double timeout_s) = 0;  // what has come, as soon as anything has; empty: nothing came
-  virtual void write(std::string_view bytes) = 0;  // all or nothing, at once; from any thread, while another reads
+  virtual std::string read(double timeout_s) = 0;  // the bytes that came, as soon as any are there; empty: none in time
+  virtual void write(std::string_view bytes) = 0;  // writes all bytes or throws, without waiting; any thread may call
 };
 
 }  // namespace rig

@@ -1,25 +1,26 @@
-// The two kinds of controller that are spoken to, each on a line that is open.
+// Connections to the two kinds of motor controller, GRBL and Zaber, each on an open line.
 //
-// Connecting resets the controller, asks what it is and compares its set-up with what the rig file says.
+// Connecting ends any motion (GRBL is reset), asks the controller what it is and compares its set-up with the rig file.
 #pragma once
 
 #include <memory>
 
-#include "rig/clock.h"
+#include "rig/devices/clock.h"
 #include "rig/turntables/byte_line.h"
 #include "rig/turntables/motion_controller.h"
 
 namespace rig {
 
 struct ControllerSetup {
-  double steps_per_deg = 0;  // as the rig file says; the controller's own must agree
+  double steps_per_deg = 0;  // from the rig file; the controller's own value must agree
   HomeBy home_by = HomeBy::here;
-  double reply_timeout_s = 2;            // silence for so long is an error
-  double banner_timeout_s = 5;           // boards that are reset by opening their port take two seconds to start
-  int zaber_device = 1, zaber_axis = 1;  // of a chain of stages on one line
-  int zaber_resolution = 64;             // microsteps per step that `steps_per_deg` is meant for
+  double reply_timeout_s = 2;            // a silence of this length is an error
+  double banner_timeout_s = 5;           // for GRBL's greeting; boards reset by opening their port start in two seconds
+  int zaber_device = 1, zaber_axis = 1;  // which stage in a chain of stages on one line
+  int zaber_resolution = 64;             // microsteps per full step for which `steps_per_deg` holds
 };
 
+// Errors: those of MotionController; std::runtime_error when the set-up differs, saying which setting to change.
 std::unique_ptr<MotionController> connect_grbl(std::shared_ptr<ByteLine> line, Clock& clock,
                                                const ControllerSetup& setup);
 std::unique_ptr<MotionController> connect_zaber(std::shared_ptr<ByteLine> line, Clock& clock,

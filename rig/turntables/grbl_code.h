@@ -1,4 +1,4 @@
-// A line of G-code as GRBL 1.1 takes it apart, for the firmware that is simulated: one axis, X, in degrees.
+// The parser of G-code lines for the simulated GRBL 1.1 firmware: one axis, X, in degrees.
 #pragma once
 
 #include <optional>
@@ -7,7 +7,7 @@
 
 namespace rig {
 
-// What the firmware answers with ("error:9").
+// GRBL's status codes, as in its answer "error:9".
 enum GrblStatusCode {
   kExpectedLetter = 1,
   kBadNumber = 2,
@@ -23,7 +23,7 @@ enum GrblStatusCode {
   kAxisMissing = 26
 };
 
-// What one line leaves behind for the next ones.
+// The modal state that one line leaves to the next ones.
 struct GrblModes {
   bool incremental = false, rapid = true;
   double feed_deg_min = 0;
@@ -37,7 +37,8 @@ struct GrblCode {
   double feed_deg_min = 0;
 };
 
-// Changes `modes`; the line of a jog leaves less behind. Otherwise the status code of its error.
+// The parsed line, or the status code of its error. Updates `modes`; the line of a jog leaves distance mode and feed as
+// they were.
 std::variant<GrblCode, GrblStatusCode> parse_grbl_code(const std::string& line, bool jog, GrblModes& modes);
 
 }  // namespace rig

@@ -1,6 +1,6 @@
 // GRBL 1.1 as a motion controller. Moves are "G53 G0": absolute in machine coordinates whatever the modal state is, so
 // the position survives the reset that ends a stop (a work offset would not). The "ok" of a move only says that it was
-// planned; a late or repeated one can therefore not be mistaken for anything: what counts is the position reported.
+// planned, so nothing is concluded from it: only the reported position tells whether the platform has arrived.
 
 #include <algorithm>
 #include <array>
@@ -21,11 +21,11 @@ namespace rig {
 namespace {
 
 constexpr int kMostTries = 4;        // of a question: asked once and repeated three times
-constexpr double kQuietS = 0.1;      // nothing more is coming
+constexpr double kQuietS = 0.1;      // a silence of this length: nothing more is coming
 constexpr double kHoldTimeoutS = 3;  // from the hold to standing still
-constexpr double kLookS = 0.02;      // for an answer that may come much later
+constexpr double kLookS = 0.02;      // the wait per look for homing's answer, which may come much later
 constexpr double kPollS = 0.05;
-constexpr double kSameRatio = 1e-4;  // steps per degree as two people write them
+constexpr double kSameRatio = 1e-4;  // rounding when steps per degree are written down in two places
 constexpr char kReset = '\x18';
 
 using Take = std::function<bool(const GrblReply&)>;
@@ -52,12 +52,10 @@ class GrblController final : public MotionController {
   ControllerIdentity identity() override { return identity_; }
 
   void start_home() override {
-    on_guard_ = false;  // an alarm that is to be cleared is no news
+    on_guard_ = false;  // an alarm that homing will clear is no error
     const bool locked = ask_status().state == GrblState::alarm;
     if (setup_.home_by == HomeBy::here) {
-      if (locked) {
-        ask("$X");
-      }
+      if (locked) ask("$X");
       on_guard_ = true;
       return;
     }
@@ -75,51 +73,45 @@ class GrblController final : public MotionController {
   }
 
   MotionStatus status() override {
-    if (homing_) {
-      return homing_status();
-    }
+    if (homing_) return homing_status();
     const GrblStatus status = ask_status();
     return {stopped_ ? Motion::held : motion_of(status.state),
             std::llround(position_deg(status) * identity_.steps_per_deg)};
   }
 
-  // A hold keeps the position; while it looks for its switch only a reset is heard.
+  // A feed hold, which keeps the position; during homing a reset, because then the firmware obeys nothing else.
   void stop() override {
     stopped_ = true;
     write_stop();
   }
 
   void clear_stop() override {
-    stopped_ = false;  // one that comes from now on has to be cleared, too
-    if (homing_.exchange(false)) {
+    stopped_ = false;  // a stop() from now on needs another clear_stop()
+    if (homing_.exchange(false))
       throw PositionLost("the turntable was stopped while it looked for its home; home it again");
-    }
     const double until_s = clock_.monotonic_s() + kHoldTimeoutS;
     for (Motion motion = Motion::moving; motion == Motion::moving;) {
       motion = motion_of(ask_status().state);
       if (motion == Motion::moving) {
         if (clock_.monotonic_s() > until_s) {
           line_->write(std::string_view(&kReset, 1));
-          throw PositionLost(
-              "the turntable did not stop when asked and was switched off the hard way; home it again");
+          throw PositionLost("the turntable did not stop when asked and was switched off the hard way; home it again");
         }
         line_->write("!");
         clock_.sleep_s(kPollS);
       }
     }
-    reset();                        // drops what was left of the move
-    motion_of(ask_status().state);  // an alarm says that it was still moving
+    reset();                        // drops the rest of the move
+    motion_of(ask_status().state);  // throws on an alarm: the motor was still moving at the reset
   }
 
  private:
   void write_stop() { line_->write(homing_ ? std::string_view("\x18") : std::string_view("!\x85")); }
 
-  // A stop that another thread wrote just before is said again: it may have come too early for this command.
+  // A stop that another thread wrote just before is written again, because it may have come before this command.
   void begin(std::string_view command) {
     line_->write(command);
-    if (stopped_) {
-      write_stop();
-    }
+    if (stopped_) write_stop();
   }
 
   bool listen(double timeout_s, const Take& take) {
@@ -137,14 +129,10 @@ class GrblController final : public MotionController {
       noise_ = noise->text;
     } else if (const auto* alarm = std::get_if<GrblAlarm>(&reply)) {
       alarm_code_ = alarm->code;
-      if (on_guard_) {
-        throw_alarm();
-      }
+      if (on_guard_) throw_alarm();
     } else if (is<GrblBanner>(reply)) {
       alarm_code_.reset();
-      if (!on_guard_) {
-        return;
-      }
+      if (!on_guard_) return;
       throw PositionLost(
           "the turntable's controller started anew in the middle of its work (its power or USB cable?) and no longer "
           "knows where the platform is; check its supply, then home it");
@@ -155,15 +143,13 @@ class GrblController final : public MotionController {
     throw PositionLost("the turntable reports " + grbl_alarm_words(*alarm_code_) + "; then home it");
   }
 
-  // After some alarms nothing is answered any more until a reset.
+  // Throws the alarm when there was one, because after some alarms GRBL answers nothing until a reset; else NoReply.
   [[noreturn]] void throw_no_reply(const std::string& message) const {
-    if (alarm_code_) {
-      throw_alarm();
-    }
+    if (alarm_code_) throw_alarm();
     throw NoReply(message);
   }
 
-  // Ends motion, clears alarms; the position is kept when it stood still.
+  // Ends any motion and clears alarms. GRBL keeps its position if the motor stood still.
   void reset() {
     const bool guarded = std::exchange(on_guard_, false);
     frames_.clear();
@@ -171,12 +157,10 @@ class GrblController final : public MotionController {
     std::string banner;
     for (int tries = 0; tries < kMostTries && banner.empty(); ++tries) {
       identity_.repeated += tries > 0;
-      // A line beside it makes a device that is none of this kind say something, too.
+      // The second try adds a line, so that a device of another kind says something, too.
       line_->write(tries == 0 ? std::string(1, kReset) : std::string(1, kReset) + "\n$I\n");
       listen(setup_.banner_timeout_s / kMostTries, [&](const GrblReply& reply) {
-        if (const auto* found = std::get_if<GrblBanner>(&reply)) {
-          banner = found->text;
-        }
+        if (const auto* found = std::get_if<GrblBanner>(&reply)) banner = found->text;
         return !banner.empty();
       });
     }
@@ -188,18 +172,16 @@ class GrblController final : public MotionController {
                               "\", which is not what GRBL says; choose the turntable's port in the rig file "
                               "(\"threadstation devices\" lists the ports) and check its \"baud\"");
     }
-    if (identity_.firmware.empty()) {
-      identity_.firmware = banner;
-    }
+    if (identity_.firmware.empty()) identity_.firmware = banner;
     listen(kQuietS, [](const GrblReply&) { return false; });
     on_guard_ = guarded;
   }
 
-  // Sends a line and waits for its ok; returns everything that came before it.
+  // Sends a line and waits for its ok; returns every reply up to and with it.
   std::vector<GrblReply> ask(const std::string& command) {
     for (int tries = 0; tries < kMostTries; ++tries) {
       identity_.repeated += tries > 0;
-      listen(0, [](const GrblReply&) { return false; });  // what came late belongs to what was asked before
+      listen(0, [](const GrblReply&) { return false; });  // drops late answers to earlier questions
       std::vector<GrblReply> replies;
       line_->write(command + "\n");
       const bool answered = listen(setup_.reply_timeout_s, [&](const GrblReply& reply) {
@@ -211,9 +193,7 @@ class GrblController final : public MotionController {
         throw std::runtime_error("the turntable was asked \"" + command + "\" and answered " +
                                  grbl_error_words(error->code));
       }
-      if (answered && error == nullptr) {
-        return replies;
-      }
+      if (answered && error == nullptr) return replies;
     }
     throw_no_reply("the turntable was asked \"" + command + "\" " + std::to_string(kMostTries) +
                    " times and did not answer; check its cable and its power, then home it");
@@ -221,26 +201,22 @@ class GrblController final : public MotionController {
 
   void identify() {
     for (int tries = 0; tries < kMostTries; ++tries) {
-      for (const GrblReply& reply : ask("$I")) {
-        if (const auto* message = std::get_if<GrblMessage>(&reply); message && message->text.starts_with("VER:")) {
+      for (const GrblReply& reply : ask("$I"))
+        if (const auto* message = std::get_if<GrblMessage>(&reply); message && message->text.starts_with("VER:"))
           return;
-        }
-      }
     }
     throw std::runtime_error(
         "the device on the turntable's port started like GRBL and did not say its version; it "
         "needs GRBL 1.1, grblHAL or FluidNC");
   }
 
-  // A setting that got lost on the wire is asked for again; one that firmware does not have stays away.
+  // Reads the settings, again if $100 got lost on the wire. The others are checked only if the firmware has them.
   void check_settings() {
     std::map<int, double> found;
     for (int tries = 0; tries < kMostTries && !found.contains(100); ++tries) {
-      for (const GrblReply& reply : ask("$$")) {
-        if (const auto* setting = std::get_if<GrblSetting>(&reply)) {
+      for (const GrblReply& reply : ask("$$"))
+        if (const auto* setting = std::get_if<GrblSetting>(&reply))
           found.insert_or_assign(setting->number, setting->value);
-        }
-      }
     }
     if (!found.contains(100)) {
       throw std::runtime_error(
@@ -259,43 +235,35 @@ class GrblController final : public MotionController {
     require(found, 13, 0, "reports in inches ($13=1); set $13=0");
     require(found, 20, 0, "has soft limits ($20=1), a platform turns endlessly; set $20=0");
     require(found, 32, 0, "is in laser mode ($32=1); set $32=0");
-    if (setup_.home_by == HomeBy::home_switch) {
+    if (setup_.home_by == HomeBy::home_switch)
       require(found, 22, 1, "has homing switched off ($22=0); set $22=1, or \"home\": \"here\" in the rig file");
-    }
-    // Other firmware has other meanings for $1; there its own manual says how the motor is kept powered.
-    if (identity_.firmware.starts_with("Grbl 1.1")) {
+    // In other firmware $1 means something else; its own manual says how to keep the motor powered.
+    if (identity_.firmware.starts_with("Grbl 1.1"))
       require(found, 1, 255, "lets its motor go between moves ($1), and the platform would drift; set $1=255");
-    }
   }
 
   static void require(const std::map<int, double>& found, int number, double wanted, const std::string& problem) {
     const auto setting = found.find(number);
-    if (setting != found.end() && setting->second != wanted) {
-      throw std::runtime_error("the turntable " + problem);
-    }
+    if (setting != found.end() && setting->second != wanted) throw std::runtime_error("the turntable " + problem);
   }
 
   GrblStatus ask_status() {
     std::optional<GrblStatus> found;
     for (int tries = 0; tries < kMostTries; ++tries) {
       identity_.repeated += tries > 0;
-      listen(0, [](const GrblReply&) { return false; });  // an answer that comes late says where it was
+      listen(0, [](const GrblReply&) { return false; });  // drops late answers, which tell an earlier position
       line_->write("?");
       std::optional<GrblError> refused;
       listen(setup_.reply_timeout_s / kMostTries, [&](const GrblReply& reply) {
-        if (const auto* status = std::get_if<GrblStatus>(&reply)) {
+        if (const auto* status = std::get_if<GrblStatus>(&reply))
           found = *status;
-        } else if (const auto* error = std::get_if<GrblError>(&reply); error && !is_garbled_command(error->code)) {
+        else if (const auto* error = std::get_if<GrblError>(&reply); error && !is_garbled_command(error->code))
           refused = *error;
-        }
         return found.has_value() || refused.has_value();
       });
-      if (refused && on_guard_) {
+      if (refused && on_guard_)
         throw std::runtime_error("the turntable was to turn and answered " + grbl_error_words(refused->code));
-      }
-      if (found && (found->machine_deg || work_offset_deg_)) {
-        return *found;
-      }
+      if (found && (found->machine_deg || work_offset_deg_)) return *found;
     }
     throw_no_reply(
         "the turntable was asked where it is and did not answer; its cable may be loose or its power off: check "
@@ -325,12 +293,10 @@ class GrblController final : public MotionController {
     }
   }
 
-  // While it looks for its switch the firmware answers late or not at all; the ok comes at the end. Should that one be
-  // lost, standing idle after having been seen at it says the same.
+  // During homing the firmware answers late or not at all; its ok comes at the end. Should the ok be lost, a report of
+  // "idle" after one of "home" says the same.
   MotionStatus homing_status() {
-    if (stopped_) {
-      return {Motion::held, 0};
-    }
+    if (stopped_) return {Motion::held, 0};
     bool done = false;
     std::optional<GrblError> refused;
     std::optional<GrblStatus> seen;
@@ -363,9 +329,9 @@ class GrblController final : public MotionController {
   ControllerIdentity identity_;
   LineFrames frames_;
   std::optional<double> work_offset_deg_;
-  std::string noise_;              // the last of it
+  std::string noise_;              // the last noise heard
   std::optional<int> alarm_code_;  // since the last reset
-  bool on_guard_ = false;          // an alarm or a banner now means that the position is lost
+  bool on_guard_ = false;          // true: an alarm or a banner means that the position is lost
   bool home_seen_ = false;
   std::atomic<bool> homing_ = false, stopped_ = false;  // stop() comes from other threads
 };

@@ -15,9 +15,7 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   for (std::size_t begin = 0;;) {
     const std::size_t end = text.find(separator, begin);
     parts.push_back(text.substr(begin, end - begin));
-    if (end == std::string_view::npos) {
-      return parts;
-    }
+    if (end == std::string_view::npos) return parts;
     begin = end + 1;
   }
 }
@@ -39,35 +37,29 @@ std::optional<GrblState> state_from(std::string_view word) {
                                                                                    {"Sleep", GrblState::sleep},
                                                                                    {"Tool", GrblState::door},
                                                                                    {"Cycle", GrblState::run}}};
-  if (word.starts_with("Alarm:") && number_from<int>(word.substr(6))) {
-    return GrblState::alarm;  // grblHAL adds the code
-  }
+  if (word.starts_with("Alarm:") && number_from<int>(word.substr(6))) return GrblState::alarm;  // grblHAL adds the code
   const auto found = std::ranges::find(kStates, word, [](const auto& entry) { return entry.first; });
   return found == kStates.end() ? std::nullopt : std::optional(found->second);
 }
 
-// "40.000,0.000,0.000": the first axis. Exactly three decimals each, so that a lost character is seen.
+// The first axis of "40.000,0.000,0.000". Each number must have exactly three decimals, so that a lost character shows.
 std::optional<double> first_axis(std::string_view text) {
   const std::vector<std::string_view> axes = split(text, ',');
   std::optional<double> first;
   for (const std::string_view axis : axes) {
     const std::size_t point = axis.find('.');
     const auto value = number_from<double>(axis);
-    if (!value || point == std::string_view::npos || axis.size() - point != 4 || axes.size() < 3) {
-      return std::nullopt;
-    }
+    if (!value || point == std::string_view::npos || axis.size() - point != 4 || axes.size() < 3) return std::nullopt;
     first = first ? first : value;
   }
   return first;
 }
 
-// `inside`: what stands between < and >.
+// Reads a status report from the text between < and >.
 std::optional<GrblStatus> status_from(std::string_view inside) {
   const std::vector<std::string_view> fields = split(inside, '|');
   const auto state = state_from(fields.front());
-  if (!state) {
-    return std::nullopt;
-  }
+  if (!state) return std::nullopt;
   GrblStatus status{.state = *state, .machine_deg = {}, .work_deg = {}, .work_offset_deg = {}};
   const std::array<std::pair<std::string_view, std::optional<double>*>, 3> positions{
       {{"MPos:", &status.machine_deg}, {"WPos:", &status.work_deg}, {"WCO:", &status.work_offset_deg}}};
@@ -75,31 +67,23 @@ std::optional<GrblStatus> status_from(std::string_view inside) {
     for (const auto& [name, value] : positions) {
       if (field.starts_with(name)) {
         *value = first_axis(field.substr(name.size()));
-        if (!*value) {
-          return std::nullopt;
-        }
+        if (!*value) return std::nullopt;
       }
     }
   }
-  if (status.machine_deg.has_value() == status.work_deg.has_value()) {
-    return std::nullopt;
-  }
+  if (status.machine_deg.has_value() == status.work_deg.has_value()) return std::nullopt;
   return status;
 }
 
 std::optional<GrblSetting> setting_from(std::string_view line) {
   const std::size_t equals = line.find('=');
-  if (!line.starts_with('$') || equals == std::string_view::npos) {
-    return std::nullopt;
-  }
+  if (!line.starts_with('$') || equals == std::string_view::npos) return std::nullopt;
   const auto number = number_from<int>(line.substr(1, equals - 1));
-  // grblHAL and the verbose builds add words in brackets behind a blank.
+  // grblHAL and verbose builds of GRBL add words in brackets behind a blank.
   std::string_view text = line.substr(equals + 1);
   text = text.substr(0, text.find(' '));
   const auto value = number_from<double>(text);
-  if (!number || *number < 0 || !value) {
-    return std::nullopt;
-  }
+  if (!number || *number < 0 || !value) return std::nullopt;
   return GrblSetting{*number, *value};
 }
 
@@ -114,33 +98,23 @@ GrblReply parse_grbl_line(std::string_view line) {
   if (open != std::string_view::npos) {
     const std::size_t close = line.find('>', open);
     if (close != std::string_view::npos) {
-      if (const auto status = status_from(line.substr(open + 1, close - open - 1))) {
-        return *status;
-      }
+      if (const auto status = status_from(line.substr(open + 1, close - open - 1))) return *status;
     }
     return GrblNoise{std::string(line)};
   }
-  if (line == "ok") {
-    return GrblOk{};
-  }
+  if (line == "ok") return GrblOk{};
   if (line.starts_with("error:") && is_plain(line)) {
     const std::string_view rest = line.substr(6);
     return GrblError{number_from<int>(rest).value_or(0), std::string(rest)};
   }
   if (line.starts_with("ALARM:")) {
-    if (const auto code = number_from<int>(line.substr(6)); code && *code > 0) {
-      return GrblAlarm{*code};
-    }
+    if (const auto code = number_from<int>(line.substr(6)); code && *code > 0) return GrblAlarm{*code};
   }
-  if ((line.starts_with("Grbl ") || line.starts_with("GrblHAL ")) && line.ends_with(']') && is_plain(line)) {
+  if ((line.starts_with("Grbl ") || line.starts_with("GrblHAL ")) && line.ends_with(']') && is_plain(line))
     return GrblBanner{std::string(line)};
-  }
-  if (line.starts_with('[') && line.ends_with(']') && is_plain(line)) {
+  if (line.starts_with('[') && line.ends_with(']') && is_plain(line))
     return GrblMessage{std::string(line.substr(1, line.size() - 2))};
-  }
-  if (const auto setting = setting_from(line)) {
-    return *setting;
-  }
+  if (const auto setting = setting_from(line)) return *setting;
   return GrblNoise{std::string(line)};
 }
 

@@ -1,6 +1,7 @@
-// One line that GRBL 1.1 (or grblHAL, FluidNC) sends, read strictly: what is not exactly of the grammar is noise.
+// The parser of one line sent by GRBL 1.1 (or grblHAL, FluidNC). It is strict: a line that does not follow the grammar
+// exactly is noise.
 //
-// Angles are in the firmware's own unit, degrees of its first axis (it calls them mm).
+// Angles are in degrees of the firmware's first axis (the firmware calls them mm).
 #pragma once
 
 #include <optional>
@@ -25,14 +26,15 @@ struct GrblBanner {
 };
 struct GrblStatus {
   GrblState state = GrblState::idle;
-  std::optional<double> machine_deg, work_deg, work_offset_deg;  // one of the first two; the third now and then
+  // A report has either machine or work position; the offset (work = machine - offset) is in some reports only.
+  std::optional<double> machine_deg, work_deg, work_offset_deg;
 };
 struct GrblSetting {
   int number = 0;
   double value = 0;
 };
 struct GrblMessage {
-  std::string text;  // between the brackets: "VER:1.1h.20190830:"
+  std::string text;  // what stands between the brackets: "VER:1.1h.20190830:"
 };
 struct GrblNoise {
   std::string text;
@@ -40,10 +42,11 @@ struct GrblNoise {
 using GrblReply =
     std::variant<GrblOk, GrblError, GrblAlarm, GrblBanner, GrblStatus, GrblSetting, GrblMessage, GrblNoise>;
 
-// A status report is found inside a line too, because its brackets are unmistakable when a line end was lost; an "ok" never.
+// Reads one line. When a line end was lost, a status report is still found inside the line, because its brackets cannot
+// be mistaken; an "ok" is taken only when it is the whole line.
 GrblReply parse_grbl_line(std::string_view line);
 
-// What an alarm or error means to the person at the turntable, and what to do about it.
+// The words that tell the person at the turntable what an alarm or error means and what to do about it.
 std::string grbl_alarm_words(int code);
 std::string grbl_error_words(int code);
 

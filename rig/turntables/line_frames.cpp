@@ -5,7 +5,7 @@
 namespace rig {
 namespace {
 
-constexpr int kMostFrames = 4000;  // while one answer is awaited
+constexpr int kMostFrames = 4000;  // lines and reads while one answer is awaited
 
 }  // namespace
 
@@ -13,9 +13,7 @@ void LineFrames::add(std::string_view bytes) {
   waiting_.append(bytes);
   const std::size_t last_end = waiting_.find_last_of("\r\n");
   const std::size_t begin = last_end == std::string::npos ? 0 : last_end + 1;
-  if (waiting_.size() - begin > kLongest) {
-    waiting_.erase(begin, waiting_.size() - begin - kLongest);
-  }
+  if (waiting_.size() - begin > kLongest) waiting_.erase(begin, waiting_.size() - begin - kLongest);
 }
 
 std::optional<std::string> LineFrames::next() {
@@ -40,14 +38,10 @@ bool listen(ByteLine& line, LineFrames& frames, Clock& clock, double timeout_s,
   for (int count = 0; count < kMostFrames; ++count) {
     while (const auto text = frames.next()) {
       ++count;
-      if (take(*text)) {
-        return true;
-      }
+      if (take(*text)) return true;
     }
     const std::string bytes = line.read(std::max(0.0, until_s - clock.monotonic_s()));
-    if (bytes.empty()) {
-      return false;
-    }
+    if (bytes.empty()) return false;
     frames.add(bytes);
   }
   return false;
@@ -55,9 +49,7 @@ bool listen(ByteLine& line, LineFrames& frames, Clock& clock, double timeout_s,
 
 std::string printable(std::string_view text) {
   std::string words;
-  for (const char c : text.substr(0, 60)) {
-    words += c >= ' ' && c < '\x7f' ? c : '?';
-  }
+  for (const char c : text.substr(0, 60)) words += c >= ' ' && c < '\x7f' ? c : '?';
   return words;
 }
 

@@ -1,4 +1,5 @@
-// A stepper motor's controller at the end of a line, in its own whole steps: what GRBL and Zaber have in common.
+// The interface of a stepper motor's controller at the end of a line (GRBL, Zaber). Positions are in the controller's
+// own whole steps.
 #pragma once
 
 #include <cstdint>
@@ -7,36 +8,36 @@
 
 namespace rig {
 
-// The controller was asked and said nothing of use for too long. The line itself is alive.
+// The controller gave no usable answer for too long, although the line is alive.
 struct NoReply : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The controller says, or shows, that it no longer knows where the platform is: alarm, reset.
+// The controller no longer knows where the platform is: it reports an alarm or was reset.
 struct PositionLost : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// How the position becomes known: a switch that the motor looks for, or the place where the platform stands, which a
-// person has turned to its mark.
+// How the position becomes known: `home_switch`, a switch that the motor looks for, or `here`, the place where the
+// platform stands after a person has turned it to its mark.
 enum class HomeBy { here, home_switch };
 
-enum class Motion { idle, moving, held };  // held: stopped, and not cleared since
+enum class Motion { idle, moving, held };  // held: after stop(), until clear_stop()
 
 struct MotionStatus {
   Motion motion = Motion::idle;
-  std::int64_t steps = 0;  // from the controller's own zero
+  std::int64_t steps = 0;  // counted from the controller's own zero
 };
 
 struct ControllerIdentity {
-  std::string firmware;             // as it names itself
-  double steps_per_deg = 0;         // as it is set up
-  int reading_tolerance_steps = 0;  // what it reports may be off by so many
-  int repeated = 0;                 // questions asked again because the answer was noise or missing
+  std::string firmware;             // the name that the firmware gives itself
+  double steps_per_deg = 0;         // as the controller is set up
+  int reading_tolerance_steps = 0;  // by how much a reported position may be rounded
+  int repeated = 0;                 // number of questions asked again because the answer was noise or missing
 };
 
-// After stop() nothing turns until clear_stop(): not what is under way, and not what is begun meanwhile. What one thread
-// begins while another one stops is therefore never obeyed after the stop.
+// After stop() nothing turns until clear_stop(): neither a move that is under way, nor one that another thread begins
+// while the stop is written.
 //
 // Errors: Unplugged (byte_line.h), NoReply, PositionLost, and std::runtime_error for a refusal; each message says what
 // was asked, what came back and what the person can do.
@@ -44,11 +45,11 @@ class MotionController {
  public:
   virtual ~MotionController() = default;
   virtual ControllerIdentity identity() = 0;
-  virtual void start_home() = 0;                    // begins; idle again in status() when it is done
-  virtual void start_move(std::int64_t steps) = 0;  // begins; absolute, as MotionStatus counts
+  virtual void start_home() = 0;                    // begins homing, which has ended when status() is idle again
+  virtual void start_move(std::int64_t steps) = 0;  // begins a move to an absolute position (as MotionStatus::steps)
   virtual MotionStatus status() = 0;
-  virtual void stop() = 0;        // one write, from any thread; also while a homing runs
-  virtual void clear_stop() = 0;  // waits until the motor stands; it can be moved again; PositionLost after a homing
+  virtual void stop() = 0;        // writes once and does not wait; from any thread, also during homing
+  virtual void clear_stop() = 0;  // waits until the motor stands and allows moves again; PositionLost if it was homing
 };
 
 }  // namespace rig

@@ -1,4 +1,4 @@
-// Numbers in a controller's replies, whole texts only.
+// The reading of a number from a controller's reply.
 #pragma once
 
 #include <charconv>
@@ -9,15 +9,14 @@
 
 namespace rig {
 
-// The whole text as a finite number; nothing when anything else stands there.
+// The number that the whole text is; nothing when it holds anything else or the number is not finite.
 template <typename Number>
 std::optional<Number> number_from(std::string_view text) {
   Number value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (text.empty() || error != std::errc{} || end != text.data() + text.size() ||
-      !std::isfinite(static_cast<double>(value))) {
+      !std::isfinite(static_cast<double>(value)))
     return std::nullopt;
-  }
   return value;
 }
 

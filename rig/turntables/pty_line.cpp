@@ -26,9 +26,7 @@ class PtyLine final : public ByteLine {
       const std::string why = opened ? "is used by another program; close that one"
                                      : std::string("could not be opened (") + std::strerror(errno) +
                                            "); start \"threadstation simulate-hardware\" and use the port it prints";
-      if (opened) {
-        ::close(descriptor_);
-      }
+      if (opened) ::close(descriptor_);
       throw std::runtime_error("the simulated turntable's port " + path_ + " " + why);
     }
     termios settings{};
@@ -42,27 +40,19 @@ class PtyLine final : public ByteLine {
   PtyLine& operator=(const PtyLine&) = delete;
 
   std::string read(double timeout_s) override {
-    if (!wait(timeout_s)) {
-      return {};
-    }
+    if (!wait(timeout_s)) return {};
     std::array<char, 4096> bytes{};
     const ssize_t got = ::read(descriptor_, bytes.data(), bytes.size());
-    if (got > 0) {
-      return {bytes.data(), static_cast<std::size_t>(got)};
-    }
-    if (got < 0 && (errno == EAGAIN || errno == EINTR)) {
-      return {};
-    }
+    if (got > 0) return {bytes.data(), static_cast<std::size_t>(got)};
+    if (got < 0 && (errno == EAGAIN || errno == EINTR)) return {};
     throw Unplugged(unplugged());
   }
 
-  // One at a time: a terminal turns away who does not wait while another thread writes (a stop does).
+  // The lock is needed because a terminal refuses a non-blocking write while another thread is writing.
   void write(std::string_view bytes) override {
     const std::lock_guard one_at_a_time(writing_);
     const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-    if (written < 0 && errno != EAGAIN) {
-      throw Unplugged(unplugged());
-    }
+    if (written < 0 && errno != EAGAIN) throw Unplugged(unplugged());
     if (written != static_cast<ssize_t>(bytes.size())) {
       throw std::runtime_error("the simulated turntable on " + path_ +
                                " takes no more commands; start it again, then home it");
@@ -70,16 +60,14 @@ class PtyLine final : public ByteLine {
   }
 
  private:
-  // A signal does not end the wait: an empty read says that the whole time has passed.
+  // A signal does not end the wait, because an empty read must mean that the whole time has passed.
   bool wait(double timeout_s) const {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
     for (;;) {
       const double left_s = std::chrono::duration<double>(deadline - std::chrono::steady_clock::now()).count();
       pollfd watched{.fd = descriptor_, .events = POLLIN, .revents = 0};
       const int ready = ::poll(&watched, 1, std::max(0, static_cast<int>(std::ceil(left_s * 1e3))));
-      if (ready >= 0 || errno != EINTR) {
-        return ready > 0;
-      }
+      if (ready >= 0 || errno != EINTR) return ready > 0;
     }
   }
 

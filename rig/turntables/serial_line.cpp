@@ -7,33 +7,27 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstring>
 #include <mutex>
 
-#include "rig/detect.h"
+#include "rig/devices/detect.h"
 
 namespace rig {
 namespace {
 
-constexpr int kMostEarlyReturns = 3;  // waits that ended at once with nothing to read: the line is gone
+constexpr int kMostEarlyReturns = 3;  // so many waits that end at once with nothing to read mean that the line is gone
 
 std::string system_words() {
   return std::strerror(errno);
 }
 
 std::string named_port(const SerialPortChoice& choice) {
-  if (choice.usb_serial.empty()) {
-    return choice.port;
-  }
-  for (const FoundDevice& found : find_serial_ports()) {
-    if (found.serial == choice.usb_serial) {
-      return found.port;
-    }
-  }
+  if (choice.usb_serial.empty()) return choice.port;
+  for (const FoundDevice& found : find_serial_ports())
+    if (found.serial == choice.usb_serial) return found.port;
   throw std::runtime_error("the turntable's USB adapter with serial number " + choice.usb_serial +
                            " is not plugged in; plug it in and switch the turntable on (\"threadstation devices\" "
                            "lists what is there)");
@@ -43,8 +37,7 @@ std::string why_not_open(const std::string& port) {
   switch (errno) {
     case EACCES:
     case EPERM:
-      return "the port " + port +
-             " may not be opened by this user; add the user to the group dialout and log in again";
+      return "the port " + port + " may not be opened by this user; add the user to the group dialout and log in again";
     case EBUSY:
       return "the port " + port + " is used by another program; close that one";
     case ENOENT:
@@ -58,7 +51,7 @@ std::string why_not_open(const std::string& port) {
   }
 }
 
-// The lock keeps a second threadstation out, the exclusive mode every other program.
+// The lock keeps a second threadstation out; the exclusive mode keeps out every other program.
 void take_for_this_program_alone(int descriptor, const std::string& port) {
   if (flock(descriptor, LOCK_EX | LOCK_NB) != 0 || ioctl(descriptor, TIOCEXCL) != 0) {
     errno = errno == EWOULDBLOCK ? EBUSY : errno;
@@ -94,34 +87,27 @@ class SerialLine final : public ByteLine {
   SerialLine(const SerialLine&) = delete;
   SerialLine& operator=(const SerialLine&) = delete;
 
-  // On a line that was hung up the library's reads look like time-outs; only asking for the waiting bytes fails.
+  // On a line that was hung up libserialport's reads look like time-outs; only asking for the number of bytes fails.
   std::string read(double timeout_s) override {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
     for (int early = 0;;) {
       const double left_s = std::chrono::duration<double>(deadline - std::chrono::steady_clock::now()).count();
-      if (const std::string bytes = waiting_bytes(); !bytes.empty() || left_s <= 0) {
-        return bytes;
-      }
+      if (const std::string bytes = waiting_bytes(); !bytes.empty() || left_s <= 0) return bytes;
       const auto began = std::chrono::steady_clock::now();
-      if (sp_wait(events_, static_cast<unsigned>(std::ceil(left_s * 1e3))) != SP_OK) {
+      if (sp_wait(events_, static_cast<unsigned>(std::ceil(left_s * 1e3))) != SP_OK)
         throw Unplugged(unplugged_words(name_));
-      }
       const auto waited = std::chrono::steady_clock::now() - began;
       early = waited < std::chrono::microseconds(100) && waiting() == 0 ? early + 1 : 0;
-      if (early >= kMostEarlyReturns) {
-        throw Unplugged(unplugged_words(name_));
-      }
+      if (early >= kMostEarlyReturns) throw Unplugged(unplugged_words(name_));
     }
   }
 
-  // One system call, so that lines of two threads never mix; one at a time: a terminal turns away who does not wait while
-  // another thread writes (a stop does).
+  // One system call, so that the lines of two threads never mix. The lock is needed because a terminal refuses a
+  // non-blocking write while another thread (one that stops, for example) is writing.
   void write(std::string_view bytes) override {
     const std::lock_guard one_at_a_time(writing_);
     const int written = sp_nonblocking_write(port_, bytes.data(), bytes.size());
-    if (written < 0) {
-      throw Unplugged(unplugged_words(name_));
-    }
+    if (written < 0) throw Unplugged(unplugged_words(name_));
     if (static_cast<std::size_t>(written) != bytes.size()) {
       throw std::runtime_error("the turntable on " + name_ +
                                " takes no more commands; switch it off and on, then home it again");
@@ -138,36 +124,29 @@ class SerialLine final : public ByteLine {
       throw std::runtime_error("the port " + name_ + " refused " + std::to_string(baud) +
                                " baud; check \"baud\" in the rig file");
     }
-    fcntl(descriptor, F_SETFD, FD_CLOEXEC);  // a process that is started must not keep the port
+    fcntl(descriptor, F_SETFD, FD_CLOEXEC);  // a child process must not keep the port open
     take_for_this_program_alone(descriptor, name_);
     if (sp_new_event_set(&events_) != SP_OK ||
-        sp_add_port_events(events_, port_, static_cast<sp_event>(SP_EVENT_RX_READY | SP_EVENT_ERROR)) != SP_OK) {
+        sp_add_port_events(events_, port_, static_cast<sp_event>(SP_EVENT_RX_READY | SP_EVENT_ERROR)) != SP_OK)
       throw std::runtime_error("the port " + name_ + " cannot be waited for; unplug it, plug it in and retry");
-    }
   }
 
   int waiting() const { return sp_input_waiting(port_); }
 
   std::string waiting_bytes() {
     const int count = waiting();
-    if (count < 0) {
-      throw Unplugged(unplugged_words(name_));
-    }
+    if (count < 0) throw Unplugged(unplugged_words(name_));
     std::string bytes(static_cast<std::size_t>(count), '\0');
     if (count > 0) {
       const int got = sp_nonblocking_read(port_, bytes.data(), bytes.size());
-      if (got < 0) {
-        throw Unplugged(unplugged_words(name_));
-      }
+      if (got < 0) throw Unplugged(unplugged_words(name_));
       bytes.resize(static_cast<std::size_t>(got));
     }
     return bytes;
   }
 
   void close() {
-    if (events_ != nullptr) {
-      sp_free_event_set(events_);
-    }
+    if (events_ != nullptr) sp_free_event_set(events_);
     sp_close(port_);
     sp_free_port(port_);
   }

@@ -1,5 +1,5 @@
-// The two lines to a device file: a serial port through libserialport, and a plain pseudo-terminal for simulated
-// firmware, which that library refuses. Both are opened for this program alone.
+// The two kinds of line to a device file: a serial port, opened through libserialport, and a pseudo-terminal with
+// simulated firmware behind it, which that library refuses. Both are opened for this program alone.
 #pragma once
 
 #include <memory>
@@ -9,15 +9,16 @@
 
 namespace rig {
 
-// Which port: a device file, or the serial number of its USB adapter, which stays when the file's name changes.
+// The choice of a port by its device file, or by the serial number of its USB adapter, which stays the same when the
+// file's name changes.
 struct SerialPortChoice {
   std::string port;        // "/dev/ttyUSB0"; empty when the serial number chooses
   std::string usb_serial;  // empty when the port's name chooses
   int baud = 115200;
 };
 
-// 8 data bits, no parity, 1 stop bit, no flow control. Errors: std::runtime_error when there is no such port, it is in
-// use, or it may not be opened.
+// Open lines; the serial one with 8 data bits, no parity, 1 stop bit and no flow control. Errors: std::runtime_error
+// when there is no such port, it is in use, or it may not be opened.
 std::unique_ptr<ByteLine> open_serial_line(const SerialPortChoice& choice);
 std::unique_ptr<ByteLine> open_pty_line(const std::string& path);
 

@@ -4,19 +4,18 @@
 #include <cmath>
 #include <cstdlib>
 #include <mutex>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "rig/devices/degree.h"
+
 namespace rig {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kPollS = 0.05;
 constexpr int kMostTries = 4;     // of a move: begun once and repeated three times
-constexpr int kIdleReadings = 2;  // in a row at the target: it stands
-constexpr int kLostReadings = 6;  // in a row idle elsewhere: the command was lost
+constexpr int kIdleReadings = 2;  // so many in a row at the target: the platform has arrived
+constexpr int kLostReadings = 6;  // so many in a row elsewhere: the command was lost
 constexpr const char* kStoppedHoming = "the platform was stopped while it looked for its home; home it again";
 constexpr double kLargestSteps = 1 << 24;  // GRBL counts in single precision, 24 bits
 
@@ -24,7 +23,7 @@ std::string degrees(double angle_rad) {
   return std::to_string(angle_rad / kDegree) + " deg";
 }
 
-// stop() and state() come from any thread, everything else from one.
+// stop() and state() may be called from any thread, everything else from one.
 class StepperTurntable final : public Turntable {
  public:
   StepperTurntable(ConnectController connect, Clock& clock, const StepperSetup& setup)
@@ -34,12 +33,11 @@ class StepperTurntable final : public Turntable {
 
   void home() override {
     const bool known = state_ != TurntableState::unknown_position;
-    if (lost_ || (!known && stop_asked_)) {  // connecting clears a stop, too
+    if (lost_ || (!known && stop_asked_)) {  // connecting clears the stop
       stop_asked_ = false;
       reconnect();
-      if (stop_asked_) {  // there was nobody to be told
+      if (stop_asked_)  // stop() came while there was no controller that it could tell
         throw std::runtime_error("the platform was stopped while its controller was looked for; home it again");
-      }
     }
     guarded([&] {
       begin_moving();
@@ -71,10 +69,8 @@ class StepperTurntable final : public Turntable {
 
   void stop() override {
     stop_asked_ = true;
-    if (const auto found = controller()) {
-      found->stop();
-    }
-    auto standing = TurntableState::idle;  // a moving platform tells itself, an unknown position stays unknown
+    if (const auto found = controller()) found->stop();
+    auto standing = TurntableState::idle;  // while it moves, the moving thread sets `stopped`; unknown stays unknown
     state_.compare_exchange_strong(standing, TurntableState::stopped);
   }
 
@@ -101,7 +97,7 @@ class StepperTurntable final : public Turntable {
     return controller_;
   }
 
-  // The old one goes first: it holds the port.
+  // The old controller is dropped first, because it holds the port.
   void reconnect() {
     set_controller(nullptr);
     auto found = connect_();
@@ -117,12 +113,11 @@ class StepperTurntable final : public Turntable {
   }
 
   void require_known_position(const std::string& asked) const {
-    if (state_ == TurntableState::unknown_position) {
+    if (state_ == TurntableState::unknown_position)
       throw std::runtime_error("the platform was asked to " + asked + ", but its position is unknown; home it first");
-    }
   }
 
-  // Every failure but a stop loses the position, and nothing goes on turning.
+  // Does `work`. After any failure but a stop the position counts as unknown, and the motor is stopped.
   template <typename Work>
   void guarded(const Work& work) {
     try {
@@ -140,23 +135,19 @@ class StepperTurntable final : public Turntable {
   void stop_quietly() noexcept {
     try {
       controller()->stop();
-    } catch (...) {  // the line is gone, and what is said about it is under way already
+    } catch (...) {  // the line is gone; the error that is being handled says so already
     }
   }
 
-  // A stop while the platform stood leaves the controller held. One that comes from now on ends the move.
+  // A stop() while the platform stood left the controller held, which is cleared here. One from now on ends the move.
   void begin_moving() {
-    if (stop_asked_.exchange(false)) {
-      controller()->clear_stop();
-    }
+    if (stop_asked_.exchange(false)) controller()->clear_stop();
     state_ = TurntableState::moving;
   }
 
   void approach(std::int64_t target) {
     const auto backlash = static_cast<std::int64_t>(std::ceil(setup_.backlash_rad * steps_per_rad_ - 1e-6));
-    if (backlash > 0 && target < controller()->status().steps) {
-      travel(target - backlash);
-    }
+    if (backlash > 0 && target < controller()->status().steps) travel(target - backlash);
     travel(target);
     state_ = TurntableState::idle;
   }
@@ -167,9 +158,7 @@ class StepperTurntable final : public Turntable {
     for (int tries = 0; tries < kMostTries; ++tries) {
       controller()->start_move(target);
       stands_at = wait_to_stand_at(target, tolerance);
-      if (std::abs(stands_at - target) <= tolerance) {
-        return;
-      }
+      if (std::abs(stands_at - target) <= tolerance) return;
     }
     throw std::runtime_error("the platform was asked to turn to " + place(target) + " " + std::to_string(kMostTries) +
                              " times and stands at " + place(stands_at) +
@@ -194,21 +183,18 @@ class StepperTurntable final : public Turntable {
 
   std::int64_t wait_until_idle() {
     try {
-      const std::int64_t steps =
-          watch([](const MotionStatus& status) { return status.motion == Motion::idle; }, false);
+      const std::int64_t steps = watch([](const MotionStatus& status) { return status.motion == Motion::idle; }, false);
       state_ = TurntableState::idle;
       return steps;
     } catch (const Stopped&) {
       throw PositionLost(kStoppedHoming);
     } catch (const PositionLost&) {
-      if (stop_asked_) {
-        throw PositionLost(kStoppedHoming);
-      }
+      if (stop_asked_) throw PositionLost(kStoppedHoming);
       throw;
     }
   }
 
-  // Looks at the controller until `ended`; a stop ends it too.
+  // Asks the controller for its status until `ended` returns true, and returns its position in steps; a stop throws.
   template <typename Ended>
   std::int64_t watch(const Ended& ended, bool stalls) {
     const double began_s = clock_.monotonic_s();
@@ -218,12 +204,8 @@ class StepperTurntable final : public Turntable {
     for (;;) {
       const MotionStatus status = controller()->status();
       const double now_s = clock_.monotonic_s();
-      if (stop_asked_ || status.motion == Motion::held) {
-        end_at_stop();
-      }
-      if (ended(status)) {
-        return status.steps;
-      }
+      if (stop_asked_ || status.motion == Motion::held) end_at_stop();
+      if (ended(status)) return status.steps;
       if (std::exchange(first, false) || status.steps != before || status.motion != Motion::moving) {
         changed_s = now_s;
         before = status.steps;
@@ -245,9 +227,7 @@ class StepperTurntable final : public Turntable {
     stop_asked_ = false;
     controller()->clear_stop();
     const std::int64_t steps = controller()->status().steps;
-    if (state_ == TurntableState::moving) {
-      state_ = TurntableState::stopped;
-    }
+    if (state_ == TurntableState::moving) state_ = TurntableState::stopped;
     throw Stopped("the platform was stopped at " + place(steps) +
                   " on its way; ask for the move again when it is safe");
   }
@@ -255,7 +235,7 @@ class StepperTurntable final : public Turntable {
   ConnectController connect_;
   Clock& clock_;
   StepperSetup setup_;
-  std::mutex exchange_;  // of controller_
+  std::mutex exchange_;  // guards controller_
   std::shared_ptr<MotionController> controller_;
   double steps_per_rad_ = 1;
   std::int64_t zero_steps_ = 0;
@@ -266,8 +246,7 @@ class StepperTurntable final : public Turntable {
 
 }  // namespace
 
-std::unique_ptr<Turntable> make_stepper_turntable(ConnectController connect, Clock& clock,
-                                                  const StepperSetup& setup) {
+std::unique_ptr<Turntable> make_stepper_turntable(ConnectController connect, Clock& clock, const StepperSetup& setup) {
   return std::make_unique<StepperTurntable>(std::move(connect), clock, setup);
 }
 

@@ -1,9 +1,9 @@
-// A Zaber rotary stage as a motion controller, ASCII protocol. Every question carries a number that its answer repeats,
-// so a late or repeated answer is told apart, and a check sum, so a garbled command is not obeyed.
+// A Zaber rotary stage as a motion controller, in the Zaber ASCII protocol. Every question carries a number that its
+// answer repeats, so that late and repeated answers are recognised, and a check sum, so that the stage does not obey a
+// garbled command.
 
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <utility>
 
@@ -18,18 +18,17 @@ namespace {
 constexpr int kMostTries = 4;        // of a question: asked once and repeated three times
 constexpr double kStopTimeoutS = 3;  // from the stop to standing still
 constexpr double kPollS = 0.05;
-constexpr double kSameRatio = 1e-4;  // steps per degree as two people write them
+constexpr double kSameRatio = 1e-4;  // rounding when steps per degree are written down in two places
 constexpr double kDegreesPerTurn = 360;
 
 class ZaberController final : public MotionController {
  public:
   ZaberController(std::shared_ptr<ByteLine> line, Clock& clock, const ControllerSetup& setup)
       : line_(std::move(line)), clock_(clock), setup_(setup) {
-    if (setup.home_by != HomeBy::home_switch) {
+    if (setup.home_by != HomeBy::home_switch)
       throw std::runtime_error("a Zaber stage finds its home by itself; write \"home\": \"switch\" in the rig file");
-    }
     identify();
-    ask("stop");  // it may still be turning from before
+    ask("stop");  // the stage may still be turning from an earlier run
     wait_to_stand();
   }
 
@@ -45,14 +44,10 @@ class ZaberController final : public MotionController {
   MotionStatus status() override {
     const ZaberReply reply = ask("get pos");
     const bool held = stopped_;
-    if (homing_ && !reply.busy && !held) {
-      homing_ = false;
-    }
+    if (homing_ && !reply.busy && !held) homing_ = false;
     const bool fault = reply.warning.starts_with('F') || reply.warning == "WS";
     const bool lost = reply.warning == "WR" || reply.warning == "WH" || reply.warning == "WM";
-    if (fault || (lost && !homing_)) {
-      throw PositionLost("the turntable reports " + zaber_warning_words(reply.warning));
-    }
+    if (fault || (lost && !homing_)) throw PositionLost("the turntable reports " + zaber_warning_words(reply.warning));
     const auto steps = number_from<std::int64_t>(reply.data);
     if (!steps) {
       throw std::runtime_error("the turntable was asked for its position and answered \"" + printable(reply.data) +
@@ -67,12 +62,11 @@ class ZaberController final : public MotionController {
   }
 
   void clear_stop() override {
-    stopped_ = false;  // one that comes from now on has to be cleared, too
-    ask("stop");       // the one before was not waited for
+    stopped_ = false;  // a stop() from now on needs another clear_stop()
+    ask("stop");       // stop() did not wait for an answer
     wait_to_stand();
-    if (std::exchange(homing_, false)) {
+    if (std::exchange(homing_, false))
       throw PositionLost("the turntable was stopped while it looked for its home; home it again");
-    }
   }
 
  private:
@@ -80,52 +74,44 @@ class ZaberController final : public MotionController {
 
   std::string framed(const std::string& command, std::optional<int> message) const {
     std::string text = std::to_string(setup_.zaber_device) + " " + std::to_string(setup_.zaber_axis) + " ";
-    if (message) {
-      text += (*message < 10 ? "0" : "") + std::to_string(*message) + " ";
-    }
+    if (message) text += (*message < 10 ? "0" : "") + std::to_string(*message) + " ";
     text += command;
     return "/" + text + ":" + zaber_check_sum(text) + "\n";
   }
 
-  // The answer that carries the question's number and comes from the stage that was asked. The stage forgets a stop with
-  // the next move, so until it is cleared the stop is said again behind whatever is written.
+  // The answer that carries the question's number and comes from the stage that was asked. The stage forgets a stop
+  // with the next move, so until clear_stop() a stop is written again behind every question.
   std::optional<ZaberReply> exchange(const std::string& command, double timeout_s) {
     const int message = message_;
     message_ = (message_ + 1) % 100;
     std::optional<ZaberReply> found;
     line_->write(framed(command, message));
-    if (stopped_) {
-      write_stop();
-    }
+    if (stopped_) write_stop();
     listen(*line_, frames_, clock_, timeout_s, [&](const std::string& text) {
       const auto reply = parse_zaber_line(text);
-      if (!reply) {
+      if (!reply)
         noise_ = text;
-      } else if (reply->message == message && reply->device == setup_.zaber_device) {
+      else if (reply->message == message && reply->device == setup_.zaber_device)
         found = reply;
-      }
       return found.has_value();
     });
     return found;
   }
 
-  // Questions may be repeated: moves are absolute.
+  // Repeats a question that gets no answer. Moves are absolute, so repeating them does no harm.
   ZaberReply try_to_ask(const std::string& command) {
     for (int tries = 0; tries < kMostTries; ++tries) {
       identity_.repeated += tries > 0;
-      if (auto reply = exchange(command, setup_.reply_timeout_s / kMostTries)) {
-        return *reply;
-      }
+      if (auto reply = exchange(command, setup_.reply_timeout_s / kMostTries)) return *reply;
     }
     if (identity_.firmware.empty() && !noise_.empty()) {
       throw NoReply("the device was asked for a Zaber stage's version and answered \"" + printable(noise_) +
                     "\"; choose the turntable's port in the rig file (\"threadstation devices\" lists the ports) and "
                     "check its \"baud\"");
     }
-    throw NoReply(
-        "the turntable was asked \"" + command + "\" " + std::to_string(kMostTries) +
-        " times and did not answer; check its cable and its power, and \"device\" in the rig file, then home "
-        "it");
+    throw NoReply("the turntable was asked \"" + command + "\" " + std::to_string(kMostTries) +
+                  " times and did not answer; check its cable and its power, and \"device\" in the rig file, then home "
+                  "it");
   }
 
   ZaberReply ask(const std::string& command) {
@@ -158,9 +144,9 @@ class ZaberController final : public MotionController {
     const double resolution = ask_number("resolution");
     if (resolution != setup_.zaber_resolution) {
       throw std::runtime_error("the turntable is set to a resolution of " + std::to_string(std::lround(resolution)) +
-                               " microsteps per step and the rig file says " +
-                               std::to_string(setup_.zaber_resolution) + "; send \"set resolution " +
-                               std::to_string(setup_.zaber_resolution) + "\", or change the rig file");
+                               " microsteps per step and the rig file says " + std::to_string(setup_.zaber_resolution) +
+                               "; send \"set resolution " + std::to_string(setup_.zaber_resolution) +
+                               "\", or change the rig file");
     }
     identity_.steps_per_deg = ask_number("limit.cycle.dist") / kDegreesPerTurn;
     if (!(std::abs(identity_.steps_per_deg / setup_.steps_per_deg - 1) <= kSameRatio)) {
@@ -173,9 +159,8 @@ class ZaberController final : public MotionController {
   void wait_to_stand() {
     const double until_s = clock_.monotonic_s() + kStopTimeoutS;
     while (ask("get pos").busy) {
-      if (clock_.monotonic_s() > until_s) {
+      if (clock_.monotonic_s() > until_s)
         throw std::runtime_error("the turntable was stopped and goes on turning; switch its power off");
-      }
       clock_.sleep_s(kPollS);
     }
   }
@@ -185,7 +170,7 @@ class ZaberController final : public MotionController {
   ControllerSetup setup_;
   ControllerIdentity identity_;
   LineFrames frames_;
-  std::string noise_;  // the last of it
+  std::string noise_;  // the last noise heard
   int message_ = 0;
   bool homing_ = false;
   std::atomic<bool> stopped_ = false;  // stop() comes from other threads

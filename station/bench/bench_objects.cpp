@@ -1,9 +1,11 @@
 #include "station/bench/bench_objects.h"
 
 #include <cmath>
+#include <numbers>
 
-#include "calibration/colour_chart.h"
-#include "calibration/spectralon.h"
+#include "calibration/light/colour_chart.h"
+#include "calibration/light/spectralon.h"
+#include "station/bench/reference_chip.h"
 
 namespace station {
 namespace {
@@ -13,8 +15,7 @@ constexpr float kPaperAlbedo = 0.85F, kGreyPaperAlbedo = 0.12F, kInkAlbedo = 0.0
 constexpr double kPaperLift_mm = 0.02;  // a printed tag lies this far above what carries it
 
 // A flat rectangle centred at the frame's origin, in its xy plane, +y up; texture upright seen from +z.
-renderer::TriangleMesh rectangle(const Eigen::Isometry3d& frame, double width, double height,
-                                 const cv::Mat3f& albedo) {
+renderer::TriangleMesh rectangle(const Eigen::Isometry3d& frame, double width, double height, const cv::Mat3f& albedo) {
   renderer::TriangleMesh mesh;
   const double x = width / 2, y = height / 2;
   for (const Eigen::Vector3d& corner :
@@ -61,9 +62,8 @@ renderer::TriangleMesh disc(double radius, double height) {
   renderer::TriangleMesh mesh;
   mesh.vertices.emplace_back(0.F, 0.F, static_cast<float>(height));
   for (int i = 0; i < kSides; ++i) {
-    const double angle = 2 * M_PI * i / kSides;
-    mesh.vertices.push_back(
-        Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), height).cast<float>());
+    const double angle = 2 * std::numbers::pi * i / kSides;
+    mesh.vertices.push_back(Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), height).cast<float>());
   }
   for (std::uint32_t i = 0; i < kSides; ++i) mesh.triangles.push_back({0, 1 + i, 1 + (i + 1) % kSides});
   mesh.albedo = plain(kBlackPaintAlbedo);
@@ -120,9 +120,9 @@ std::vector<renderer::TriangleMesh> colour_chart_meshes(const ColourChart& chart
     const Eigen::Vector3d colour = camera_from_linear_srgb * calibration::linear_srgb_of_lab(patches[i].lab_d50);
     const Eigen::Vector3f albedo = colour.cwiseMax(0.0).cwiseMin(1.0).cast<float>();
     const Eigen::Isometry3d place(
-        Eigen::Translation3d(chart_patch_centre(chart, i) + Eigen::Vector3d(0, 0, kPaperLift_mm)));
-    meshes.push_back(rectangle(place, chart.patch_mm, chart.patch_mm,
-                               cv::Mat3f(1, 1, cv::Vec3f(albedo[0], albedo[1], albedo[2]))));
+        Eigen::Translation3d(chart_square_centre(chart, i) + Eigen::Vector3d(0, 0, kPaperLift_mm)));
+    meshes.push_back(
+        rectangle(place, chart.patch_mm, chart.patch_mm, cv::Mat3f(1, 1, cv::Vec3f(albedo[0], albedo[1], albedo[2]))));
   }
   add_tags(meshes, chart.tags);
   return meshes;
@@ -135,13 +135,13 @@ std::vector<renderer::TriangleMesh> holder_meshes(const inversion::WrappedSpool&
   return meshes;
 }
 
-std::vector<renderer::TriangleMesh> reference_patch_meshes(const ReferencePatch& patch,
-                                                           const inversion::WrappedSpool& spool, double droop) {
+std::vector<renderer::TriangleMesh> reference_chip_meshes(const ReferenceChip& chip,
+                                                          const inversion::WrappedSpool& spool, double droop) {
   std::vector<renderer::TriangleMesh> meshes;
   for (const rig::Mounting mounting : {rig::Mounting::horizontal, rig::Mounting::vertical}) {
     const Eigen::Isometry3d lifted =
-        holder_from_patch(patch, spool, mounting) * Eigen::Translation3d(0, 0, kPaperLift_mm);
-    meshes.push_back(rectangle(lifted, patch.edge_mm, patch.edge_mm, plain(static_cast<float>(patch.albedo))));
+        holder_from_chip(chip, spool, mounting) * Eigen::Translation3d(0, 0, kPaperLift_mm);
+    meshes.push_back(rectangle(lifted, chip.edge_mm, chip.edge_mm, plain(static_cast<float>(chip.albedo))));
     make_spectralon(meshes.back(), droop);
   }
   return meshes;

@@ -2,16 +2,16 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
 #include <memory>
+#include <numbers>
 #include <stdexcept>
 
-#include "renderer/fiber_bundle.h"
-#include "renderer/path_tracer.h"
+#include "renderer/scattering/fiber_bundle.h"
+#include "renderer/trace/path_tracer.h"
 #include "renderer/weave/woven_patch.h"
 #include "station/bench/bench_objects.h"
-#include "station/fabric/cloth_on_cylinder.h"
-#include "station/views.h"
+#include "station/bench/camera_adapter.h"
+#include "station/bench/cloth_on_cylinder.h"
 
 namespace station {
 namespace {
@@ -22,7 +22,7 @@ constexpr double kRoomLampRadius_mm = 250;
 const Eigen::Vector3d kRoomLampPosition(900, 350, 1100);  // above and beside the camera: upright targets are lit too
 
 renderer::SphereLight flashlight(const rig::TrueLamp& lamp, const Eigen::Isometry3d& object_from_world) {
-  const double area = M_PI * lamp.radius_mm * lamp.radius_mm;
+  const double area = std::numbers::pi * lamp.radius_mm * lamp.radius_mm;
   return {.center = object_from_world * lamp.position,
           .radius_mm = lamp.radius_mm,
           .radiance = lamp.intensity / area,
@@ -31,16 +31,14 @@ renderer::SphereLight flashlight(const rig::TrueLamp& lamp, const Eigen::Isometr
 }
 
 // A ceiling lamp that gives a white diffuser at the origin, facing it, the asked radiance.
-renderer::SphereLight room_lamp(const Eigen::Vector3d& diffuser_radiance,
-                                const Eigen::Isometry3d& object_from_world) {
+renderer::SphereLight room_lamp(const Eigen::Vector3d& diffuser_radiance, const Eigen::Isometry3d& object_from_world) {
   const double ratio = kRoomLampPosition.norm() / kRoomLampRadius_mm;
   return {.center = object_from_world * kRoomLampPosition,
           .radius_mm = kRoomLampRadius_mm,
           .radiance = diffuser_radiance * ratio * ratio};
 }
 
-void add(renderer::Scene& scene, std::vector<renderer::TriangleMesh> meshes,
-         const Eigen::Isometry3d& scene_from_mesh) {
+void add(renderer::Scene& scene, std::vector<renderer::TriangleMesh> meshes, const Eigen::Isometry3d& scene_from_mesh) {
   for (renderer::TriangleMesh& mesh : meshes) {
     transform(mesh, scene_from_mesh);
     scene.meshes.push_back(std::move(mesh));
@@ -54,7 +52,7 @@ Eigen::Matrix3d matrix_of(const std::array<double, 9>& rows) {
 struct Painter {
   RigFile rig;
   std::optional<Spool> spool;
-  renderer::CurveSet fibers;  // empty until a holder is drawn first
+  renderer::CurveSet fibers;                   // empty until a holder is drawn first
   std::optional<renderer::YarnPatch> patch{};  // until a cloth is
   std::uint64_t pictures = 0;
 
@@ -81,9 +79,9 @@ struct Painter {
         if (fibers.segments.empty()) fibers = spool_fibers(*spool);
         scene.curves.push_back(fibers);
         scene.meshes = holder_meshes(spool->wrapping, rig.holder_tags);
-        if (rig.reference_patch)
+        if (rig.reference_chip)
           for (renderer::TriangleMesh& chip :
-               reference_patch_meshes(*rig.reference_patch, spool->wrapping, rig.simulation->spectralon_droop))
+               reference_chip_meshes(*rig.reference_chip, spool->wrapping, rig.simulation->spectralon_droop))
             scene.meshes.push_back(std::move(chip));
         break;
       case rig::BenchObject::cylinder:
@@ -117,8 +115,8 @@ struct Painter {
     renderer::RenderOptions options;
     options.samples_per_pixel = rig.simulation->target_samples_per_pixel;
     options.seed = rig.simulation->truth.seed + 7919 * ++pictures;
-    const bool threads = state.arrangement.object == rig::BenchObject::holder ||
-                         state.arrangement.object == rig::BenchObject::cylinder;
+    const bool threads =
+        state.arrangement.object == rig::BenchObject::holder || state.arrangement.object == rig::BenchObject::cylinder;
     const bool threads_lit = threads && state.lamp;
     if (!threads_lit) return tracer.render(camera, options);
     // Fibers scatter far more noisily than paper: their pixels get their own number of samples.
@@ -163,7 +161,7 @@ renderer::CurveSet spool_fibers(const Spool& spool) {
   curves.scattering = fibers.scattering;
   std::uint64_t seed = fibers.seed * 1000;  // a stream of its own for every thread of every spool
   for (const inversion::Segment3& line : inversion::thread_lines(spool.wrapping)) {
-    for (const Eigen::Vector2d& centre : fiber_centres(spool, ++seed * 1000003)) {
+    for (const Eigen::Vector2d& centre : fiber_centres(spool, ++seed * kFiberSeedStep)) {
       const Eigen::Vector3d offset(centre.x(), 0, centre.y());  // threads run along y
       inversion::add_straight_curve(curves, {line.from + offset, line.to + offset}, fibers.fiber_radius_mm,
                                     kPiecesPerFiber);

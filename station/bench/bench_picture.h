@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "rig/simulated_bench.h"
+#include "rig/simulated/simulated_bench.h"
 #include "station/documents/rig_file.h"
 #include "station/documents/spool.h"
 
@@ -21,6 +21,8 @@ const SimulatedFibers& simulated_fibers(const Spool& spool);
 
 // Places of a thread's fibers in its section, mm from its axis. Errors: as above, and when they do not fit.
 std::vector<Eigen::Vector2d> fiber_centres(const Spool& spool, std::uint64_t seed);
+// Between the seeds of two threads: fiber_centres tries the seeds that follow its own, too.
+inline constexpr std::uint64_t kFiberSeedStep = 1000003;
 
 // Every thread of the spool as its fibers, holder frame (mm).
 renderer::CurveSet spool_fibers(const Spool& spool);

@@ -1,9 +1,9 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "station/calibrate/calibrate_camera.h"
-#include "station/calibrate/calibrate_rig.h"
-#include "station/calibrate/error_budget.h"
+#include "station/bench/calibrate/calibrate_camera.h"
+#include "station/bench/calibrate/calibrate_rig.h"
+#include "station/bench/calibrate/error_budget.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
 #include "station/documents/gate_list.h"
@@ -36,10 +36,8 @@ void run_camera(CameraArguments& arguments) {
 
 void add_camera_command(CLI::App& calibrate) {
   auto arguments = std::make_shared<CameraArguments>();
-  CLI::App* command =
-      calibrate.add_subcommand("camera", "calibrate a lens from existing pictures of a printed board");
-  command->add_option("--images", arguments->request.images, "folder of pictures: JPEG, PNG, TIFF or raw")
-      ->required();
+  CLI::App* command = calibrate.add_subcommand("camera", "calibrate a lens from existing pictures of a printed board");
+  command->add_option("--images", arguments->request.images, "folder of pictures: JPEG, PNG, TIFF or raw")->required();
   command->add_option("--board", arguments->request.board, "board file: AprilTag grid or chessboard")->required();
   command->add_option("--out", arguments->request.out, "lens file to write; its .cameramodel goes beside it")
       ->required();
@@ -60,6 +58,8 @@ void add_camera_command(CLI::App& calibrate) {
 }
 
 void run(Arguments& arguments) {
+  const auto person = asked_person(arguments.output.json);
+  arguments.request.asked = person.get();
   arguments.request.progress_style = arguments.output.progress_style();
   const RigCalibration calibration = calibrate_rig(arguments.request);
   if (arguments.output.json)

@@ -1,6 +1,6 @@
 #include "rig/cameras/camera_process.h"
+#include "station/bench/rig_devices.h"
 #include "station/commands/commands.h"
-#include "station/rig_devices.h"
 
 namespace station {
 namespace {
@@ -9,7 +9,7 @@ constexpr int kSocket = 3;  // where rig/cameras/camera_process.cpp puts it
 
 }  // namespace
 
-// For the program itself only, so it is not listed.
+// This command is for the program itself, so it is not listed.
 void add_camera_process_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand(kCameraProcess, "")->group("");
   command->callback([] {

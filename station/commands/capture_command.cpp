@@ -1,44 +1,43 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "station/capture_session.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/queue/spool_queue.h"
+#include "station/session/capture_session.h"
+#include "station/session/spool_queue.h"
 
 namespace station {
 namespace {
 
 struct Arguments {
   CaptureRequest request;
-  bool resume = false;
-  std::vector<std::string> reshoot;
+  bool unattended = false, resume = false;
   std::string queue, sample;
   OutputOptions output;
 };
 
-// Enter takes the spool, s skips it, q ends the queue.
-bool ask_for_spool(const QueuedSpool& spool) {
-  std::cout << "Next: " << spool.session << (spool.sample.name.empty() ? "" : " (" + spool.sample.name + ")")
-            << (spool.sample.note.empty() ? "" : ", " + spool.sample.note)
-            << "\nPut it on the holder. Press Enter when it is done, or q and Enter to end: " << std::flush;
-  std::string answer;
-  return std::getline(std::cin, answer) && answer != "q" && answer != "Q";
+// False ends the queue.
+bool ask_for_spool(const QueuedSpool& spool, rig::AskedPerson& asked) {
+  asked.prepare({{"step", nullptr}, {"of", nullptr}, {"arrangement", nullptr}}, "");  // the spool's before
+  return asked.ask({.text = "Next: " + spool.session +
+                            (spool.sample.name.empty() ? "" : " (" + spool.sample.name + ")") +
+                            (spool.sample.note.empty() ? "" : ", " + spool.sample.note) + "\nPut it on the holder."}) ==
+         rig::kDone;
 }
 
 void run_queue(const Arguments& arguments) {
-  QueueRequest request{.queue = arguments.queue, .capture = arguments.request, .next = {}};
-  if (!request.capture.unattended && read_rig(request.capture.rig).operator_driver == "console")
-    request.next = ask_for_spool;
+  const CaptureRequest& request = arguments.request;
+  std::function<bool(const QueuedSpool&)> next;
+  if (request.asked && read_rig(request.new_session->rig).operator_driver == "console")
+    next = [&](const QueuedSpool& spool) { return ask_for_spool(spool, *request.asked); };
   std::string first_problem;
-  for (const QueueResult& result : capture_queue(request)) {
+  for (const QueueResult& result : capture_queue(arguments.queue, request, next)) {
     const char* outcome = result.outcome == QueueOutcome::captured  ? "captured"
                           : result.outcome == QueueOutcome::resumed ? "captured to its end"
                           : result.outcome == QueueOutcome::kept    ? "was complete already"
                                                                     : "failed: ";
     std::cout << result.spool.session << ": " << outcome << result.problem << "\n";
-    if (first_problem.empty() && !result.problem.empty())
-      first_problem = result.spool.session + ": " + result.problem;
+    if (first_problem.empty() && !result.problem.empty()) first_problem = result.spool.session + ": " + result.problem;
   }
   if (!first_problem.empty()) throw std::runtime_error(first_problem + "; the same command goes on from here");
 }
@@ -46,17 +45,15 @@ void run_queue(const Arguments& arguments) {
 void run(Arguments& arguments) {
   CaptureRequest& request = arguments.request;
   request.progress_style = arguments.output.progress_style();
+  const auto person = asked_person(arguments.output.json);
+  if (!arguments.unattended) request.asked = person.get();
   if (!arguments.queue.empty()) return run_queue(arguments);
-  if (!arguments.sample.empty()) request.sample = read_sample_file(arguments.sample);
-  const RunState state = arguments.resume ? resume_session({.session = request.out,
-                                                            .unattended = request.unattended,
-                                                            .record = request.record,
-                                                            .reshoot = arguments.reshoot,
-                                                            .progress_style = request.progress_style})
-                                          : capture_session(request);
+  if (!arguments.sample.empty()) request.new_session->sample = read_sample_file(arguments.sample);
+  if (arguments.resume) request.new_session.reset();
+  const RunState state = capture_session(request);
   if (state != RunState::complete)
     throw std::runtime_error("capture was " + state_name(state) +
-                             "; go on with: threadstation capture --resume --out " + request.out.string());
+                             "; go on with: threadstation capture --resume --out " + request.session.string());
 }
 
 }  // namespace
@@ -64,26 +61,27 @@ void run(Arguments& arguments) {
 void add_capture_command(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   CaptureRequest& request = arguments->request;
+  NewSession& made_of = request.new_session.emplace();
   CLI::App* command = app.add_subcommand("capture", "photograph a spool in 17 views");
-  CLI::Option* rig = command->add_option("--rig", request.rig, "rig file");
-  CLI::Option* calibration = command->add_option("--calibration", request.calibration, "folder made by calibrate");
-  CLI::Option* spool = command->add_option("--spool", request.spool, "spool file");
+  CLI::Option* rig = command->add_option("--rig", made_of.rig, "rig file");
+  CLI::Option* calibration = command->add_option("--calibration", made_of.calibration, "folder made by calibrate");
+  CLI::Option* spool = command->add_option("--spool", made_of.spool, "spool file");
   CLI::Option* queue = command->add_option("--queue", arguments->queue,
                                            "table of spools (CSV); --out then is the folder of their sessions");
-  command->add_option("--out", request.out, "session folder")->required();
-  command->add_option("--plan", request.plan, "plan of one's own, from threadstation plan");
-  command->add_option("--operator", request.person, "who captures; written into the session");
+  command->add_option("--out", request.session, "session folder")->required();
+  command->add_option("--plan", made_of.plan, "plan of one's own, from threadstation plan");
+  command->add_option("--operator", made_of.person, "who captures; written into the session");
   command->add_option(
       "--sample", arguments->sample,
       "what the lab knows of the spool beside its geometry (barcode, name, lot, material, colour, note; JSON)");
-  command->add_flag("--unattended", request.unattended, "ask nobody; refused when the rig needs a person");
+  command->add_flag("--unattended", arguments->unattended, "ask nobody; refused when the rig needs a person");
   command->add_flag("--record", request.record,
                     "keep test pictures and all that the devices say, so that the session can be replayed");
-  command->add_flag("--accept-calibration", request.accept_calibration,
+  command->add_flag("--accept-calibration", made_of.accept_calibration,
                     "use a calibration although it did not pass all its gates");
   command->add_flag("--resume", arguments->resume, "go on with the session in --out; needs nothing else");
-  CLI::Option* reshoot = command->add_option("--reshoot", arguments->reshoot,
-                                             "views (1, 2, ...) or steps (by name) to take again; resumes");
+  CLI::Option* reshoot =
+      command->add_option("--reshoot", request.reshoot, "views (1, 2, ...) or steps (by name) to take again; resumes");
   arguments->output.add_to(*command);
   command->callback([=] {
     if (reshoot->count()) arguments->resume = true;

@@ -3,8 +3,9 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "station/check_rig.h"
+#include "station/bench/check_rig.h"
 #include "station/commands/commands.h"
+#include "station/commands/output_options.h"
 
 namespace station {
 namespace {
@@ -42,17 +43,16 @@ void add_check_command(CLI::App& app) {
   command->add_option("--rig", *rig, "rig file")->required();
   command->add_option("--calibration", *calibration,
                       "the rig's calibration: takes a test picture too (empty platform, room light on)");
-  command->add_flag("--json", *json, "as JSON, for machines");
+  command->add_flag("--json", *json, "results and questions as JSON, for machines");
   command->callback([rig, calibration, json] {
     const RigFile file = read_rig(*rig);
     std::optional<RigCalibration> calibrated;
     if (!calibration->empty()) calibrated = read_calibration(*calibration);
-    const std::vector<DeviceCheck> checks = check_rig(file, calibrated);
+    const std::vector<DeviceCheck> checks = check_rig(file, calibrated, *asked_person(*json));
     *json ? print_json(checks) : print_table(checks);
     for (const DeviceCheck& check : checks)
       for (const rig::ContractRow& row : check.rows)
-        if (!row.passed)
-          throw std::runtime_error("the " + check.device + " failed \"" + row.name + "\": " + row.what);
+        if (!row.passed) throw std::runtime_error("the " + check.device + " failed \"" + row.name + "\": " + row.what);
   });
 }
 

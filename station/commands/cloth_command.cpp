@@ -1,8 +1,9 @@
 #include <iostream>
 
-#include "station/cloth_preview.h"
+#include "station/cloth/cloth_preview.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/session/results.h"
 
 namespace station {
 

@@ -1,5 +1,5 @@
-// One function per command of the public interface: it adds the sub-command with its options; the callback reads
-// arguments, calls one function and prints. Errors are thrown and printed by main.
+// The commands of the public interface, one function each: it adds the sub-command with its options, whose callback
+// reads arguments, calls one function and prints. Errors are thrown and printed by main.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -36,5 +36,14 @@ void add_validate_cloth_command(CLI::App& app);
 void add_validate_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
 void add_weave_command(CLI::App& app);
+
+// The sub-commands of `threadstation scatter` and of `threadstation export`.
+void add_scatter_eval_command(CLI::App& scatter);
+void add_scatter_fit_command(CLI::App& scatter);
+void add_scatter_plot_command(CLI::App& scatter);
+void add_scatter_prior_command(CLI::App& scatter);
+void add_scatter_simulate_command(CLI::App& scatter);
+void add_export_thread_command(CLI::App& exports);
+void add_export_cloth_command(CLI::App& exports);
 
 }  // namespace station

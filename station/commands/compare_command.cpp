@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "station/commands/commands.h"
-#include "station/compare/compare_files.h"
+#include "station/output/compare/compare_files.h"
 
 namespace station {
 namespace {
@@ -14,9 +14,9 @@ void print(const Comparison& found) {
       "relative RMSE %.1f %%, the rendering scaled by %.4g\n"
       "highlight: photograph at column %.0f, %.0f px wide; rendering at column %.0f, %.0f px wide; profiles "
       "correlate by %.3f\n",
-      found.mean_delta_e, found.median_delta_e, found.delta_e_95, found.blocks, 100 * found.relative_rmse,
-      found.scale, found.photograph.peak_px, found.photograph.width_px, found.rendering.peak_px,
-      found.rendering.width_px, found.profile_correlation);
+      found.mean_delta_e, found.median_delta_e, found.delta_e_95, found.blocks, 100 * found.relative_rmse, found.scale,
+      found.photograph.peak_px, found.photograph.width_px, found.rendering.peak_px, found.rendering.width_px,
+      found.profile_correlation);
 }
 
 }  // namespace

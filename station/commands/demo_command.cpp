@@ -1,9 +1,9 @@
 #include <iostream>
 
 #include "station/commands/commands.h"
+#include "station/commands/demo.h"
 #include "station/commands/output_options.h"
-#include "station/demo.h"
-#include "station/report/html.h"
+#include "station/documents/number_text.h"
 
 namespace station {
 namespace {
@@ -31,8 +31,7 @@ void run(Arguments& arguments) {
                      .dump()
               << "\n";
   else
-    std::cout << (result.kept ? "kept the pictures of an earlier demo in this folder; --fresh takes them again\n"
-                              : "")
+    std::cout << (result.kept ? "kept the pictures of an earlier demo in this folder; --fresh takes them again\n" : "")
               << "session  " << result.session.string() << "\nthread   " << result.thread.string()
               << "  (relative RMSE " << number_text(100 * result.relative_rmse, 1) << " %)\n"
               << "cloth    " << clothes(result) << "\nreport   " << result.report.string() << "\n";

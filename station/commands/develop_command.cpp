@@ -2,7 +2,7 @@
 
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/develop/develop_session.h"
+#include "station/session/develop/develop_session.h"
 
 namespace station {
 

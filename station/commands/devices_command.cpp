@@ -1,6 +1,6 @@
 #include <iostream>
 
-#include "rig/detect.h"
+#include "rig/devices/detect.h"
 #include "station/commands/commands.h"
 
 namespace station {
@@ -21,8 +21,8 @@ void print(const std::vector<rig::FoundDevice>& devices, bool json) {
   }
   if (devices.empty()) std::cout << "no camera and no serial port found; plug one in and switch it on\n";
   for (const rig::FoundDevice& d : devices)
-    std::cout << d.kind << "  " << d.port << "  " << d.name << (d.serial.empty() ? "" : "  serial " + d.serial)
-              << "  (" << d.believed_to_be << ")\n";
+    std::cout << d.kind << "  " << d.port << "  " << d.name << (d.serial.empty() ? "" : "  serial " + d.serial) << "  ("
+              << d.believed_to_be << ")\n";
 }
 
 }  // namespace

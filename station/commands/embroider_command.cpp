@@ -1,10 +1,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "station/cloth/embroider_motif.h"
+#include "station/cloth/render/render_scene.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/embroider/embroider_motif.h"
-#include "station/render_scene.h"
 
 namespace station {
 
@@ -20,8 +20,7 @@ void add_embroider_command(CLI::App& app) {
   EmbroiderRequest& request = arguments->request;
   CLI::App* command = app.add_subcommand("embroider", "a machine embroidery motif in a digitized thread");
   command->add_option("motif", request.motif, "Tajima .dst, Brother .pes or line art as .svg")->required();
-  command->add_option("--thread", request.thread, "thread file; each colour changes its absorption alone")
-      ->required();
+  command->add_option("--thread", request.thread, "thread file; each colour changes its absorption alone")->required();
   command->add_option("--out", request.out, "picture: .exr (linear) or .png (display)")->required();
   command->add_option("--colour", arguments->colours,
                       "colours of the motif's threads in the order of sewing, like #c01830; without it the file's");

@@ -1,8 +1,8 @@
 #include <iostream>
 
-#include "station/commands/export_command.h"
+#include "station/cloth/export/export_cloth.h"
+#include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/export/export_cloth.h"
 
 namespace station {
 

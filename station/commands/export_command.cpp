@@ -1,5 +1,3 @@
-#include "station/commands/export_command.h"
-
 #include "station/commands/commands.h"
 
 namespace station {

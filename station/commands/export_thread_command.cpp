@@ -1,8 +1,8 @@
 #include <iostream>
 
-#include "station/commands/export_command.h"
+#include "station/cloth/export/export_thread.h"
+#include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/export/export_thread.h"
 
 namespace station {
 
@@ -22,8 +22,8 @@ void add_export_thread_command(CLI::App& exports) {
   command->add_option("--only", arguments->only, "some of mitsuba, blender, csv, numpy, merl")
       ->delimiter(',')
       ->check(CLI::IsMember(std::vector<std::string>(kThreadExports.begin(), kThreadExports.end())));
-  CLI::Option* draft = command->add_option(
-      "--draft", arguments->cloth.draft, "draft of the cloth whose BRDF is measured for merl, scaled to the thread");
+  CLI::Option* draft = command->add_option("--draft", arguments->cloth.draft,
+                                           "draft of the cloth whose BRDF is measured for merl, scaled to the thread");
   command
       ->add_flag("--allow-anisotropic", arguments->cloth.allow_anisotropic,
                  "merl even of a cloth that changes when it is turned: the mean over all turns")

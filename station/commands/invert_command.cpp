@@ -2,8 +2,8 @@
 
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/invert/fit_document.h"
-#include "station/invert/invert_session.h"
+#include "station/thread/invert/fit_document.h"
+#include "station/thread/invert/invert_session.h"
 
 namespace station {
 namespace {
@@ -52,8 +52,7 @@ void add_invert_command(CLI::App& app) {
   command->add_option("--adam-paths", arguments->request.fit.adam_paths, "light paths per block for each of them")
       ->check(CLI::Range(1, 100000));
   command->add_flag("!--eq6", arguments->request.fit.robust, "all views and blocks count as in eq. 6, none less");
-  command
-      ->add_option("--prior", arguments->request.fit.prior_weight, "weight of the simulated threads' prior; 0: none")
+  command->add_option("--prior", arguments->request.fit.prior_weight, "weight of the simulated threads' prior; 0: none")
       ->check(CLI::Range(0.0, 1000.0));
   command->add_option("--spp", arguments->request.samples_per_pixel, "samples per pixel of the fitted views")
       ->check(CLI::Range(1, 65536));

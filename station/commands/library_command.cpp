@@ -1,9 +1,9 @@
 #include <cstdio>
 #include <iostream>
 
-#include "rig/clock.h"
+#include "rig/devices/clock.h"
 #include "station/commands/commands.h"
-#include "station/library/library.h"
+#include "station/thread/library.h"
 
 namespace station {
 namespace {

@@ -1,10 +1,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "station/cloth/pattern/jacquard_cloth.h"
+#include "station/cloth/pattern/pattern_cloth.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/pattern/jacquard_cloth.h"
-#include "station/pattern/pattern_cloth.h"
 
 namespace station {
 
@@ -39,18 +39,17 @@ void add_pattern_command(CLI::App& app) {
   command->add_option("--exposure", request.exposure, "brightness of the picture, 1 = as it is")
       ->check(CLI::Range(1e-3, 1e3))
       ->capture_default_str();
-  CLI::Option* as_it_is = command->add_flag(
-      "!--as-it-is", request.within_gamut,
-      "colours as the picture has them; without it its black to white is brought to the darkest and "
-      "the brightest that the cloth can show");
+  CLI::Option* as_it_is =
+      command->add_flag("!--as-it-is", request.within_gamut,
+                        "colours as the picture has them; without it its black to white is brought to the darkest and "
+                        "the brightest that the cloth can show");
   CLI::Option* curves_only = command->add_flag("--curves-only", arguments->curves_only,
                                                "without refinement: each crossing as if all cloth had its colour");
   CLI::Option* jacquard =
       command
-          ->add_option(
-              "--jacquard", arguments->jacquard_weft,
-              "two colours by structure alone: weft of this thread file, warp of --thread, their own colours; "
-              "of the draft only yarns and sett are taken")
+          ->add_option("--jacquard", arguments->jacquard_weft,
+                       "two colours by structure alone: weft of this thread file, warp of --thread, their own colours; "
+                       "of the draft only yarns and sett are taken")
           ->needs(thread);
   curves_only->excludes(jacquard);
   as_it_is->excludes(jacquard);

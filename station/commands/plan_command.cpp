@@ -2,10 +2,10 @@
 #include <cstdio>
 #include <iostream>
 
-#include "station/capture/plan_file.h"
-#include "station/capture_session.h"
 #include "station/commands/commands.h"
+#include "station/documents/plan_file.h"
 #include "station/documents/reader.h"
+#include "station/session/capture_session.h"
 
 namespace station {
 namespace {
@@ -22,8 +22,7 @@ void print(const Plan& plan) {
                 step.room_light ? "room light" : "dark room ", file_degrees(step.platform_angle_rad),
                 step.exposure_of.empty() ? "" : (", exposed as " + step.exposure_of).c_str());
   const double seconds = estimated_duration_s(plan);
-  std::printf("%zu view(s), %zu steps, about %.0f min\n", view_count(plan), plan.steps.size(),
-              std::ceil(seconds / 60));
+  std::printf("%zu view(s), %zu steps, about %.0f min\n", view_count(plan), plan.steps.size(), std::ceil(seconds / 60));
 }
 
 void run(const Arguments& arguments) {

@@ -2,9 +2,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "station/cloth/predict_fabric.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/fabric/predict_fabric.h"
 
 namespace station {
 namespace {
@@ -31,10 +31,8 @@ void add_predict_command(CLI::App& app) {
   PredictRequest& request = arguments->request;
   CLI::App* command =
       app.add_subcommand("predict", "what a cloth on the cylinder should look like, beside its photographs");
-  command->add_option("session", request.session, "developed session of a cloth (capture --spool FABRIC)")
-      ->required();
-  command->add_option("--fabric", request.fabric,
-                      "fabric file whose weave is predicted instead of the session's own");
+  command->add_option("session", request.session, "developed session of a cloth (capture --spool FABRIC)")->required();
+  command->add_option("--fabric", request.fabric, "fabric file whose weave is predicted instead of the session's own");
   command->add_option("--spp", request.samples_per_pixel, "samples per pixel")
       ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str();
@@ -43,12 +41,11 @@ void add_predict_command(CLI::App& app) {
   command->callback([=] {
     arguments->request.progress_style = arguments->output.progress_style();
     nlohmann::json views = nlohmann::json::array();
-    for (const PredictedView& view : predict_fabric(arguments->request)) {
+    for (const PredictedView& view : predict_fabric(arguments->request))
       if (arguments->output.json)
         views.push_back(to_json(view));
       else if (!arguments->output.quiet)
         print(view);
-    }
     if (arguments->output.json) std::cout << views.dump() << "\n";
   });
 }

@@ -1,8 +1,8 @@
 #include <iostream>
 
+#include "station/bench/live_view.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/live_view.h"
 
 namespace station {
 
@@ -21,6 +21,8 @@ void add_preview_command(CLI::App& app) {
   arguments->output.add_to(*command);
   command->callback([arguments] {
     arguments->request.progress_style = arguments->output.progress_style();
+    const auto person = asked_person(arguments->output.json);
+    arguments->request.asked = person.get();
     const int frames = live_view(arguments->request);
     if (arguments->output.json)
       std::cout << nlohmann::json{{"frames", frames}}.dump() << "\n";

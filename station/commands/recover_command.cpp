@@ -2,7 +2,7 @@
 
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/validate/recover_thread.h"
+#include "station/thread/validate/recover_thread.h"
 
 namespace station {
 namespace {

@@ -1,9 +1,9 @@
 #include <iostream>
 
+#include "station/cloth/render/render_jobs.h"
+#include "station/cloth/render/render_scene.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/render/render_jobs.h"
-#include "station/render_scene.h"
 
 namespace station {
 namespace {
@@ -16,7 +16,7 @@ struct Arguments {
   OutputOptions output;
 };
 
-// A folder is written to where several pictures are to be made, or a name without an ending is given.
+// Renders into a folder where several pictures are to be made, or where the name has no ending.
 std::vector<RenderReport> render(const Arguments& arguments) {
   RenderRequest request = arguments.request;
   request.noise = parse_noise(arguments.noise).value_or(0);
@@ -62,8 +62,7 @@ void add_render_command(CLI::App& app) {
       ->check([](const std::string& text) { return parse_noise(text) ? "" : "give 0.01% to 100%"; });
   command->add_option("--seed", request.seed, "another number gives another noise")->capture_default_str();
   command->add_option("--threads", request.threads, "processor threads, 0 for all")->check(CLI::Range(0, 4096));
-  command->add_option("--exposure", request.exposure, "PNG: radiance times this is shown")
-      ->check(CLI::PositiveNumber);
+  command->add_option("--exposure", request.exposure, "PNG: radiance times this is shown")->check(CLI::PositiveNumber);
   command->add_flag("--png", request.png, "a PNG beside the EXR");
   command->add_flag("--layers", request.layers,
                     "EXR: albedo, normal, depth, cover, thread and yarn of what each pixel shows, as channels");

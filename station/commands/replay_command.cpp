@@ -4,21 +4,23 @@
 
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/replay/replay_session.h"
+#include "station/session/replay_session.h"
 
 namespace station {
 namespace {
 
 struct Arguments {
-  ReplayRequest request;
+  std::string recorded;
+  CaptureRequest request;
+  bool resume = false;
   OutputOptions output;
 };
 
 void run(Arguments& arguments) {
-  ReplayRequest& request = arguments.request;
+  CaptureRequest& request = arguments.request;
   request.progress_style = arguments.output.progress_style();
   const auto began = std::chrono::steady_clock::now();
-  const ReplayReport report = replay_session(request);
+  const ReplayReport report = replay_session(arguments.recorded, request, arguments.resume);
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   if (arguments.output.json)
     std::cout << nlohmann::json{{"state", state_name(report.state)},
@@ -37,7 +39,7 @@ void run(Arguments& arguments) {
     throw std::runtime_error(
         "the replay is not the recorded session: " + report.differences.front() +
         (report.differences.size() > 1 ? " (and " + std::to_string(report.differences.size() - 1) + " more)" : "") +
-        "; compare " + request.out.string() + " with " + request.session.string());
+        "; compare " + request.session.string() + " with " + arguments.recorded);
 }
 
 }  // namespace
@@ -46,9 +48,9 @@ void add_replay_command(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       app.add_subcommand("replay", "play a session that was captured with --record again, without hardware");
-  command->add_option("session", arguments->request.session, "recorded session")->required();
-  command->add_option("--out", arguments->request.out, "session folder to make")->required();
-  command->add_flag("--resume", arguments->request.resume, "go on with a replay that was ended");
+  command->add_option("session", arguments->recorded, "recorded session")->required();
+  command->add_option("--out", arguments->request.session, "session folder to make")->required();
+  command->add_flag("--resume", arguments->resume, "go on with a replay that was ended");
   arguments->output.add_to(*command);
   command->callback([arguments] { run(*arguments); });
 }

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "station/commands/commands.h"
-#include "station/report/session_report.h"
+#include "station/thread/report/session_report.h"
 
 namespace station {
 

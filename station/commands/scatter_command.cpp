@@ -1,5 +1,3 @@
-#include "station/commands/scatter_command.h"
-
 #include "station/commands/commands.h"
 
 namespace station {

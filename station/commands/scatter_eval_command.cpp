@@ -1,7 +1,7 @@
 #include <iostream>
 
-#include "station/commands/scatter_command.h"
-#include "station/scatter/queries.h"
+#include "station/commands/commands.h"
+#include "station/thread/scatter/queries.h"
 
 namespace station {
 

@@ -1,8 +1,8 @@
 #include <iostream>
 
+#include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/commands/scatter_command.h"
-#include "station/scatter/plot_scattering.h"
+#include "station/thread/scatter/plot_scattering.h"
 
 namespace station {
 

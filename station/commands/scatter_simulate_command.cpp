@@ -1,8 +1,9 @@
 #include <iostream>
+#include <numbers>
 
+#include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/commands/scatter_command.h"
-#include "station/scatter/simulate.h"
+#include "station/thread/scatter/simulate.h"
 
 namespace station {
 
@@ -19,8 +20,7 @@ void add_scatter_simulate_command(CLI::App& scatter) {
   command->add_option("--fiber-radius", options.fiber_radius, "in the unit of the thread's")->capture_default_str();
   command->add_option("--thread-radius", options.thread_radius, "in any unit")->capture_default_str();
   command->add_option("--gap", options.min_gap, "least gap between fibers")->capture_default_str();
-  command->add_option("--attempts", options.max_attempts, "to place a fiber, per configuration")
-      ->capture_default_str();
+  command->add_option("--attempts", options.max_attempts, "to place a fiber, per configuration")->capture_default_str();
   command->add_option("--placement", arguments->placement, "centres uniform over the area or over the radius")
       ->check(CLI::IsMember({"area", "radius"}))
       ->capture_default_str();
@@ -36,7 +36,7 @@ void add_scatter_simulate_command(CLI::App& scatter) {
   arguments->output.add_to(*command);
   command->callback([arguments] {
     SimulateRequest& request = arguments->request;
-    request.options.theta_rad = arguments->theta_deg * 3.14159265358979323846 / 180;
+    request.options.theta_rad = arguments->theta_deg * std::numbers::pi / 180;
     if (arguments->placement == "radius") request.options.placement = renderer::FiberPlacement::radius_uniform;
     request.progress = arguments->output.progress_style();
     const renderer::MultiFiberScattering found = simulate_to_file(request);

@@ -1,8 +1,8 @@
 #include <iostream>
 
+#include "station/bench/simulate_hardware.h"
 #include "station/commands/commands.h"
-#include "station/interrupt.h"
-#include "station/simulate_hardware.h"
+#include "station/output/interrupt.h"
 
 namespace station {
 namespace {

@@ -1,7 +1,7 @@
 #include <iostream>
 
+#include "station/bench/print_targets.h"
 #include "station/commands/commands.h"
-#include "station/targets/print_targets.h"
 
 namespace station {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/invert/fit_document.h"
-#include "station/validate/validate_cloth.h"
+#include "station/thread/invert/fit_document.h"
+#include "station/thread/validate/validate_cloth.h"
 
 namespace station {
 

@@ -2,8 +2,8 @@
 
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/invert/fit_document.h"
-#include "station/validate/validate_fits.h"
+#include "station/thread/invert/fit_document.h"
+#include "station/thread/validate/validate_fits.h"
 
 namespace station {
 namespace {
@@ -40,8 +40,7 @@ void add_validate_command(CLI::App& app) {
   command->add_option("--calibration", arguments->calibration,
                       "folder of a calibration of the rig: fit with its geometry and light as well");
   command->add_flag("--solvers", request.solvers, "compare Levenberg-Marquardt and Adam on all views");
-  command
-      ->add_option("--spp", request.samples_per_pixel, "samples per pixel of each of the two photographs of a view")
+  command->add_option("--spp", request.samples_per_pixel, "samples per pixel of each of the two photographs of a view")
       ->check(CLI::Range(1, 65536));
   command->add_option("--seed", request.seed, "of photographs and fits");
   arguments->output.add_to(*command);

@@ -1,8 +1,8 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "station/capture/verify.h"
 #include "station/commands/commands.h"
+#include "station/session/record/verify.h"
 
 namespace station {
 namespace {

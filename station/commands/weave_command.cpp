@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
 #include <functional>
 #include <iostream>
 #include <stdexcept>
@@ -8,14 +7,15 @@
 #include <utility>
 #include <vector>
 
-#include "renderer/image_file.h"
+#include "renderer/picture/image_file.h"
 #include "renderer/weave/woven_patch.h"
+#include "station/cloth/patch_picture.h"
 #include "station/commands/commands.h"
 #include "station/documents/draft_drawing.h"
 #include "station/documents/draft_file.h"
+#include "station/documents/number_text.h"
 #include "station/documents/patch_file.h"
 #include "station/documents/reader.h"
-#include "station/patch_view.h"
 
 namespace station {
 namespace {
@@ -27,13 +27,7 @@ using renderer::RelaxationReport;
 using renderer::RelaxedPatch;
 using renderer::YarnPatch;
 
-std::string number(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-// Overlap in percent of the thinner system's radius; 0 where yarns are apart.
+// The overlap in percent of the thinner system's radius; 0 where yarns are apart.
 double overlap_percent(const YarnPatch& patch, const Draft& draft) {
   const double radius_mm = std::min(draft.warp.diameter_mm, draft.weft.diameter_mm) / 2;
   return 100 * std::max(0.0, -patch.least_gap_mm) / radius_mm;
@@ -42,18 +36,18 @@ double overlap_percent(const YarnPatch& patch, const Draft& draft) {
 std::string described(const RelaxedPatch& relaxed, const Draft& draft) {
   const YarnPatch& patch = relaxed.patch;
   std::string text = patch.name + ": " + std::to_string(ends_in_patch(draft)) + " ends x " +
-                     std::to_string(picks_in_patch(draft)) + " picks, " + number("%.3f", patch.period_x_mm) + " x " +
-                     number("%.3f mm\n", patch.period_y_mm);
-  text +=
-      "crimp " + number("warp %.2f %%, ", 100 * patch.crimp_warp) + number("weft %.2f %%\n", 100 * patch.crimp_weft);
-  text += number("thickness %.3f mm\n", patch.thickness_mm) + number("cover %.1f %%\n", 100 * patch.cover);
-  text += patch.areal_mass_g_m2 > 0 ? number("mass %.1f g/m2\n", patch.areal_mass_g_m2)
+                     std::to_string(picks_in_patch(draft)) + " picks, " + formatted("%.3f", patch.period_x_mm) + " x " +
+                     formatted("%.3f mm\n", patch.period_y_mm);
+  text += "crimp " + formatted("warp %.2f %%, ", 100 * patch.crimp_warp) +
+          formatted("weft %.2f %%\n", 100 * patch.crimp_weft);
+  text += formatted("thickness %.3f mm\n", patch.thickness_mm) + formatted("cover %.1f %%\n", 100 * patch.cover);
+  text += patch.areal_mass_g_m2 > 0 ? formatted("mass %.1f g/m2\n", patch.areal_mass_g_m2)
                                     : "mass unknown: the draft gives no tex\n";
-  text += number("overlap of yarns %.2f %% of the radius\n", overlap_percent(patch, draft));
-  if (patch.height_scale != 1) text += number("heights scaled by %g\n", patch.height_scale);
+  text += formatted("overlap of yarns %.2f %% of the radius\n", overlap_percent(patch, draft));
+  if (patch.height_scale != 1) text += formatted("heights scaled by %g\n", patch.height_scale);
   if (relaxed.report.jammed)
     text += "note: yarns jam in this sett" +
-            number(" (they part by %.1f %% where they cross)", 100 * relaxed.report.crown_gap) +
+            formatted(" (they part by %.1f %% where they cross)", 100 * relaxed.report.crown_gap) +
             "; open it or take thinner yarns\n";
   else if (patch.height_scale < 1)
     text += "note: yarns overlap because the heights are scaled down\n";
@@ -151,7 +145,7 @@ void add_weave_command(CLI::App& app) {
     const YarnPatch& patch = relaxed.patch;
     const json document = to_json(patch);
     write_json_file(arguments->out, document);
-    if (!arguments->view.empty()) write_patch_view(arguments->view, patch);
+    if (!arguments->view.empty()) write_patch_picture(arguments->view, patch);
     if (arguments->json)
       std::cout << json{{"patch", arguments->out},
                         {"name", patch.name},

@@ -1,6 +1,6 @@
 #include "station/documents/board_file.h"
 
-#include "calibration/targets.h"
+#include "calibration/geometry/targets.h"
 
 namespace station {
 

@@ -1,8 +1,8 @@
 #include "station/documents/calibration_file.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "station/documents/degree.h"
 #include "station/documents/gate_list.h"
 #include "station/documents/lens_file.h"
 #include "station/documents/reader.h"
@@ -11,7 +11,6 @@ namespace station {
 namespace {
 
 using nlohmann::json;
-constexpr double kRadPerDeg = M_PI / 180.0;
 
 json camera_json(const CameraSetup& camera) {
   return {{"model", camera.model},
@@ -33,17 +32,17 @@ CameraSetup parse_camera(ObjectReader reader) {
 
 json degrees_json(const std::vector<double>& angles_rad) {
   json angles = json::array();
-  for (const double angle : angles_rad) angles.push_back(angle / kRadPerDeg);
+  for (const double angle : angles_rad) angles.push_back(angle / kDegree);
   return angles;
 }
 
 std::vector<double> read_degrees(ObjectReader& reader, const std::string& key) {
   std::vector<double> angles_rad;
-  for (const double angle : reader.numbers(key)) angles_rad.push_back(angle * kRadPerDeg);
+  for (const double angle : reader.numbers(key)) angles_rad.push_back(angle * kDegree);
   return angles_rad;
 }
 
-// Each tag as [id, x, y, x, y, x, y, x, y].
+// Each tag becomes [id, x, y, x, y, x, y, x, y].
 json still_tags_json(const calibration::StillTags& tags) {
   json list = json::array();
   for (const auto& [id, corners] : tags) {
@@ -78,13 +77,13 @@ json platform_json(const calibration::PlatformFit& fit, const calibration::Still
           {"world_from_table", to_json(fit.world_from_table)},
           {"angles_deg", degrees_json(fit.angles_rad)},
           {"readings_deg", degrees_json(fit.readings_rad)},
-          {"view_rms_px", fit.view_rms_px},
-          {"axis_to_table_normal_deg", fit.axis_to_table_normal_rad / kRadPerDeg},
+          {"view_rms_px", fit.picture_rms_px},
+          {"axis_to_table_normal_deg", fit.axis_to_table_normal_rad / kDegree},
           {"table_tags_px", still_tags_json(still)},
           {"gates", to_json(fit.gates)},
           {"angle_scale", fit.scale},
-          {"angle_offset_deg", fit.offset_rad / kRadPerDeg},
-          {"angle_rms_deg", fit.angle_rms_rad / kRadPerDeg},
+          {"angle_offset_deg", fit.offset_rad / kDegree},
+          {"angle_rms_deg", fit.angle_rms_rad / kDegree},
           {"rms_px", fit.rms_px},
           {"converged", fit.converged},
           {"axis_covariance", matrix_json(fit.axis_covariance)}};
@@ -97,13 +96,13 @@ calibration::PlatformFit parse_platform(ObjectReader reader, calibration::StillT
   fit.world_from_table = reader.transform("world_from_table");
   fit.angles_rad = read_degrees(reader, "angles_deg");
   fit.readings_rad = read_degrees(reader, "readings_deg");
-  fit.view_rms_px = reader.numbers("view_rms_px");
-  fit.axis_to_table_normal_rad = reader.number("axis_to_table_normal_deg", 0, 180) * kRadPerDeg;
+  fit.picture_rms_px = reader.numbers("view_rms_px");
+  fit.axis_to_table_normal_rad = reader.number("axis_to_table_normal_deg", 0, 180) * kDegree;
   still = read_still_tags(reader, "table_tags_px");
   fit.gates = parse_gates(reader, "gates");
   fit.scale = reader.number("angle_scale", 0.1, 10);
-  fit.offset_rad = reader.number("angle_offset_deg", -360, 360) * kRadPerDeg;
-  fit.angle_rms_rad = reader.number("angle_rms_deg", 0, 360) * kRadPerDeg;
+  fit.offset_rad = reader.number("angle_offset_deg", -360, 360) * kDegree;
+  fit.angle_rms_rad = reader.number("angle_rms_deg", 0, 360) * kDegree;
   fit.rms_px = reader.number("rms_px", 0, 1e6);
   fit.converged = reader.flag("converged");
   fit.axis_covariance = read_matrix(reader, "axis_covariance", 4, 4);
@@ -132,7 +131,7 @@ json light_json(const calibration::LightFit& fit, double albedo) {
     held_out.push_back({{"picture", held.name},
                         {"light", held.light == 0 ? "front" : "back"},
                         {"output", held.output},
-                        {"patch_error", held.patch_error},
+                        {"patch_error", held.spot_error},
                         {"picture_error", held.picture_error}});
   return {{"front", place_json(fit, 0)},
           {"back", place_json(fit, 1)},
@@ -147,7 +146,7 @@ json light_json(const calibration::LightFit& fit, double albedo) {
           {"spectralon_droop_sigma", {fit.droop_sigma[0], fit.droop_sigma[1]}},
           {"table_albedo", fit.table_albedo},
           {"relative_rms", fit.relative_rms},
-          {"patches_used", fit.patches_used},
+          {"patches_used", fit.spots_used},
           {"held_out", held_out},
           {"gates", to_json(fit.gates)},
           {"converged", fit.converged}};
@@ -171,12 +170,12 @@ calibration::LightFit parse_light(ObjectReader reader, double& albedo) {
   fit.droop_sigma = {droop_sigma[0], droop_sigma[1]};
   fit.table_albedo = reader.number("table_albedo", -1, 2);
   fit.relative_rms = reader.number("relative_rms", 0, 1e6);
-  fit.patches_used = reader.integer("patches_used", 0, 1 << 30);
+  fit.spots_used = reader.integer("patches_used", 0, 1 << 30);
   for (ObjectReader& entry : reader.objects("held_out")) {
     calibration::HeldOutPicture held{.name = entry.text("picture")};
     held.light = entry.choice("light", {"front", "back"}) == "front" ? 0 : 1;
     held.output = entry.number("output", 0, 1e6);
-    held.patch_error = entry.number("patch_error", 0, 1e6);
+    held.spot_error = entry.number("patch_error", 0, 1e6);
     held.picture_error = entry.number("picture_error", -1e6, 1e6);
     entry.finish();
     fit.held_out.push_back(held);
@@ -204,10 +203,8 @@ std::vector<calibration::Gate> all_gates(const RigCalibration& calibration) {
   std::vector<calibration::Gate> gates = calibration.lens.gates;
   gates.insert(gates.end(), calibration.platform.gates.begin(), calibration.platform.gates.end());
   gates.insert(gates.end(), calibration.light.gates.begin(), calibration.light.gates.end());
-  if (calibration.sensor)
-    gates.insert(gates.end(), calibration.sensor->gates.begin(), calibration.sensor->gates.end());
-  if (calibration.colour)
-    gates.insert(gates.end(), calibration.colour->gates.begin(), calibration.colour->gates.end());
+  if (calibration.sensor) gates.insert(gates.end(), calibration.sensor->gates.begin(), calibration.sensor->gates.end());
+  if (calibration.colour) gates.insert(gates.end(), calibration.colour->gates.begin(), calibration.colour->gates.end());
   return gates;
 }
 

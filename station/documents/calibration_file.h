@@ -9,19 +9,19 @@
 #include <string>
 #include <vector>
 
-#include "calibration/colour_chart.h"
-#include "calibration/lens.h"
-#include "calibration/light.h"
-#include "calibration/platform.h"
-#include "calibration/still_tags.h"
+#include "calibration/geometry/lens_fit.h"
+#include "calibration/geometry/platform.h"
+#include "calibration/geometry/still_tags.h"
+#include "calibration/light/colour_chart.h"
+#include "calibration/light/light.h"
 #include "station/documents/sensor_section.h"
 
 namespace station {
 
-// What the lens calibration belongs to: another body, lens, focus or aperture makes other pictures.
+// The camera settings for which a lens calibration holds: another body, lens, focus or aperture makes other pictures.
 struct CameraSetup {
   std::string model, serial;  // from the pictures
-  std::string lens, focus;    // from the rig file: most lenses say neither
+  std::string lens, focus;    // from the rig file: most lenses report neither
   double f_number = 8.0;      // from the pictures
 };
 
@@ -29,23 +29,23 @@ struct RigCalibration {
   CameraSetup camera;
   calibration::LensFit lens;
   calibration::PlatformFit platform;
-  calibration::StillTags still_tags;             // of the table, as the platform pictures showed them
+  calibration::StillTags still_tags;             // the table's tags, as the platform pictures showed them
   calibration::LightFit light;                   // light 0 = front, 1 = back
-  std::optional<SensorSection> sensor;           // absent: black level and exposure times as the files say
-  std::optional<calibration::ColourFit> colour;  // absent: no chart, linear_srgb_from_camera is the rig file's
+  std::optional<SensorSection> sensor;           // absent: black level and exposure times are the files'
+  std::optional<calibration::ColourFit> colour;  // absent: no chart; linear_srgb_from_camera is the rig file's
   double spectralon_albedo = 0.99;
   std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major; for display only
   std::string rig_name, utc, software;
-  std::vector<std::string> picture_sha256;  // of the pictures it was solved from, in their order
+  std::vector<std::string> picture_sha256;  // one per picture that it was solved from, in their order
 };
 
-// Of all its parts, in their order.
+// The acceptance checks of all parts of the calibration, part after part.
 std::vector<calibration::Gate> all_gates(const RigCalibration& calibration);
 
 nlohmann::json to_json(const RigCalibration& calibration);
 RigCalibration parse_calibration(const nlohmann::json& document, const std::string& source);
-// `folder_or_file`: a calibration's document, or the folder that holds it as calibration.json.
+// The path of a calibration's document: `folder_or_file` itself, or calibration.json in it when it is a folder.
 std::filesystem::path calibration_document(const std::filesystem::path& folder_or_file);
-RigCalibration read_calibration(const std::filesystem::path& folder_or_file);
+RigCalibration read_calibration(const std::filesystem::path& folder_or_file);  // errors: those of reader.h
 
 }  // namespace station

@@ -21,7 +21,7 @@ struct Square {
   cv::Vec3b color;
 };
 
-// Both drawings are these squares.
+// The squares that both drawings consist of.
 struct Drawing {
   int columns, rows;
   std::vector<Square> squares;
@@ -75,8 +75,8 @@ std::string draw_draft_svg(const renderer::Draft& draft) {
   std::string svg = line;
   for (const Square& s : drawing.squares) {
     std::snprintf(line, sizeof line,
-                  "<rect x=\"%d\" y=\"%d\" width=\"0.95\" height=\"0.95\" fill=\"#%02x%02x%02x\"/>\n", s.column,
-                  s.row, s.color[0], s.color[1], s.color[2]);
+                  "<rect x=\"%d\" y=\"%d\" width=\"0.95\" height=\"0.95\" fill=\"#%02x%02x%02x\"/>\n", s.column, s.row,
+                  s.color[0], s.color[1], s.color[2]);
     svg += line;
   }
   return svg + "</svg>\n";

@@ -1,5 +1,5 @@
-// A draft as weavers draw it: one square per crossing of the patch, in the colour of the yarn that lies on top, the first
-// pick at the bottom; colour orders of warp and weft along the edges.
+// The drawing of a draft as weavers make it: one square per crossing of the patch, in the colour of the yarn that lies
+// on top, the first pick at the bottom; the colour orders of warp and weft run along the edges.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -9,9 +9,11 @@
 
 namespace station {
 
-// A colour per thread, told apart at a glance; threads beyond the palette take it from the start again. The first two
-// are the dark warp and light weft of textbooks, taken for both systems when a draft has one thread only.
+// The colour (sRGB, red first) in which a thread is drawn, told apart at a glance; threads beyond the palette take it
+// from the start again. The first two are the dark warp and light weft of textbooks, which the drawings take for the
+// two systems when a draft has one thread only.
 cv::Vec3b thread_color(int thread);
+// The drawing as a picture and as SVG text.
 cv::Mat3b draw_draft(const renderer::Draft& draft, int square_px = 16);
 std::string draw_draft_svg(const renderer::Draft& draft);
 

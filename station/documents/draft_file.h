@@ -1,4 +1,4 @@
-// Draft files (kind "draft"): the structure, sett, yarn sizes and thread order of a cloth; keys in
+// A draft file (kind "draft"): the structure, sett, yarn sizes and thread order of a cloth; keys in
 // fixtures/drafts/README.md.
 //
 // Errors: those of reader.h, and the line of renderer::check_draft with the file's name in front.
@@ -14,10 +14,10 @@
 namespace station {
 
 renderer::Draft parse_draft(const nlohmann::json& document, const std::string& source);
-renderer::Draft read_draft(const std::filesystem::path& file);  // *.wif: wif_file.h
+renderer::Draft read_draft(const std::filesystem::path& file);  // a *.wif file by wif_file.h
 nlohmann::json to_json(const renderer::Draft& draft);
 
-// The numbers under `key`, where there are any, in place of the system's threads.
+// Replaces the system's thread numbers (counted from 0) by the list under `key`, when the object has that key.
 void replace_threads(ObjectReader& cloth, const std::string& key, renderer::YarnSystem& system);
 
 }  // namespace station

@@ -2,8 +2,12 @@
 
 #include <stdexcept>
 
+#include "station/documents/text_pieces.h"
+
 namespace station {
 namespace {
+
+using namespace std::string_view_literals;
 
 constexpr std::size_t kHeader = 512, kRecord = 3;
 constexpr double kUnit_mm = 0.1;
@@ -21,9 +25,7 @@ Eigen::Vector2d move_mm(unsigned char a, unsigned char b, unsigned char c) {
 
 std::string label_of(std::string_view header) {
   const std::size_t from = 3, end = header.find_first_of("\r\n\x1a", from);
-  std::string label(header.substr(from, end == std::string_view::npos ? 16 : end - from));
-  while (!label.empty() && (label.back() == ' ' || label.back() == '\0')) label.pop_back();
-  return label;
+  return trimmed(header.substr(from, end == std::string_view::npos ? 16 : end - from), " \0"sv);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ using rig::LineFault;
 
 constexpr int kMostOperations = 1000000;
 
-// As the enumerations' own names.
+// The words of fault files are the enumerators' own names.
 constexpr std::array<std::pair<const char*, LineFault>, 12> kLineFaults{{{"silence", LineFault::silence},
                                                                          {"lost_reply", LineFault::lost_reply},
                                                                          {"garbage", LineFault::garbage},

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "rig/cameras/camera_faults.h"
-#include "rig/turntables/simulated_port.h"
+#include "rig/simulated/camera_faults.h"
+#include "rig/simulated/simulated_port.h"
 
 namespace station {
 
@@ -15,7 +15,7 @@ struct Faults {
   rig::CameraFaultPlan camera;
 };
 
-// Errors: std::runtime_error naming the file and the key.
+// Read a fault plan from its document or its file. Errors: std::runtime_error naming the file and the key.
 Faults parse_faults(const nlohmann::json& document, const std::string& source);
 Faults read_faults(const std::filesystem::path& file);
 

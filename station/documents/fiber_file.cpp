@@ -1,5 +1,7 @@
 #include "station/documents/fiber_file.h"
 
+#include <numbers>
+
 #include "station/documents/parameter_ranges.h"
 #include "station/documents/reader.h"
 
@@ -12,7 +14,7 @@ renderer::FiberParameters parse_fiber(const nlohmann::json& document, const std:
   fiber.sigma_a = reader.vector3("sigma_a", kAbsorption);
   fiber.beta_m = reader.number("beta_m", kRoughness);
   fiber.beta_n = reader.number("beta_n", kRoughness);
-  fiber.tilt_rad = reader.number("tilt_deg", kTilt_deg) * renderer::kPi / 180;
+  fiber.tilt_rad = reader.number("tilt_deg", kTilt_deg) * std::numbers::pi / 180;
   reader.finish();
   return fiber;
 }
@@ -28,7 +30,7 @@ nlohmann::json to_json(const renderer::FiberParameters& fiber) {
           {"sigma_a", to_json(fiber.sigma_a)},
           {"beta_m", fiber.beta_m},
           {"beta_n", fiber.beta_n},
-          {"tilt_deg", fiber.tilt_rad * 180 / renderer::kPi}};
+          {"tilt_deg", fiber.tilt_rad * 180 / std::numbers::pi}};
 }
 
 }  // namespace station

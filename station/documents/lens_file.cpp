@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "calibration/mrcal_lens.h"
+#include "calibration/geometry/mrcal_lens.h"
 #include "station/documents/gate_list.h"
 
 namespace station {
@@ -28,7 +28,7 @@ calibration::LensDifference parse_difference(ObjectReader reader) {
 
 json views_json(const calibration::LensFit& fit) {
   json views = json::array();
-  for (std::size_t v = 0; v < fit.view_rms_px.size(); ++v) {
+  for (std::size_t v = 0; v < fit.picture_rms_px.size(); ++v) {
     json corners = json::array();
     for (const calibration::CornerError& entry : fit.corner_errors) {
       if (entry.view != static_cast<int>(v)) continue;
@@ -37,7 +37,7 @@ json views_json(const calibration::LensFit& fit) {
             entry.corner.pixel.y(), entry.used ? 1.0 : 0.0, entry.error_px.x(), entry.error_px.y()})
         corners.push_back(number);
     }
-    json view{{"rms_px", fit.view_rms_px[v]}, {"corners", corners}};
+    json view{{"rms_px", fit.picture_rms_px[v]}, {"corners", corners}};
     if (fit.camera_from_lattice[v]) view["camera_from_lattice"] = to_json(*fit.camera_from_lattice[v]);
     views.push_back(view);
   }
@@ -46,8 +46,8 @@ json views_json(const calibration::LensFit& fit) {
 
 void parse_views(ObjectReader& reader, calibration::LensFit& fit) {
   for (ObjectReader& view : reader.objects("views")) {
-    const int number = static_cast<int>(fit.view_rms_px.size());
-    fit.view_rms_px.push_back(view.number("rms_px", 0, 1e6));
+    const int number = static_cast<int>(fit.picture_rms_px.size());
+    fit.picture_rms_px.push_back(view.number("rms_px", 0, 1e6));
     const std::vector<double> corners = view.numbers("corners");
     if (corners.size() % kNumbersPerCorner != 0)
       view.refuse("corners", "has " + std::to_string(corners.size()) + " numbers; expected seven for each corner");
@@ -228,8 +228,8 @@ std::string describe(const calibration::LensFit& fit) {
       "          good to +-%.3f px at %.0f mm (at the picture's edges %.3f); OPENCV8 differs by %.3f px (median)",
       lens.fx_px, lens.fy_px, sigma(0), lens.cx_px, lens.cy_px, sigma(2), lens.distortion[0], lens.distortion[1],
       lens.distortion[2], lens.distortion[3], lens.distortion[4], views, nearest, furthest, fit.corners_used,
-      fit.corners_rejected, fit.rms_px, fit.board_warp_mm.x(), fit.board_warp_mm.y(),
-      calibration::middle_sigma_px(fit), fit.working_distance_mm, map.maxCoeff(), fit.opencv8.median_px);
+      fit.corners_rejected, fit.rms_px, fit.board_warp_mm.x(), fit.board_warp_mm.y(), calibration::middle_sigma_px(fit),
+      fit.working_distance_mm, map.maxCoeff(), fit.opencv8.median_px);
   std::string out(text, static_cast<std::size_t>(std::min(used, static_cast<int>(sizeof text) - 1)));
   if (fit.halves) {
     std::snprintf(text, sizeof text, ", half the views from the other half by %.3f px", fit.halves->median_px);

@@ -1,5 +1,5 @@
-// Lens calibrations in documents: a part of calibration.json, and files of their own (kind "lens") from existing
-// pictures. They keep the corners they were solved from, with every digit.
+// Lens calibrations in documents: a part of calibration.json, or a file of its own (kind "lens") when it was made from
+// existing pictures. Both keep, with every digit, the corners that the lens was solved from.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/lens.h"
+#include "calibration/geometry/lens_fit.h"
 #include "station/documents/reader.h"
 
 namespace station {
@@ -15,6 +15,7 @@ namespace station {
 nlohmann::json lens_json(const calibration::LensFit& fit);
 calibration::LensFit parse_lens_fit(ObjectReader reader);
 
+// A matrix as a list of rows; read_matrix refuses any other size.
 nlohmann::json matrix_json(const Eigen::MatrixXd& matrix);
 Eigen::MatrixXd read_matrix(ObjectReader& reader, const std::string& key, Eigen::Index rows, Eigen::Index columns);
 
@@ -27,10 +28,10 @@ struct LensFile {
 nlohmann::json to_json(const LensFile& lens);
 LensFile parse_lens_file(const nlohmann::json& document, const std::string& source);
 
-// The lens for mrcal's own tools, next to its document.
+// Writes the lens for mrcal's own tools as a .cameramodel file next to its document.
 void write_cameramodel_beside(const calibration::LensFit& fit, const std::filesystem::path& document);
 
-// A few lines for people.
+// The lens and its errors in a few lines for people.
 std::string describe(const calibration::LensFit& fit);
 
 }  // namespace station

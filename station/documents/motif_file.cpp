@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 
+#include "renderer/embroidery/digitise.h"
+#include "station/documents/disk/whole_file.h"
 #include "station/documents/dst_file.h"
 #include "station/documents/pes_file.h"
 #include "station/documents/svg_file.h"
@@ -23,10 +23,8 @@ renderer::Motif read_motif(const std::filesystem::path& file) {
     throw std::runtime_error(file.string() + ": no such file; check the path");
   if (std::filesystem::file_size(file) > kMostBytes)
     throw std::runtime_error(file.string() + ": is larger than 64 MiB, which no motif is; check the file");
-  std::ifstream stream(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) throw std::runtime_error(file.string() + ": cannot be read; check its permissions");
-  if (ending == ".svg") return parse_svg(bytes, file.string());
+  const std::string bytes = text_of_file(file);
+  if (ending == ".svg") return renderer::digitise(parse_svg(bytes, file.string()), file.string());
   return ending == ".dst" ? parse_dst(bytes, file.string()) : parse_pes(bytes, file.string());
 }
 

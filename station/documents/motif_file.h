@@ -1,4 +1,4 @@
-// Embroidery files by their ending: .dst (Tajima), .pes (Brother), .svg (line art).
+// Embroidery files by their ending: .dst (Tajima), .pes (Brother), .svg (line art, digitised).
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,8 @@
 
 namespace station {
 
-// Errors: std::runtime_error, one line: no such file, another ending, more than 64 MiB, those of dst_file.h, pes_file.h and svg_file.h.
+// Errors: std::runtime_error, one line: no such file, another ending, more than 64 MiB, those of dst_file.h, pes_file.h,
+// svg_file.h and renderer::digitise.
 renderer::Motif read_motif(const std::filesystem::path& file);
 
 }  // namespace station

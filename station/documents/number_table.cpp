@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <stdexcept>
+
+#include "station/documents/number_text.h"
+#include "station/documents/table_lines.h"
+#include "station/documents/text_pieces.h"
 
 namespace station {
 namespace {
-
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
-}
 
 std::vector<std::string> cells(const std::string& line) {
   std::vector<std::string> found;
@@ -24,20 +22,8 @@ std::vector<std::string> cells(const std::string& line) {
   }
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-  return all;
-}
-
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-std::string shown(double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  return std::string(text, end);
 }
 
 std::optional<double> finite_number(const std::string& text) {
@@ -49,7 +35,7 @@ std::optional<double> finite_number(const std::string& text) {
 }
 
 std::string shown(Range range) {
-  return "a number from " + shown(range.low) + " to " + shown(range.high);
+  return "a number from " + shortest_text(range.low) + " to " + shortest_text(range.high);
 }
 
 }  // namespace
@@ -57,17 +43,7 @@ std::string shown(Range range) {
 NumberTable::NumberTable(const std::filesystem::path& file, const std::vector<std::string>& required,
                          const std::vector<std::string>& optional)
     : file_(file.string()) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file))
-    throw std::runtime_error("cannot read " + file_ + ": " +
-                             (std::filesystem::exists(file) ? "not a readable file" : "no such file") +
-                             "; check the path");
-  std::size_t number = 0;
-  for (std::string line; std::getline(in, line);) {
-    ++number;
-    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // the mark that spreadsheets write
-    line = trimmed(line);
-    if (line.empty()) continue;
+  for (const auto& [number, line] : table_lines(file)) {
     if (line.front() == '#') {
       const std::string comment = trimmed(line.substr(1));
       const std::size_t space = comment.find(' ');
@@ -115,7 +91,7 @@ double NumberTable::number(std::size_t row, const std::string& column, Range ran
   const std::size_t index = index_of(column).value();
   const double value = values_[row * names_.size() + index];
   if (!(value >= range.low && value <= range.high))
-    refuse(lines_[row], index, "found " + shown(value) + ", expected " + shown(range));
+    refuse(lines_[row], index, "found " + shortest_text(value) + ", expected " + shown(range));
   return value;
 }
 

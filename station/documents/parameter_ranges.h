@@ -1,4 +1,4 @@
-// What the parameters of scattering models may be, in documents and tables.
+// The ranges of scattering parameters that documents and tables may give.
 #pragma once
 
 #include "station/documents/range.h"

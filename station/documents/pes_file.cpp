@@ -3,9 +3,12 @@
 #include <stdexcept>
 
 #include "station/documents/brother_colours.h"
+#include "station/documents/text_pieces.h"
 
 namespace station {
 namespace {
+
+using namespace std::string_view_literals;
 
 constexpr std::size_t kOffsetAt = 8, kCountAt = 48,
                       kStitchesAt = 532;  // the latter two from where the section begins
@@ -50,11 +53,6 @@ Coordinate coordinate(Bytes& bytes, int first) {
   return {.value = bits < 2048 ? bits : bits - 4096, .jump = (first & 0x10) != 0, .trim = (first & 0x20) != 0};
 }
 
-std::string trimmed(std::string text) {
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\r' || text.back() == '\0')) text.pop_back();
-  return text;
-}
-
 }  // namespace
 
 renderer::Motif parse_pes(std::string_view bytes, const std::string& source) {
@@ -93,10 +91,9 @@ renderer::Motif parse_pes(std::string_view bytes, const std::string& source) {
   renderer::Motif& motif = recorder.motif();
   if (motif.threads.size() > numbers.size())
     throw std::runtime_error(source + ": changes to thread " + std::to_string(motif.threads.size()) + " but has " +
-                             std::to_string(numbers.size()) +
-                             " colours; the file is damaged, export the motif again");
+                             std::to_string(numbers.size()) + " colours; the file is damaged, export the motif again");
   for (std::size_t i = 0; i < motif.threads.size(); ++i) motif.threads[i] = brother_thread(numbers[i]);
-  motif.name = trimmed(label.substr(3));
+  motif.name = trimmed(label.substr(3), " \r\0"sv);
   if (renderer::measure(motif).stitches == 0)
     throw std::runtime_error(source + ": has no stitch; give a motif with at least one");
   return motif;

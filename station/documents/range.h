@@ -1,4 +1,4 @@
-// What a number in a document or table may be: both ends included.
+// The values that a number in a document or table may have: from `low` to `high`, both included.
 #pragma once
 
 namespace station {

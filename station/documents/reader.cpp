@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <span>
-#include <sstream>
 #include <stdexcept>
 
-#include "station/capture/stored_file.h"
+#include "station/documents/disk/stored_file.h"
+#include "station/documents/disk/whole_file.h"
 
 namespace station {
 namespace {
@@ -33,14 +32,7 @@ std::string text_of(Range range) {
 }  // namespace
 
 json read_json_file(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file))
-    throw std::runtime_error("cannot read " + file.string() + ": " +
-                             (std::filesystem::exists(file) ? "not a readable file" : "no such file") +
-                             "; check the path");
-  std::stringstream content;
-  content << in.rdbuf();
-  const std::string text = content.str();
+  const std::string text = text_of_file(file);
   try {
     return json::parse(text);
   } catch (const json::parse_error& error) {
@@ -69,8 +61,8 @@ ObjectReader::ObjectReader(const json& document, const std::string& source, cons
   const std::string wanted = "threadstation/" + kind;
   const std::string format = has("format") ? text("format") : std::string("no \"format\" key");
   if (format != wanted)
-    throw std::runtime_error(source + ": expected a \"" + wanted + "\" document, found " + format + "; give a " +
-                             kind + " file here");
+    throw std::runtime_error(source + ": expected a \"" + wanted + "\" document, found " + format + "; give a " + kind +
+                             " file here");
   const int found = integer("version", 0, 1 << 30);
   if (found != version)
     throw std::runtime_error(source + ": " + kind + " version " + std::to_string(found) +
@@ -202,7 +194,7 @@ Eigen::Isometry3d ObjectReader::transform(const std::string& key) {
     }
   }
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
-  // 1e-6: twelve printed digits survive; a scaled or mirrored matrix does not.
+  // Twelve printed digits pass the limit of 1e-6; a scaled or mirrored matrix does not.
   if ((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() > 1e-6 || rotation.determinant() < 0 ||
       (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).norm() > 0)
     refuse(key, "is not a rigid transform; " + expected);
@@ -214,10 +206,9 @@ const json& ObjectReader::raw(const std::string& key) {
 }
 
 void ObjectReader::finish() const {
-  for (const auto& [key, unused] : object_->items()) {
+  for (const auto& [key, unused] : object_->items())
     if (std::find(asked_.begin(), asked_.end(), key) == asked_.end())
       throw std::runtime_error(source_ + ": unknown key \"" + full_name(key) + "\"; remove it or check its spelling");
-  }
 }
 
 json to_json(const Eigen::Vector3d& v) {

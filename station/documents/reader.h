@@ -1,7 +1,9 @@
-// Strict reading of threadstation's JSON documents: every key is asked for, an unknown one is an error that names it.
+// A strict reader of threadstation's JSON documents: every key is asked for, and an unknown one is an error that names
+// it. Each kind of document has functions of the same names: parse_<kind> reads a document (`source` is the name that
+// error messages give it), read_<kind> a file, and to_json makes the document.
 //
-// Errors: std::runtime_error, one line: the file, the key (as a path such as "camera.width_px"), what was found and what
-// is expected.
+// Errors: std::runtime_error, one line: the file, the key (as a path such as "camera.width_px"), what was found and
+// what is expected.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -16,17 +18,17 @@
 
 namespace station {
 
-// Reads a file and parses it; says line and column where it is not JSON.
+// Reads and parses a file; the error for text that is not JSON tells line and column.
 nlohmann::json read_json_file(const std::filesystem::path& file);
 
-// Whole or not at all, by store_file (capture/stored_file.h).
+// Write a file whole or not at all, by store_file (disk/stored_file.h).
 void write_json_file(const std::filesystem::path& file, const nlohmann::json& document);
 void write_text_file(const std::filesystem::path& file, const std::string& text);
 
-// One object of a document. Ask for its keys, then call finish(), which refuses keys nobody asked for.
+// One object of a document. Callers ask for its keys, then call finish(), which refuses keys that nobody asked for.
 class ObjectReader {
  public:
-  // The whole document: checks "format" = "threadstation/<kind>" and "version" = version.
+  // Begins with a whole document, of which "format" must be "threadstation/<kind>" and "version" `version`.
   ObjectReader(const nlohmann::json& document, const std::string& source, const std::string& kind, int version);
 
   bool has(const std::string& key) const;
@@ -39,13 +41,13 @@ class ObjectReader {
   int integer(const std::string& key, int low, int high);
   double number(const std::string& key, double low, double high);
   double number(const std::string& key, Range range) { return number(key, range.low, range.high); }
-  std::vector<double> numbers(const std::string& key);  // any length, finite
+  std::vector<double> numbers(const std::string& key);  // any number of finite numbers
   std::vector<double> numbers(const std::string& key, std::size_t count);
-  std::vector<double> numbers(const std::string& key, std::size_t count, Range range);  // each of them
+  std::vector<double> numbers(const std::string& key, std::size_t count, Range range);  // each in `range`
   Eigen::Vector3d vector3(const std::string& key);
   Eigen::Vector3d vector3(const std::string& key, Range range);
   Eigen::Isometry3d transform(const std::string& key);  // 4 x 4 row-major, rotation checked
-  const nlohmann::json& raw(const std::string& key);
+  const nlohmann::json& raw(const std::string& key);    // the value as it is
 
   void finish() const;
   [[noreturn]] void refuse(const std::string& key, const std::string& found_and_expected) const;

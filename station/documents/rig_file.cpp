@@ -2,16 +2,15 @@
 
 #include <cmath>
 
-#include "calibration/targets.h"
+#include "calibration/geometry/targets.h"
 #include "station/documents/board_file.h"
+#include "station/documents/degree.h"
 #include "station/documents/reader.h"
 
 namespace station {
 namespace {
 
-constexpr double kRadPerDeg = M_PI / 180.0;
-
-// Camera axes (OpenCV) at `position`, looking at `aim`, picture upright.
+// The pose (OpenCV camera axes) of a camera at `position` that looks at `aim` with its picture upright.
 Eigen::Isometry3d looking_at(const Eigen::Vector3d& position, const Eigen::Vector3d& aim) {
   const Eigen::Vector3d forward = (aim - position).normalized();
   const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
@@ -25,7 +24,7 @@ Eigen::Isometry3d looking_at(const Eigen::Vector3d& position, const Eigen::Vecto
 
 Eigen::Isometry3d lying_at(double x_mm, double y_mm, double turn_deg) {
   Eigen::Isometry3d pose(Eigen::Translation3d(x_mm, y_mm, 0));
-  pose.rotate(Eigen::AngleAxisd(turn_deg * kRadPerDeg, Eigen::Vector3d::UnitZ()));
+  pose.rotate(Eigen::AngleAxisd(turn_deg * kDegree, Eigen::Vector3d::UnitZ()));
   return pose;
 }
 
@@ -58,7 +57,7 @@ calibration::TagLayout parse_table_tags(ObjectReader table) {
   return calibration::make_table_sheet(centres, tag_mm, first_id);
 }
 
-// Every printed layout as it came out of the printer.
+// Scales every printed layout to the size in which it came out of the printer.
 void scale_prints(RigFile& rig, const ObjectReader& reader) {
   for (calibration::TagLayout* layout :
        {&rig.board, &rig.platform_ring, &rig.table_tags, &rig.lamp_tags, &rig.holder_tags, &rig.spectralon.tags})
@@ -146,7 +145,7 @@ void parse_lens(ObjectReader lens, rig::TrueLens& truth) {
   lens.finish();
 }
 
-// In the plane of the camera and the platform's axis.
+// The mirror image of a point in the plane of the camera and the platform's axis.
 Eigen::Vector3d mirrored(const Eigen::Vector3d& point) {
   return {point.x(), -point.y(), point.z()};
 }
@@ -161,8 +160,8 @@ SimulatedRig parse_simulation(ObjectReader simulation) {
   parse_lens(simulation.object("lens"), truth.lens);
   ObjectReader turntable = simulation.object("turntable");
   truth.turntable.scale = turntable.number("scale", 0.5, 2);
-  truth.turntable.step_rad = turntable.number("step_deg", 0, 10) * kRadPerDeg;
-  truth.turntable.speed_rad_s = turntable.number("speed_deg_s", 0.01, 1000) * kRadPerDeg;
+  truth.turntable.step_rad = turntable.number("step_deg", 0, 10) * kDegree;
+  truth.turntable.speed_rad_s = turntable.number("speed_deg_s", 0.01, 1000) * kDegree;
   turntable.finish();
   ObjectReader lamp = simulation.object("lamp");
   truth.front.position = lamp.vector3("front_position_mm");
@@ -189,12 +188,12 @@ SimulatedRig parse_simulation(ObjectReader simulation) {
   result.board_bow_mm = simulation.number("board_bow_mm", -20, 20);
   result.spectralon_droop = simulation.number("spectralon_droop_percent", 0, 30) / 100;
   truth.placement_mm = simulation.number("placement_mm", 0, 20);
-  truth.placement_rad = simulation.number("placement_deg", 0, 20) * kRadPerDeg;
+  truth.placement_rad = simulation.number("placement_deg", 0, 20) * kDegree;
   simulation.finish();
   return result;
 }
 
-// Which port: its name or the serial number of its USB adapter, one of the two.
+// The serial port, given by its name or by the serial number of its USB adapter.
 rig::SerialPortChoice parse_port(ObjectReader& reader, TurntableWire::Line line) {
   rig::SerialPortChoice choice;
   if (line == TurntableWire::Line::simulated) return choice;
@@ -241,8 +240,8 @@ TurntableWire parse_turntable(ObjectReader reader, const std::string& driver) {
   wire.stepper.home_by = wire.controller.home_by;
   if (driver == "zaber" && wire.controller.home_by == rig::HomeBy::here)
     reader.refuse("home", "a Zaber stage finds its home by itself; expected \"switch\"");
-  wire.stepper.limit_rad = reader.number("limit_deg", 90, 360) * kRadPerDeg;
-  wire.stepper.backlash_rad = reader.number("backlash_deg", 0, 20) * kRadPerDeg;
+  wire.stepper.limit_rad = reader.number("limit_deg", 90, 360) * kDegree;
+  wire.stepper.backlash_rad = reader.number("backlash_deg", 0, 20) * kDegree;
   wire.controller.reply_timeout_s = reader.number("reply_timeout_s", 0.1, 30);
   wire.stepper.move_timeout_s = reader.number("move_timeout_s", 1, 3600);
   if (driver == "zaber") {
@@ -269,24 +268,8 @@ void parse_capture(ObjectReader capture, RigFile& rig) {
   capture.finish();
 }
 
-}  // namespace
-
-Eigen::Vector3d chart_patch_centre(const ColourChart& chart, std::size_t patch) {
-  const double column = static_cast<double>(patch % kChartColumns) - (kChartColumns - 1) / 2.0;
-  const double row = static_cast<double>(patch / kChartColumns) - (kChartRows - 1) / 2.0;
-  return {column * chart.pitch_mm, -row * chart.pitch_mm, 0};
-}
-
-RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
-  ObjectReader reader(document, source, "rig", 1);
-  RigFile rig;
-  rig.name = reader.text("name");
-  rig.camera_driver = reader.choice("camera", {"simulated", "gphoto2"});
-  if (rig.camera_driver == "gphoto2") rig.camera_wire = parse_camera(reader.object("camera_connection"));
-  rig.turntable_driver = reader.choice("turntable", {"simulated", "grbl", "zaber", "manual"});
-  if (rig.turntable_driver == "grbl" || rig.turntable_driver == "zaber")
-    rig.turntable_wire = parse_turntable(reader.object("turntable_setup"), rig.turntable_driver);
-  rig.operator_driver = reader.choice("operator", {"simulated", "console"});
+// The lens, its focus, and where the camera stands by tape.
+void parse_camera_setup(ObjectReader& reader, RigFile& rig) {
   ObjectReader setup = reader.object("camera_setup");
   rig.lens_name = setup.text("lens");
   rig.focus = setup.text("focus");
@@ -298,6 +281,10 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
   ObjectReader camera = reader.object("camera_by_tape");
   rig.world_from_camera_by_tape = looking_at(camera.vector3("position_mm"), camera.vector3("aim_mm"));
   camera.finish();
+}
+
+// The board, the platform and everything else that carries tags, as printed.
+void parse_targets(ObjectReader& reader, RigFile& rig) {
   ObjectReader board = reader.object("board");
   rig.board_grid = parse_tag_board(board);
   rig.board = rig.board_grid.layout();
@@ -314,8 +301,8 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
       corner_tags(reader.object("holder_tags"), "holder", Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
   if (reader.has("reference_patch")) {
     ObjectReader patch = reader.object("reference_patch");
-    rig.reference_patch =
-        ReferencePatch{.edge_mm = patch.number("edge_mm", 1, 100), .albedo = patch.number("albedo", 0.01, 1)};
+    rig.reference_chip =
+        ReferenceChip{.edge_mm = patch.number("edge_mm", 1, 100), .albedo = patch.number("albedo", 0.01, 1)};
     patch.finish();
   }
   if (reader.has("colour_chart")) rig.colour_chart = parse_chart(reader.object("colour_chart"));
@@ -328,7 +315,9 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
   panel.finish();
   if (reader.has("control_bar_mm")) rig.control_bar_mm = reader.number("control_bar_mm", 80, 125);
   scale_prints(rig, reader);
-  ObjectReader lamps = reader.object("lamp_by_tape");
+}
+
+void parse_lamps(ObjectReader lamps, RigFile& rig) {
   rig.front_lamp_mm = lamps.vector3("front_position_mm");
   rig.back_lamp_mm = lamps.vector3("back_position_mm");
   rig.front_left_lamp_mm =
@@ -336,6 +325,29 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
   rig.lamp_aim_mm = lamps.vector3("aim_mm");
   rig.lamp_radius_mm = lamps.number("radius_mm", 0.1, 100);
   lamps.finish();
+}
+
+}  // namespace
+
+Eigen::Vector3d chart_square_centre(const ColourChart& chart, std::size_t patch) {
+  const double column = static_cast<double>(patch % kChartColumns) - (kChartColumns - 1) / 2.0;
+  const double row = static_cast<double>(patch / kChartColumns) - (kChartRows - 1) / 2.0;
+  return {column * chart.pitch_mm, -row * chart.pitch_mm, 0};
+}
+
+RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
+  ObjectReader reader(document, source, "rig", 1);
+  RigFile rig;
+  rig.name = reader.text("name");
+  rig.camera_driver = reader.choice("camera", {"simulated", "gphoto2"});
+  if (rig.camera_driver == "gphoto2") rig.camera_wire = parse_camera(reader.object("camera_connection"));
+  rig.turntable_driver = reader.choice("turntable", {"simulated", "grbl", "zaber", "manual"});
+  if (rig.turntable_driver == "grbl" || rig.turntable_driver == "zaber")
+    rig.turntable_wire = parse_turntable(reader.object("turntable_setup"), rig.turntable_driver);
+  rig.operator_driver = reader.choice("operator", {"simulated", "console"});
+  parse_camera_setup(reader, rig);
+  parse_targets(reader, rig);
+  parse_lamps(reader.object("lamp_by_tape"), rig);
   parse_capture(reader.object("capture"), rig);
   if (reader.has("simulation")) {
     rig.simulation = parse_simulation(reader.object("simulation"));

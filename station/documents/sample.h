@@ -1,4 +1,4 @@
-// What a lab knows of a spool beside its geometry; texts as people wrote them, any of them may be empty.
+// What a lab knows of a spool beside its geometry, as people wrote it; any of the texts may be empty.
 #pragma once
 
 #include <filesystem>
@@ -16,9 +16,9 @@ struct Sample {
 };
 
 nlohmann::json to_json(const Sample& sample);
-Sample read_sample(ObjectReader& reader);  // finishes it
+Sample read_sample(ObjectReader& reader);  // also calls reader.finish()
 
-// As a document of its own (kind "sample", version 1). Errors: those of reader.h.
+// Read and write a sample as a document of its own (kind "sample", version 1). Errors: those of reader.h.
 Sample read_sample_file(const std::filesystem::path& file);
 void write_sample_file(const std::filesystem::path& file, const Sample& sample);
 

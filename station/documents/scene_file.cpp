@@ -1,17 +1,14 @@
 #include "station/documents/scene_file.h"
 
 #include <algorithm>
-#include <cmath>
+#include <numbers>
+#include <set>
 #include <stdexcept>
 
-#include "renderer/embroidery/sewn_curves.h"
-#include "renderer/embroidery/stitch_curves.h"
-#include "renderer/garment.h"
-#include "renderer/image_file.h"
-#include "renderer/mesh_file.h"
-#include "renderer/weave/patch_curves.h"
-#include "renderer/weave/patch_measures.h"
-#include "renderer/weave/woven_patch.h"
+#include "renderer/picture/image_file.h"
+#include "renderer/scene/mesh_file.h"
+#include "renderer/scene/patch_curves.h"
+#include "station/documents/degree.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/motif_file.h"
 #include "station/documents/patch_file.h"
@@ -24,7 +21,6 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using nlohmann::json;
-using renderer::ClothShape;
 
 constexpr double kLeastSize = 0.01, kMostSize = 1e4;  // mm
 constexpr double kMostCoordinate = 1e6;               // mm
@@ -52,6 +48,10 @@ Vector3d point(ObjectReader& reader, const std::string& key) {
 
 void read_length(ObjectReader& reader, const char* key, double least, double& value) {
   if (reader.has(key)) value = reader.number(key, least, kMostSize);
+}
+
+double turn_rad(ObjectReader& reader) {
+  return reader.has("turn_deg") ? reader.number("turn_deg", -360, 360) * kDegree : 0;
 }
 
 // What the file that "file" names holds; its errors name the scene as well.
@@ -99,7 +99,7 @@ renderer::GarmentShape parse_garment(ObjectReader& reader, const std::string& ki
   return s;
 }
 
-ClothShape parse_shape(ObjectReader& reader, std::initializer_list<const char*> kinds,
+SceneShape parse_shape(ObjectReader& reader, std::initializer_list<const char*> kinds,
                        const std::filesystem::path& folder) {
   const std::string kind = reader.choice("kind", kinds);
   if (kind == "cylinder") {
@@ -110,33 +110,25 @@ ClothShape parse_shape(ObjectReader& reader, std::initializer_list<const char*> 
     const double width_mm = reader.number("width_mm", kLeastSize, kMostSize);
     return renderer::SwatchShape{width_mm, reader.number("height_mm", kLeastSize, kMostSize)};
   }
-  renderer::MeshShape shape;
-  if (kind == "mesh")
-    shape = parse_mesh(reader, folder);
-  else
-    shape = {.mesh = std::make_shared<renderer::UvMesh>(renderer::garment_mesh(parse_garment(reader, kind))),
-             .placement = {.uv_mm = 1},
-             .name = "the ready " + kind};
-  if (reader.has("turn_deg")) shape.placement.turn_rad = reader.number("turn_deg", -360, 360) * renderer::kPi / 180;
+  if (kind != "mesh") {
+    const renderer::GarmentShape garment = parse_garment(reader, kind);
+    return SceneGarment{garment, turn_rad(reader)};
+  }
+  renderer::MeshShape shape = parse_mesh(reader, folder);
+  shape.placement.turn_rad = turn_rad(reader);
   return shape;
 }
 
-void read_weave(ObjectReader& cloth, const std::filesystem::path& folder, SceneCloth& scene) {
+std::variant<renderer::Draft, renderer::YarnPatch> parse_weave(ObjectReader& cloth,
+                                                               const std::filesystem::path& folder) {
   if (cloth.has("patch") == cloth.has("draft"))
     cloth.refuse("draft", "give either a draft or a patch, not both and not none");
-  if (cloth.has("patch")) {
-    scene.patch = read_patch(folder / cloth.text("patch"));
-    const auto& yarns = scene.patch.yarns;
-    const auto warp = std::count_if(yarns.begin(), yarns.end(), [](const renderer::Yarn& yarn) { return yarn.warp; });
-    scene.crossings = {static_cast<int>(warp), static_cast<int>(yarns.size()) - static_cast<int>(warp)};
-    return;
-  }
+  if (cloth.has("patch")) return read_chip(folder / cloth.text("patch"));
   renderer::Draft draft = read_draft(folder / cloth.text("draft"));
   replace_threads(cloth, "warp_threads", draft.warp);
   replace_threads(cloth, "weft_threads", draft.weft);
   if (const auto problem = renderer::check_draft(draft)) cloth.refuse("draft", *problem);
-  scene.patch = renderer::woven_patch(draft).patch;
-  scene.crossings = {renderer::ends_in_patch(draft), renderer::picks_in_patch(draft)};
+  return draft;
 }
 
 renderer::AbsorptionTexture parse_absorption(ObjectReader reader, const std::filesystem::path& folder) {
@@ -157,18 +149,22 @@ renderer::AbsorptionTexture parse_absorption(ObjectReader reader, const std::fil
   return texture;
 }
 
-void check_threads(const ObjectReader& cloth, const renderer::YarnPatch& patch, std::size_t count) {
-  for (const int thread : renderer::threads_of(patch))
-    if (static_cast<std::size_t>(thread) >= count)
-      cloth.refuse("draft", "\"" + patch.name + "\" has a yarn of thread " + std::to_string(thread) +
-                                ", but the scene lists " + std::to_string(count) +
-                                " threads (counted from 0); add the thread or change the order of threads");
+// A draft's shades are drawn when it is woven: woven_cloth() checks them.
+void check_threads(const ObjectReader& reader, const SceneCloth& cloth, std::size_t listed) {
+  std::optional<std::string> problem;
+  if (const auto* patch = std::get_if<renderer::YarnPatch>(&cloth.weave))
+    problem = missing_thread(patch->name, renderer::threads_of(*patch), listed);
+  else if (const auto& draft = std::get<renderer::Draft>(cloth.weave); draft.unevenness.shades == 1) {
+    std::set<int> threads(draft.warp.threads.begin(), draft.warp.threads.end());
+    threads.insert(draft.weft.threads.begin(), draft.weft.threads.end());
+    problem = missing_thread(draft.name, {threads.begin(), threads.end()}, listed);
+  }
+  if (problem) reader.refuse("draft", *problem);
 }
 
 SceneCloth parse_cloth(ObjectReader reader, const std::filesystem::path& folder, std::size_t threads) {
-  SceneCloth cloth;
-  read_weave(reader, folder, cloth);
-  check_threads(reader, cloth.patch, threads);
+  SceneCloth cloth{.weave = parse_weave(reader, folder)};
+  check_threads(reader, cloth, threads);
   ObjectReader shape = reader.object("shape");
   cloth.shape = parse_shape(shape, {"swatch", "cylinder", "mesh", "skirt", "pleats", "drape"}, folder);
   shape.finish();
@@ -212,7 +208,7 @@ SceneEmbroidery parse_embroidery(ObjectReader reader, const std::filesystem::pat
     const std::vector<double> at = reader.numbers("at_mm", 2, {-kMostCoordinate, kMostCoordinate});
     made.at_mm = Eigen::Vector2d(at[0], at[1]);
   }
-  if (reader.has("turn_deg")) made.turn_rad = reader.number("turn_deg", -360, 360) * renderer::kPi / 180;
+  made.turn_rad = turn_rad(reader);
   reader.finish();
   return made;
 }
@@ -248,7 +244,7 @@ renderer::SphereLight parse_sphere(ObjectReader& reader) {
   renderer::SphereLight light;
   light.center = point(reader, "position_mm");
   light.radius_mm = reader.number("radius_mm", 1e-3, kMostCoordinate);
-  light.radiance = parse_radiance(reader, renderer::kPi * light.radius_mm * light.radius_mm);
+  light.radiance = parse_radiance(reader, std::numbers::pi * light.radius_mm * light.radius_mm);
   return light;
 }
 
@@ -291,14 +287,14 @@ void parse_surroundings(ObjectReader reader, const std::filesystem::path& folder
   renderer::EnvironmentLight light = named_file(reader, folder, [](const std::filesystem::path& file) {
     renderer::EnvironmentLight read{.radiance = renderer::read_exr(file)};
     try {
-      renderer::EnvironmentMap checked(read);
+      renderer::check_radiances(read.radiance);
     } catch (const std::runtime_error& problem) {
       throw std::runtime_error(file.string() + ": " + problem.what());
     }
     return read;
   });
   if (reader.has("scale")) light.radiance *= reader.number("scale", 1e-9, 1e9);
-  if (reader.has("turn_deg")) light.turn_rad = reader.number("turn_deg", -360, 360) * renderer::kPi / 180;
+  light.turn_rad = turn_rad(reader);
   if (reader.has("visible")) light.visible = reader.flag("visible");
   reader.finish();
   scene.surroundings = std::move(light);
@@ -309,8 +305,7 @@ renderer::Camera parse_camera(ObjectReader reader) {
   const Vector3d up = reader.has("up") ? reader.vector3("up") : Vector3d::UnitZ();
   if (!((target - eye).norm() > 0)) reader.refuse("target_mm", "is where the eye is; look at something else");
   if (!(up.cross(target - eye).norm() > 1e-6 * up.norm() * (target - eye).norm()))
-    reader.refuse("up",
-                  "points along the view (its default is [0, 0, 1]); give a direction that is up in the picture");
+    reader.refuse("up", "points along the view (its default is [0, 0, 1]); give a direction that is up in the picture");
   renderer::Camera camera = renderer::look_at(eye, target, up);
   camera.width = reader.integer("width_px", 1, kMostSide);
   camera.height = reader.integer("height_px", 1, kMostSide);
@@ -336,28 +331,20 @@ void read_threads(ObjectReader& reader, const std::filesystem::path& folder, Sce
   }
 }
 
-// An embroidery's threads as curves, each with its scattering.
-std::vector<renderer::CurveSet> sewn(const SceneEmbroidery& embroidery, const SceneCloth& cloth) {
-  const renderer::ClothSurface surface = renderer::surface_of(cloth.shape, cloth.patch, cloth.world_from_cloth);
-  const renderer::MotifMeasures extents = renderer::measure(embroidery.motif);
-  renderer::MotifPlace place{.turn_rad = embroidery.turn_rad};
-  place.at_mm =
-      embroidery.at_mm.value_or(renderer::middle_of(surface)) - place.on_cloth((extents.low + extents.high) / 2);
-  std::vector<renderer::CurveSet> sets;
-  renderer::StitchCurves stitches = renderer::stitch_curves(embroidery.motif, embroidery.diameter_mm);
-  for (std::size_t i = 0; i < stitches.threads.size(); ++i) {
-    if (stitches.threads[i].segments.empty()) continue;
-    stitches.threads[i].scattering = embroidery.threads[i];
-    sets.push_back(std::move(stitches.threads[i]));
-  }
-  return renderer::sewn_curves(std::move(sets), place, surface, renderer::surface_range(cloth.patch).high_mm);
-}
-
 }  // namespace
+
+std::optional<std::string> missing_thread(const std::string& cloth, const std::vector<int>& threads,
+                                          std::size_t listed) {
+  for (const int thread : threads)
+    if (static_cast<std::size_t>(thread) >= listed)
+      return "\"" + cloth + "\" has a yarn of thread " + std::to_string(thread) + ", but the scene lists " +
+             std::to_string(listed) + " threads (counted from 0); add the thread or change the order of threads";
+  return std::nullopt;
+}
 
 SceneFile parse_scene(const json& document, const std::string& source, const std::filesystem::path& folder) {
   ObjectReader reader(document, source, "scene", 1);
-  SceneFile scene;
+  SceneFile scene{.source = source};
   scene.name = reader.text("name");
   read_threads(reader, folder, scene);
   for (const ObjectReader& cloth : reader.objects("cloths"))
@@ -366,8 +353,7 @@ SceneFile parse_scene(const json& document, const std::string& source, const std
     for (const ObjectReader& embroidery : reader.objects("embroideries"))
       scene.embroideries.push_back(parse_embroidery(embroidery, folder, scene));
   if (reader.has("objects"))
-    for (const ObjectReader& object : reader.objects("objects"))
-      scene.objects.push_back(parse_object(object, folder));
+    for (const ObjectReader& object : reader.objects("objects")) scene.objects.push_back(parse_object(object, folder));
   for (const ObjectReader& light : reader.objects("lights"))
     if (light.has("file"))
       parse_surroundings(light, folder, scene);
@@ -384,30 +370,6 @@ SceneFile parse_scene(const json& document, const std::string& source, const std
 
 SceneFile read_scene(const std::filesystem::path& file) {
   return parse_scene(read_json_file(file), file.string(), file.parent_path());
-}
-
-renderer::Scene to_scene(const SceneFile& file) {
-  renderer::Scene scene;
-  const std::vector<renderer::ScatteringModel> threads(file.threads.begin(), file.threads.end());
-  for (const SceneCloth& cloth : file.cloths) {
-    if (cloth.two_scale) {
-      scene.cloths.push_back({renderer::surface_of(cloth.shape, cloth.patch, cloth.world_from_cloth), cloth.patch,
-                              threads, cloth.absorption});
-    } else {
-      for (renderer::CurveSet& set :
-           renderer::explicit_curves(cloth.shape, cloth.patch, threads, cloth.world_from_cloth))
-        scene.curves.push_back(std::move(set));
-    }
-  }
-  for (const SceneEmbroidery& embroidery : file.embroideries)
-    for (renderer::CurveSet& set : sewn(embroidery, file.cloths[static_cast<std::size_t>(embroidery.cloth)]))
-      scene.curves.push_back(std::move(set));
-  for (const SceneBody& body : file.objects)
-    scene.meshes.push_back(renderer::body_of(body.shape, body.world_from_object, body.albedo));
-  scene.lights = file.lights;
-  scene.rectangles = file.rectangles;
-  scene.surroundings = file.surroundings;
-  return scene;
 }
 
 }  // namespace station

@@ -1,5 +1,6 @@
 // Scene files (kind "scene"): cloths of digitized threads, bodies under them, lights and a camera; keys in
-// fixtures/scenes/README.md. Threads, drafts and patches are named relative to the scene file and read with it.
+// fixtures/scenes/README.md. The files that a scene names (threads, drafts, patches, motifs, meshes, pictures) are named
+// relative to it and read with it. Nothing is woven or draped here: that is cloth/render/build_scene.h.
 //
 // Errors: those of reader.h and of the files that the scene names.
 #pragma once
@@ -9,20 +10,29 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
-#include "renderer/camera.h"
-#include "renderer/cloth_shape.h"
 #include "renderer/embroidery/motif.h"
-#include "renderer/scene.h"
+#include "renderer/picture/camera.h"
+#include "renderer/scene/cloth_shape.h"
+#include "renderer/scene/garment.h"
+#include "renderer/scene/scene.h"
+#include "renderer/weave/draft.h"
 
 namespace station {
 
+// A ready garment; its uv is turned on the pattern.
+struct SceneGarment {
+  renderer::GarmentShape shape;
+  double turn_rad = 0;
+};
+using SceneShape = std::variant<renderer::SwatchShape, renderer::CylinderShape, renderer::MeshShape, SceneGarment>;
+
 struct SceneCloth {
-  renderer::YarnPatch patch;
-  Eigen::Vector2i crossings;  // warp ends and weft picks in the patch
+  std::variant<renderer::Draft, renderer::YarnPatch> weave;
   std::optional<renderer::AbsorptionTexture> absorption{};
-  renderer::ClothShape shape;
+  SceneShape shape{};
   Eigen::Isometry3d world_from_cloth = Eigen::Isometry3d::Identity();
   bool two_scale = true;  // otherwise brute force: every yarn as curves
 };
@@ -38,30 +48,32 @@ struct SceneEmbroidery {
 };
 
 struct SceneBody {
-  renderer::ClothShape shape;
+  SceneShape shape;  // no garment
   Eigen::Isometry3d world_from_object = Eigen::Isometry3d::Identity();
   cv::Vec3f albedo{0, 0, 0};
 };
 
 struct SceneFile {
-  std::string name;
-  std::vector<renderer::ThreadParameters> threads;
+  std::string source;  // the file, for messages
+  std::string name{};
+  std::vector<renderer::ThreadParameters> threads{};
   std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // the first thread's; for display only
-  std::vector<SceneCloth> cloths;
-  std::vector<SceneEmbroidery> embroideries;
-  std::vector<SceneBody> objects;
-  std::vector<renderer::SphereLight> lights;
-  std::vector<renderer::RectangleLight> rectangles;
-  std::optional<renderer::EnvironmentLight> surroundings;  // as a picture
-  renderer::Camera camera;
+  std::vector<SceneCloth> cloths{};
+  std::vector<SceneEmbroidery> embroideries{};
+  std::vector<SceneBody> objects{};
+  std::vector<renderer::SphereLight> lights{};
+  std::vector<renderer::RectangleLight> rectangles{};
+  std::optional<renderer::EnvironmentLight> surroundings{};  // as a picture
+  renderer::Camera camera{};
   int samples_per_pixel = 64;
-  std::optional<double> exposure;  // radiance times this is shown as white = 1; from the picture when left out
+  std::optional<double> exposure{};  // radiance times this is shown as white = 1; from the picture when left out
 };
 
 SceneFile parse_scene(const nlohmann::json& document, const std::string& source, const std::filesystem::path& folder);
 SceneFile read_scene(const std::filesystem::path& file);
 
-// Errors: those of renderer::surface_of, explicit_curves, stitch_curves and sewn_curves.
-renderer::Scene to_scene(const SceneFile& file);
+// What to say of a cloth that has yarns of a thread which is not among the `listed` ones of its scene, or nothing.
+std::optional<std::string> missing_thread(const std::string& cloth, const std::vector<int>& threads,
+                                          std::size_t listed);
 
 }  // namespace station

@@ -3,8 +3,8 @@
 #include <array>
 #include <stdexcept>
 
-#include "renderer/image_file.h"
-#include "station/capture/sha256.h"
+#include "renderer/picture/image_file.h"
+#include "station/documents/disk/sha256.h"
 #include "station/documents/gate_list.h"
 
 namespace station {
@@ -91,9 +91,8 @@ void write_sensor_maps(const std::filesystem::path& folder, SensorSection& senso
   const std::array<cv::Mat1f, 3> planes{maps.bias_dn, maps.dark_dn_per_s, maps.flat};
   cv::Mat3f picture;
   cv::merge(planes.data(), planes.size(), picture);
-  renderer::write_exr(
-      folder / kSensorMapsFile, picture,
-      {{"threadstation/content", "sensor pixels: R bias, DN; G dark current, DN per second; B flat"}});
+  renderer::write_exr(folder / kSensorMapsFile, picture,
+                      {{"threadstation/content", "sensor pixels: R bias, DN; G dark current, DN per second; B flat"}});
   renderer::write_png(folder / kBadPixelsFile, maps.bad);
   sensor.maps_sha256 = sha256_of_file(folder / kSensorMapsFile);
   sensor.bad_pixels_sha256 = sha256_of_file(folder / kBadPixelsFile);

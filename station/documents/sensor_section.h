@@ -1,5 +1,5 @@
-// The section "sensor" of a rig calibration: how the camera answers to light. Its pixel maps stand in two files beside
-// calibration.json: sensor_maps.exr (float; R: bias, DN; G: dark current, DN per second; B: flat, dust) and
+// The section "sensor" of a rig calibration: how the camera's pixels respond to light. Its pixel maps are in two files
+// beside calibration.json: sensor_maps.exr (float; R: bias, DN; G: dark current, DN per second; B: flat with dust) and
 // sensor_bad_pixels.png (255: bad).
 #pragma once
 
@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "calibration/gate.h"
-#include "calibration/sensor_maps.h"
-#include "calibration/sensor_response.h"
+#include "calibration/sensor/gate.h"
+#include "calibration/sensor/sensor_maps.h"
+#include "calibration/sensor/sensor_response.h"
 #include "station/documents/reader.h"
 
 namespace station {
@@ -19,12 +19,12 @@ inline constexpr const char* kSensorMapsFile = "sensor_maps.exr";
 inline constexpr const char* kBadPixelsFile = "sensor_bad_pixels.png";
 
 struct SensorSection {
-  calibration::SensorResponse response;   // the maps only after load_sensor_maps
-  double bias_dn = 0, dark_dn_per_s = 0;  // medians
-  double linearity_residual = 0;          // below 85 % of the range, relative
+  calibration::SensorResponse response;   // its maps are empty before load_sensor_maps
+  double bias_dn = 0, dark_dn_per_s = 0;  // medians over the pixels
+  double linearity_residual = 0;          // departure from a straight response below 85 % of the range, relative
   calibration::BadPixels bad;
-  double dust_depth = 0, flat_noise = 0;  // deepest spot of the flat; standard deviation of the flat
-  double lamp_flicker = 0;                // relative standard deviation
+  double dust_depth = 0, flat_noise = 0;  // deepest dust spot of the flat; the flat's standard deviation; relative
+  double lamp_flicker = 0;                // from picture to picture, relative standard deviation
   double lamp_drift_per_min = 0, lamp_drift_sigma_per_min = 0;
   std::vector<calibration::Gate> gates;
   std::string maps_sha256, bad_pixels_sha256;
@@ -33,9 +33,9 @@ struct SensorSection {
 nlohmann::json to_json(const SensorSection& sensor);
 SensorSection parse_sensor_section(ObjectReader reader);
 
-// Writes both files into `folder` and notes their hashes in the section.
+// Writes both map files into `folder` and notes their hashes in the section.
 void write_sensor_maps(const std::filesystem::path& folder, SensorSection& sensor);
-// Errors: std::runtime_error when a file is missing or differs from its hash.
+// Reads both map files. Errors: std::runtime_error when a file is missing or differs from its hash.
 void load_sensor_maps(const std::filesystem::path& folder, SensorSection& sensor);
 
 }  // namespace station

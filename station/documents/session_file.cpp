@@ -1,13 +1,12 @@
 #include "station/documents/session_file.h"
 
-#include "station/capture/plan_file.h"
+#include "station/documents/plan_file.h"
 #include "station/documents/reader.h"
 
 namespace station {
 
 nlohmann::json make_session_document(const std::string& utc, const nlohmann::json& rig, const nlohmann::json& spool,
-                                     const Plan& plan, const std::string& person,
-                                     const std::optional<Sample>& sample) {
+                                     const Plan& plan, const std::string& person, const std::optional<Sample>& sample) {
   nlohmann::json document = {{"format", "threadstation/session"}, {"version", 1}, {"utc", utc},
                              {"software", software_version()},    {"rig", rig},   {"spool", spool},
                              {"plan", plan_to_json(plan)}};

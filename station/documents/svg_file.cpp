@@ -13,26 +13,19 @@
 #include <set>
 #include <stdexcept>
 
-#include "renderer/embroidery/stitch_curves.h"
+#include "station/documents/degree.h"
+#include "station/documents/number_text.h"
+#include "station/documents/srgb.h"
+#include "station/documents/text_pieces.h"
 
 namespace station {
 namespace {
 
-using Colour = std::array<unsigned char, 3>;
 using Eigen::Vector2d;
 
 constexpr double kPixel_mm = 25.4 / 96;
-constexpr double kLongestStitch_mm = 2.4, kMostSag_mm = 0.12;  // up to kDense_mm longer
-constexpr double kSatinFrom_mm = 0.8, kSatinPitch_mm = 0.35;
-constexpr double kDense_mm = 0.1;  // between the points by which lines are followed
-constexpr double kCornerCosine = 0.9;
 constexpr double kFarthest_mm = 1e4;
 constexpr int kDeepest = 200;
-
-std::string trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r\n"), last = text.find_last_not_of(" \t\r\n");
-  return first == std::string_view::npos ? "" : std::string(text.substr(first, last - first + 1));
-}
 
 // Numbers of a list, apart by spaces and commas; none where something else stands between.
 std::optional<std::vector<double>> numbers(std::string_view text) {
@@ -49,27 +42,22 @@ std::optional<std::vector<double>> numbers(std::string_view text) {
   }
 }
 
-std::string digits(double value) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
 class Drawing {
  public:
   explicit Drawing(const std::string& source) : source_(source) {}
 
-  renderer::Motif read(std::string_view text) {
+  renderer::LineArt read(std::string_view text) {
     pugi::xml_document document;
     const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
     const pugi::xml_node root = document.child("svg");
     if (!parsed || !root)
       fail("no drawing (" + (parsed ? "found no <svg> element" : std::string(parsed.description())) +
            "); export the motif as plain SVG");
-    motif_.name = trimmed(root.child("title").text().get());
+    art_.name = trimmed(root.child("title").text().get());
     read_rules(root, 0);
     walk(root, {}, Geom::Affine(Geom::Scale(unit_mm(root))));
-    if (motif_.runs.empty()) fail("has no line to sew; give paths a stroke");
-    return motif_;
+    if (art_.lines.empty()) fail("has no line to sew; give paths a stroke");
+    return art_;
   }
 
  private:
@@ -84,9 +72,8 @@ class Drawing {
 
   // Of a length with its unit, millimetres; percentages have none.
   std::optional<double> length_mm(const std::string& text) const {
-    static const std::map<std::string, double> units{{"", kPixel_mm},  {"px", kPixel_mm}, {"mm", 1},
-                                                     {"cm", 10},       {"in", 25.4},      {"pt", 25.4 / 72},
-                                                     {"pc", 25.4 / 6}, {"Q", 0.25}};
+    static const std::map<std::string, double> units{{"", kPixel_mm}, {"px", kPixel_mm}, {"mm", 1},        {"cm", 10},
+                                                     {"in", 25.4},    {"pt", 25.4 / 72}, {"pc", 25.4 / 6}, {"Q", 0.25}};
     const std::string length = trimmed(text);
     double value = 0;
     const auto [rest, error] = std::from_chars(length.data(), length.data() + length.size(), value);
@@ -177,7 +164,6 @@ class Drawing {
       if (!found) refuse();
       const std::vector<double>& v = *found;
       const std::size_t n = v.size();
-      constexpr double kDegree = M_PI / 180;
       Geom::Affine one = Geom::identity();
       if (name == "matrix" && n == 6)
         one = Geom::Affine(v[0], v[1], v[2], v[3], v[4], v[5]);
@@ -200,27 +186,25 @@ class Drawing {
     }
   }
 
-  std::optional<Colour> colour_of(const pugi::xml_node& node, const Style& style, const std::string& key) const {
+  std::optional<Srgb8> colour_of(const pugi::xml_node& node, const Style& style, const std::string& key) const {
     const auto found = style.find(key);
     std::string text = found == style.end() ? (key == "fill" ? "black" : "none") : found->second;
     if (text == "currentColor") text = style.contains("color") ? style.at("color") : "black";
     if (text == "none" || text == "transparent") return std::nullopt;
-    static const std::map<std::string, Colour> names{
+    static const std::map<std::string, Srgb8> names{
         {"black", {0, 0, 0}},       {"silver", {192, 192, 192}}, {"gray", {128, 128, 128}}, {"grey", {128, 128, 128}},
         {"white", {255, 255, 255}}, {"maroon", {128, 0, 0}},     {"red", {255, 0, 0}},      {"purple", {128, 0, 128}},
         {"fuchsia", {255, 0, 255}}, {"green", {0, 128, 0}},      {"lime", {0, 255, 0}},     {"olive", {128, 128, 0}},
         {"yellow", {255, 255, 0}},  {"navy", {0, 0, 128}},       {"blue", {0, 0, 255}},     {"teal", {0, 128, 128}},
         {"aqua", {0, 255, 255}},    {"orange", {255, 165, 0}}};
     if (const auto name = names.find(text); name != names.end()) return name->second;
-    std::string hex = text.starts_with('#') ? text.substr(1) : "";
-    if (hex.size() == 3) hex = {hex[0], hex[0], hex[1], hex[1], hex[2], hex[2]};
-    unsigned int rgb = 0;
-    if (hex.size() == 6 && std::from_chars(hex.data(), hex.data() + 6, rgb, 16).ptr == hex.data() + 6)
-      return Colour{static_cast<unsigned char>(rgb >> 16), static_cast<unsigned char>(rgb >> 8 & 255),
-                    static_cast<unsigned char>(rgb & 255)};
+    const bool is_short = text.size() == 4 && text[0] == '#';
+    if (const auto colour =
+            hex_colour(is_short ? std::string{'#', text[1], text[1], text[2], text[2], text[3], text[3]} : text))
+      return colour;
     if (text.starts_with("rgb(") && text.ends_with(')'))
       if (const auto v = numbers(std::string_view(text).substr(4, text.size() - 5)); v && v->size() == 3) {
-        Colour colour{};
+        Srgb8 colour{};
         for (std::size_t c = 0; c < 3; ++c)
           colour[c] = static_cast<unsigned char>(std::lround(std::clamp((*v)[c], 0.0, 255.0)));
         return colour;
@@ -243,7 +227,7 @@ class Drawing {
   std::string data_of(const pugi::xml_node& node) const {
     const std::string kind = node.name();
     const auto n = [&](const char* name) { return number(node, name); };
-    const auto at = [](double x, double y) { return digits(x) + "," + digits(y) + " "; };
+    const auto at = [](double x, double y) { return shortest_text(x) + "," + shortest_text(y) + " "; };
     if (kind == "path") return node.attribute("d").value();
     if (kind == "line") return "M" + at(n("x1"), n("y1")) + "L" + at(n("x2"), n("y2"));
     if (kind == "polyline" || kind == "polygon") {
@@ -259,11 +243,12 @@ class Drawing {
       if (!(w > 0) || !(h > 0)) return "";
       double rx = n(node.attribute("rx") ? "rx" : "ry"), ry = n(node.attribute("ry") ? "ry" : "rx");
       rx = std::clamp(rx, 0.0, w / 2), ry = std::clamp(ry, 0.0, h / 2);
-      if (rx == 0 || ry == 0) return "M" + at(x, y) + "h" + digits(w) + "v" + digits(h) + "h" + digits(-w) + "Z";
+      if (rx == 0 || ry == 0)
+        return "M" + at(x, y) + "h" + shortest_text(w) + "v" + shortest_text(h) + "h" + shortest_text(-w) + "Z";
       const std::string arc = "a" + at(rx, ry) + "0 0 1 ";
-      return "M" + at(x + rx, y) + "h" + digits(w - 2 * rx) + arc + at(rx, ry) + "v" + digits(h - 2 * ry) + arc +
-             at(-rx, ry) + "h" + digits(2 * rx - w) + arc + at(-rx, -ry) + "v" + digits(2 * ry - h) + arc +
-             at(rx, -ry) + "Z";
+      return "M" + at(x + rx, y) + "h" + shortest_text(w - 2 * rx) + arc + at(rx, ry) + "v" +
+             shortest_text(h - 2 * ry) + arc + at(-rx, ry) + "h" + shortest_text(2 * rx - w) + arc + at(-rx, -ry) +
+             "v" + shortest_text(2 * ry - h) + arc + at(rx, -ry) + "Z";
     }
     if (kind == "circle" || kind == "ellipse") {
       const double rx = n(kind == "circle" ? "r" : "rx"), ry = n(kind == "circle" ? "r" : "ry");
@@ -288,13 +273,13 @@ class Drawing {
       for (const pugi::xml_node& child : node.children()) walk(child, style, mm);
     } else if (shapes.contains(kind)) {
       const auto visible = style.find("visibility");
-      if (visible == style.end() || visible->second == "visible") sew(node, style, transform_of(node) * outer);
+      if (visible == style.end() || visible->second == "visible") draw(node, style, transform_of(node) * outer);
     }
   }
 
-  void sew(const pugi::xml_node& node, const Style& style, const Geom::Affine& mm) {
-    const std::optional<Colour> stroke = colour_of(node, style, "stroke");
-    const std::optional<Colour> colour = stroke ? stroke : colour_of(node, style, "fill");
+  void draw(const pugi::xml_node& node, const Style& style, const Geom::Affine& mm) {
+    const std::optional<Srgb8> stroke = colour_of(node, style, "stroke");
+    const std::optional<Srgb8> colour = stroke ? stroke : colour_of(node, style, "fill");
     if (!colour) return;
     double width_mm = 0;
     if (stroke) {
@@ -312,15 +297,8 @@ class Drawing {
       fail_at(node, "its path data cannot be read; export the drawing again");
     }
     for (const Geom::Path& path : paths) {
-      const std::vector<Vector2d> line = followed(node, path);
-      if (line.size() < 2) continue;
-      if (motif_.threads.empty() || motif_.threads.back().srgb != colour) motif_.threads.push_back({.srgb = colour});
-      std::vector<Vector2d> points = width_mm < kSatinFrom_mm ? running(line) : satin(line, width_mm);
-      stitches_ += points.size();
-      if (stitches_ > static_cast<std::size_t>(renderer::kMostStitches))
-        fail("would have more than a million stitches; make it smaller, or its lines fewer");
-      motif_.runs.push_back(
-          {.thread = static_cast<int>(motif_.threads.size()) - 1, .needle_points = std::move(points)});
+      std::vector<Vector2d> line = followed(node, path);
+      if (line.size() >= 2) art_.lines.push_back({.srgb = *colour, .width_mm = width_mm, .points = std::move(line)});
     }
   }
 
@@ -342,7 +320,7 @@ class Drawing {
         const Geom::Point next = curve.pointAt(k / 16.0);
         length_mm += Geom::distance(before, next), before = next;
       }
-      const double wanted = std::ceil(length_mm / kDense_mm);
+      const double wanted = std::ceil(length_mm / renderer::kLineStep_mm);
       if (!(wanted < 1e6)) fail_at(node, "has a line of more than 100 m; check the drawing's size");
       const int parts = std::max(1, static_cast<int>(wanted));
       if ((followed_ += static_cast<std::size_t>(parts)) > kMostPoints)
@@ -354,68 +332,15 @@ class Drawing {
     return line;
   }
 
-  static bool corner(const std::vector<Vector2d>& line, std::size_t i) {
-    if (i == 0 || i + 1 >= line.size()) return false;
-    return (line[i] - line[i - 1]).normalized().dot((line[i + 1] - line[i]).normalized()) < kCornerCosine;
-  }
-
-  // Of point k from the straight stitch a - b.
-  static double sag(const Vector2d& a, const Vector2d& b, const Vector2d& k) {
-    const Vector2d along = b - a;
-    const double length = along.norm();
-    return length > 0 ? std::abs(along.x() * (k - a).y() - along.y() * (k - a).x()) / length : (k - a).norm();
-  }
-
-  // Stitches of a like length from corner to corner.
-  static std::vector<Vector2d> running(const std::vector<Vector2d>& line) {
-    std::vector<Vector2d> points{line.front()};
-    for (std::size_t from = 0; from + 1 < line.size();) {
-      std::size_t end = from + 1;
-      double length = (line[end] - line[from]).norm();
-      for (; end + 1 < line.size() && !corner(line, end); ++end) length += (line[end + 1] - line[end]).norm();
-      const double most = length / std::ceil(length / kLongestStitch_mm) + kDense_mm;
-      while (from < end) {
-        std::size_t to = from + 1;
-        for (bool fits = true; fits && to < end;) {
-          fits = (line[to + 1] - line[from]).norm() <= most;
-          for (std::size_t k = from + 1; fits && k <= to; ++k)
-            fits = sag(line[from], line[to + 1], line[k]) <= kMostSag_mm;
-          if (fits) ++to;
-        }
-        points.push_back(line[from = to]);
-      }
-    }
-    return points;
-  }
-
-  static std::vector<Vector2d> satin(const std::vector<Vector2d>& line, double width_mm) {
-    std::vector<Vector2d> points;
-    double gone = 0, next = 0;
-    double side = 1;
-    const auto put = [&](const Vector2d& at, const Vector2d& along) {
-      points.emplace_back(at + side * width_mm / 2 * Vector2d(-along.y(), along.x()));
-      side = -side;
-    };
-    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-      const Vector2d step = line[i + 1] - line[i];
-      const double length = step.norm();
-      for (; next <= gone + length; next += kSatinPitch_mm / 2)
-        put(line[i] + step * ((next - gone) / length), step / length);
-      gone += length;
-    }
-    if (points.size() < 2) put(line.back(), (line.back() - line[line.size() - 2]).normalized());
-    return points;
-  }
-
   std::string source_;
-  renderer::Motif motif_;
+  renderer::LineArt art_;
   std::map<std::string, Style> rules_;
-  std::size_t stitches_ = 0, followed_ = 0;
+  std::size_t followed_ = 0;
 };
 
 }  // namespace
 
-renderer::Motif parse_svg(std::string_view text, const std::string& source) {
+renderer::LineArt parse_svg(std::string_view text, const std::string& source) {
   return Drawing(source).read(text);
 }
 

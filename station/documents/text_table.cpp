@@ -1,10 +1,12 @@
 #include "station/documents/text_table.h"
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
+
+#include "station/documents/table_lines.h"
+#include "station/documents/text_pieces.h"
 
 namespace station {
 namespace {
@@ -13,11 +15,6 @@ using Cells = std::vector<std::string>;
 
 [[noreturn]] void refuse(const std::filesystem::path& file, std::size_t line, const std::string& problem) {
   throw std::runtime_error(file.string() + (line > 0 ? " line " + std::to_string(line) : "") + ": " + problem);
-}
-
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
 bool is_utf8(const std::string& text) {
@@ -29,7 +26,7 @@ bool is_utf8(const std::string& text) {
   }
 }
 
-// Nothing when a quote does not end.
+// The cells of a line; nothing when a quote does not end.
 std::optional<Cells> split(const std::string& line) {
   Cells cells(1);
   bool quoted = false, was_quoted = false;
@@ -51,14 +48,8 @@ std::optional<Cells> split(const std::string& line) {
     }
   }
   if (quoted) return std::nullopt;
-  std::transform(cells.begin(), cells.end(), cells.begin(), trimmed);
+  for (std::string& cell : cells) cell = trimmed(cell);
   return cells;
-}
-
-std::string joined(const Cells& names) {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-  return all;
 }
 
 void check_columns(const std::filesystem::path& file, std::size_t line, const Cells& names, const Cells& required,
@@ -80,20 +71,10 @@ void check_columns(const std::filesystem::path& file, std::size_t line, const Ce
 
 }  // namespace
 
-std::vector<TextRow> read_text_table(const std::filesystem::path& file, const Cells& required,
-                                     const Cells& optional) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file))
-    refuse(file, 0,
-           std::filesystem::exists(file) ? "is not a readable file; check the path" : "no such file; check the path");
+std::vector<TextRow> read_text_table(const std::filesystem::path& file, const Cells& required, const Cells& optional) {
   Cells names;
   std::vector<TextRow> rows;
-  std::size_t number = 0;
-  for (std::string line; std::getline(in, line);) {
-    ++number;
-    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
-    if (line.ends_with('\r')) line.pop_back();
-    if (trimmed(line).empty()) continue;
+  for (const auto& [number, line] : table_lines(file)) {
     if (!is_utf8(line) || line.find('\0') != std::string::npos)
       refuse(file, number, "holds bytes that are no UTF-8 text; save the table as UTF-8");
     const std::optional<Cells> cells = split(line);

@@ -36,7 +36,7 @@ void parse_options(ObjectReader& reader, ThreadParameters& p) {
   }
 }
 
-// lambda_p >= 0 for every c in [0, 1].
+// Refuses a thread unless lambda_p >= 0 for every c in [0, 1].
 void check_lobe_energies(const ObjectReader& reader, ThreadParameters parameters) {
   constexpr int kSteps = 100;
   constexpr std::array<const char*, 3> kKeys{"r0", "r1", "r2"};
@@ -72,8 +72,7 @@ json parameters_json(const ThreadParameters& p) {
   json parameters{{"sigma_a", to_json(p.sigma_a)}, {"alpha", p.alpha}, {"beta", p.beta},
                   {"r0", {p.r0a, p.r0b, p.r0c}},   {"r1", {p.r1a}},    {"r2", {p.r2a, p.r2b, p.r2c}}};
   if (p.lambda0_rgb != plain.lambda0_rgb) parameters["lambda0_rgb"] = to_json(p.lambda0_rgb);
-  if (p.transmittance_powers != plain.transmittance_powers)
-    parameters["transmittance_powers"] = p.transmittance_powers;
+  if (p.transmittance_powers != plain.transmittance_powers) parameters["transmittance_powers"] = p.transmittance_powers;
   if (p.exit != plain.exit) parameters["exit"] = p.exit == renderer::ThreadExit::far_side ? kFarSide : kEntryPoint;
   return parameters;
 }

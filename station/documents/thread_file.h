@@ -1,7 +1,7 @@
-// Thread files (kind "thread", thread.json): a digitized thread, its scattering parameters and where they come from;
+// A thread file (kind "thread", thread.json): a digitized thread, its scattering parameters and where they come from;
 // keys in fixtures/threads/README.md.
 //
-// Errors: those of reader.h; a lambda that is negative at some angle.
+// Errors: those of reader.h; also refused is a lambda that is negative at some angle.
 #pragma once
 
 #include <array>

@@ -1,15 +1,13 @@
 #include "station/documents/views_file.h"
 
-#include <cmath>
-
-#include "renderer/image_file.h"
+#include "renderer/picture/image_file.h"
+#include "station/documents/degree.h"
 #include "station/documents/reader.h"
 
 namespace station {
 namespace {
 
 using nlohmann::json;
-constexpr double kRadPerDeg = M_PI / 180.0;
 constexpr Range kVariance{0, 1e12};
 
 json view_json(const DevelopedView& developed) {
@@ -18,7 +16,7 @@ json view_json(const DevelopedView& developed) {
   json document{{"id", view.id},
                 {"light_side", view.transmission ? "back" : "front"},
                 {"mounting", developed.mounting == rig::Mounting::horizontal ? "horizontal" : "vertical"},
-                {"platform_angle_deg", developed.platform_angle_rad / kRadPerDeg},
+                {"platform_angle_deg", developed.platform_angle_rad / kDegree},
                 {"angle_from", developed.angle_measured ? "tags" : "turntable"},
                 {"exposure_s", developed.exposure_s},
                 {"image_file", developed.image_file},
@@ -50,10 +48,9 @@ DevelopedView parse_view(ObjectReader reader) {
   inversion::View& view = developed.view;
   view.id = reader.text("id");
   view.transmission = reader.choice("light_side", {"front", "back"}) == "back";
-  developed.mounting = reader.choice("mounting", {"horizontal", "vertical"}) == "horizontal"
-                           ? rig::Mounting::horizontal
-                           : rig::Mounting::vertical;
-  developed.platform_angle_rad = reader.number("platform_angle_deg", -720, 720) * kRadPerDeg;
+  developed.mounting = reader.choice("mounting", {"horizontal", "vertical"}) == "horizontal" ? rig::Mounting::horizontal
+                                                                                             : rig::Mounting::vertical;
+  developed.platform_angle_rad = reader.number("platform_angle_deg", -720, 720) * kDegree;
   developed.angle_measured = reader.choice("angle_from", {"tags", "turntable"}) == "tags";
   developed.exposure_s = reader.number("exposure_s", 0, 3600);
   developed.image_file = reader.text("image_file");

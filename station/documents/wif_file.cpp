@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+
+#include "station/documents/disk/whole_file.h"
+#include "station/documents/text_pieces.h"
 
 namespace station {
 namespace {
@@ -21,11 +23,8 @@ constexpr std::size_t kMostBytes = 8 << 20;
 constexpr int kMostShafts = 1024, kMostColors = 65536;
 constexpr double kMillimetresPerInch = 25.4;
 
-std::string trimmed(std::string text) {
-  const std::size_t comment = text.find(';');
-  if (comment != std::string::npos) text.resize(comment);
-  const std::size_t first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+std::string without_comment(const std::string& text) {
+  return trimmed(text.substr(0, text.find(';')));
 }
 
 std::string lower(std::string text) {
@@ -33,7 +32,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-// What a message quotes: short, and nothing that would break its line.
+// A text as error messages quote it: short, and nothing that would break the line.
 std::string quoted(const std::string& text) {
   constexpr std::size_t kMost = 40;
   std::string shown;
@@ -70,7 +69,7 @@ class WifReader {
   std::optional<std::string> text(const char* section, const char* key) const {
     const char* value = ini_.GetValue(section, key);
     if (!value) return {};
-    return trimmed(value);
+    return without_comment(value);
   }
   std::string needed(const char* section, const char* key, const char* why) const {
     const auto value = text(section, key);
@@ -99,14 +98,14 @@ class WifReader {
     fail(section, key, "is " + quoted(*value) + ", expected true or false");
   }
 
-  // Lines "number = list of numbers" of a section, by number.
+  // The lines "number = list of numbers" of a section, by number.
   std::map<int, std::vector<int>> lists(const char* section, int most_key, int most_value) const {
     std::map<int, std::vector<int>> lines;
     const auto* keys = ini_.GetSection(section);
     if (!keys) return lines;
     for (const auto& [key, value] : *keys) {
       const int line = whole(section, key.pItem, key.pItem, 1, most_key);
-      const std::string list = trimmed(value);
+      const std::string list = without_comment(value);
       std::vector<int>& numbers = lines[line];
       std::istringstream parts(list);
       for (std::string part; std::getline(parts, part, ',');)
@@ -130,7 +129,7 @@ class WifReader {
     const auto* keys = ini_.GetSection("CONTENTS");
     if (!keys) return;
     for (const auto& [key, value] : *keys) {
-      if (lower(trimmed(value)) == "true" && !ini_.SectionExists(key.pItem))
+      if (lower(without_comment(value)) == "true" && !ini_.SectionExists(key.pItem))
         fail("[CONTENTS] promises the section " + quoted(key.pItem) +
              ", which is not there: the file is cut short; export it again");
     }
@@ -278,12 +277,7 @@ renderer::Draft parse_wif(const std::string& text, const std::string& source) {
 }
 
 renderer::Draft read_wif(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream) text << stream.rdbuf();
-  if (!stream || text.str().empty())
-    throw std::runtime_error(file.string() + ": cannot be read or is empty; give a Weaving Information File");
-  return parse_wif(text.str(), file.string());
+  return parse_wif(text_of_file(file), file.string());
 }
 
 }  // namespace station

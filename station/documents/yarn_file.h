@@ -1,7 +1,7 @@
-// Yarn files (kind "yarn"): the parameters of the yarn baseline (renderer/scattering/yarn.h); keys in
+// A yarn file (kind "yarn"): the parameters of the yarn baseline (renderer/scattering/yarn.h); keys in
 // fixtures/yarns/README.md.
 //
-// Errors: those of reader.h; fibers that fill more than the yarn.
+// Errors: those of reader.h; also refused are fibers that fill more than the yarn.
 #pragma once
 
 #include <filesystem>

@@ -65,8 +65,8 @@ std::optional<HttpRequest> plain(const http::request<http::string_body>& message
   for (const auto& field : message) {
     std::string name(field.name_string());
     std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    std::string& value =
-        request.headers[name];  // twice: no header that decides anything may be; then it fits nothing
+    // The values of a header that comes twice are joined. The guard knows no such value, so the request is refused.
+    std::string& value = request.headers[name];
     value += (value.empty() ? "" : ", ") + std::string(field.value());
   }
   return request;
@@ -198,15 +198,14 @@ class HttpServer::Impl::Connection : public std::enable_shared_from_this<Connect
     if (response.stream) {
       message->keep_alive(false);
       auto serializer = std::make_shared<http::response_serializer<http::string_body>>(*message);
-      http::async_write_header(
-          stream_, *serializer,
-          [self = shared_from_this(), message, serializer](const error_code& error, std::size_t) {
-            if (error) return self->server_.drop(self);
-            self->stream_.expires_never();
-            self->state_ = State::streaming;
-            self->watch_for_end();
-            self->send_event(": here\n\n");
-          });
+      http::async_write_header(stream_, *serializer,
+                               [self = shared_from_this(), message, serializer](const error_code& error, std::size_t) {
+                                 if (error) return self->server_.drop(self);
+                                 self->stream_.expires_never();
+                                 self->state_ = State::streaming;
+                                 self->watch_for_end();
+                                 self->send_event(": here\n\n");
+                               });
       return;
     }
     message->keep_alive(keep_alive_);

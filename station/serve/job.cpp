@@ -23,31 +23,44 @@ extern char** environ;
 namespace station {
 namespace {
 
-constexpr std::size_t kMostLines = 200, kMostText = 4000;
+constexpr std::size_t kMostLines = 200, kMostText = 4000, kMostLine = 1 << 20;
 constexpr auto kBetweenSignals = std::chrono::milliseconds(20), kBetweenLooks = std::chrono::milliseconds(100);
-constexpr std::string_view kQuestion = "or q and Enter to end: ";  // how every question to a person ends
 
 std::filesystem::path with_ending(std::filesystem::path file, const char* ending) {
   return file += ending;
 }
 
-// A file that grows, as far as it has been read.
+// A file that grows line by line, as far as it has been read.
 class Growing {
  public:
   explicit Growing(std::filesystem::path file) : file_(std::move(file)) {}
 
-  std::string more() {
+  // The lines that have ended since the last call.
+  std::vector<std::string> more() {
     std::ifstream stream(file_, std::ios::binary);
     stream.seekg(read_);
-    std::string text{std::istreambuf_iterator<char>(stream), {}};
-    read_ += static_cast<std::streamoff>(text.size());
-    return text;
+    const std::size_t known = open_.size();
+    open_.append(std::istreambuf_iterator<char>(stream), {});
+    read_ += static_cast<std::streamoff>(open_.size() - known);
+    std::vector<std::string> lines;
+    for (std::size_t end = 0; (end = open_.find('\n')) != std::string::npos; open_.erase(0, end + 1))
+      lines.push_back(open_.substr(0, end));
+    if (open_.size() > kMostLine) open_.erase(1, open_.size() - kMostLine);  // its beginning says what it is
+    return lines;
   }
 
  private:
   std::filesystem::path file_;
   std::streamoff read_ = 0;
+  std::string open_;
 };
+
+// A choice that the question offers, or any text where one may be typed.
+bool takes(const nlohmann::json& question, const std::string& answer) {
+  if (question.contains("typed")) return true;
+  const nlohmann::json choices = question.value("choices", nlohmann::json::array());
+  return std::ranges::any_of(choices, [&](const nlohmann::json& one) { return one.value("answer", "") == answer; });
+}
 
 }  // namespace
 
@@ -75,23 +88,19 @@ class Job::Process {
 
   nlohmann::json state() const {
     const std::scoped_lock lock(mutex_);
-    nlohmann::json state{{"title", title_},         {"running", !status_},
-                         {"status", nullptr},       {"done", done_},
-                         {"total", total_},         {"label", label_},
-                         {"seconds_left", nullptr}, {"question", nullptr},
-                         {"asked", asked_},         {"arrangement", arrangement_},
-                         {"lines", lines_}};
+    nlohmann::json state{{"title", title_},         {"running", !status_},   {"status", nullptr},
+                         {"done", done_},           {"total", total_},       {"label", label_},
+                         {"seconds_left", nullptr}, {"question", question_}, {"lines", lines_}};
     if (status_) state["status"] = *status_;
     if (seconds_left_ >= 0) state["seconds_left"] = seconds_left_;
-    if (question_) state["question"] = *question_;
     return state;
   }
 
-  bool answer(int question, bool done) {
-    const std::string line = done ? "\n" : "q\n";
+  bool answer(int id, const std::string& answer) {
+    const std::string line = nlohmann::json{{"id", id}, {"answer", answer}}.dump() + "\n";
     const std::scoped_lock lock(mutex_);
-    if (!question_ || question != asked_ || gone_) return false;
-    question_.reset();
+    if (question_.is_null() || question_.at("id") != id || !takes(question_, answer) || gone_) return false;
+    question_ = nullptr;
     // Shorter than a pipe holds; a process that has gone is seen by the follower.
     [[maybe_unused]] const ssize_t written = write(input_, line.data(), line.size());
     return true;
@@ -147,7 +156,7 @@ class Job::Process {
         if (ended) {
           const std::scoped_lock lock(mutex_);
           status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-          question_.reset();
+          question_ = nullptr;
         }
         changed_();
       }
@@ -164,10 +173,10 @@ class Job::Process {
 
   // True when there was something new.
   bool look() {
-    const std::string said = output_.more(), progress = progress_.more();
+    const std::vector<std::string> said = output_.more(), progress = progress_.more();
     const std::scoped_lock lock(mutex_);
-    read_output(said);
-    read_progress(progress);
+    for (const std::string& line : said) read_line(line);
+    for (const std::string& line : progress) read_line(line);
     return !said.empty() || !progress.empty();
   }
 
@@ -177,53 +186,20 @@ class Job::Process {
     if (lines_.size() > kMostLines) lines_.erase(lines_.begin());
   }
 
-  void read_output(const std::string& text) {
-    open_line_ += text;
-    for (std::size_t end = 0; (end = open_line_.find('\n')) != std::string::npos; open_line_.erase(0, end + 1)) {
-      const std::string line = open_line_.substr(0, end);
-      if (for_machines(line)) {
-        read_arrangement(line);
-        continue;
-      }
-      add_line(line);
-      if (!line.empty()) unasked_.push_back(line.substr(0, kMostText));
-      if (unasked_.size() > kMostLines) unasked_.erase(unasked_.begin());
-    }
-    if (open_line_.size() > kMostText)
-      open_line_.erase(1, open_line_.size() - kMostText);  // its beginning says what it is
-    if (!open_line_.ends_with(kQuestion)) return;
-    question_ = std::move(unasked_);
-    ++asked_;
-    unasked_.clear();
-    open_line_.clear();
-  }
-
-  // A result as JSON, which no person should read.
-  static bool for_machines(const std::string& line) { return line.starts_with('{') || line.starts_with('['); }
-
-  // What the next question is about, for a drawing (drawing_operator.h).
-  void read_arrangement(const std::string& line) {
+  // What is a document for machines no person should read; questions, notes and progress are taken out of it.
+  void read_line(const std::string& line) {
+    if (!line.starts_with('{') && !line.starts_with('[')) return add_line(line);
     const nlohmann::json said = nlohmann::json::parse(line, nullptr, false);
-    if (said.is_object() && said.contains("arrangement")) arrangement_ = said["arrangement"];
-  }
-
-  void read_progress(const std::string& text) {
-    open_progress_ += text;
-    for (std::size_t end = 0; (end = open_progress_.find('\n')) != std::string::npos;
-         open_progress_.erase(0, end + 1)) {
-      const std::string line = open_progress_.substr(0, end);
-      const nlohmann::json said = nlohmann::json::parse(line, nullptr, false);
-      if (!said.is_object()) {
-        add_line(line);
-        continue;
-      }
-      if (said.contains("note") && said["note"].is_string()) add_line(said["note"].get<std::string>());
-      if (!said.contains("done") || !said.contains("total")) continue;
-      done_ = said.value("done", 0), total_ = said.value("total", 0);
-      label_ = said.value("label", "");
-      seconds_left_ = said.value("seconds_left", -1.0);
+    if (!said.is_object()) return;
+    if (said.contains("question") && said["question"].contains("id")) {
+      question_ = said["question"];
+      add_line(question_.value("text", ""));
     }
-    if (open_progress_.size() > kMostText) open_progress_.clear();
+    if (said.contains("note") && said["note"].is_string()) add_line(said["note"].get<std::string>());
+    if (!said.contains("done") || !said.contains("total")) return;
+    done_ = said.value("done", 0), total_ = said.value("total", 0);
+    label_ = said.value("label", "");
+    seconds_left_ = said.value("seconds_left", -1.0);
   }
 
   const std::string title_;
@@ -237,11 +213,9 @@ class Job::Process {
   bool gone_ = false;  // its number may be another process's by now
   int done_ = 0, total_ = 0;
   double seconds_left_ = -1;
-  std::string label_, open_line_, open_progress_;
-  std::vector<std::string> lines_, unasked_;
-  std::optional<std::vector<std::string>> question_;
-  int asked_ = 0;
-  nlohmann::json arrangement_;
+  std::string label_;
+  std::vector<std::string> lines_;
+  nlohmann::json question_;  // null: none is open
   std::jthread follower_;
 };
 
@@ -257,8 +231,8 @@ nlohmann::json Job::state() const {
   return process_->state();
 }
 
-bool Job::answer(int question, bool done) {
-  return process_->answer(question, done);
+bool Job::answer(int id, const std::string& answer) {
+  return process_->answer(id, answer);
 }
 
 void Job::pause() {

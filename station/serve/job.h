@@ -1,7 +1,8 @@
 // One command of the program that the page has started: a process of its own, so that neither the page nor this server can
 // hold it up, and so that it goes on when both are gone. What it says is kept in two files.
 //
-// It is told as anybody at a terminal would: questions come on its output and are answered on its input, ctrl-C is a signal.
+// It speaks JSON: its questions come on its output and are answered on its input (rig/people/asked_person.h). Ctrl-C is a
+// signal.
 #pragma once
 
 #include <filesystem>
@@ -32,16 +33,15 @@ class Job {
   Job& operator=(const Job&) = delete;
 
   bool running() const;
-  // {"title", "running", "status" (of its exit; null before), "done", "total", "label", "seconds_left", "question" (what is to be
-  // done, or null), "asked" (how many questions there were so far), "arrangement" (drawing_operator.h: what the bench was last asked to be; null before), "lines" (the last
-  // that were said to people)}
+  // {"title", "running", "status" (of its exit; null before), "done", "total", "label", "seconds_left", "question" (the
+  // one that is open, as the process asked it; null when there is none), "lines" (the last that were said to people)}
   nlohmann::json state() const;
 
-  // Of the question of this number ("asked" of the state): it is done, or the person declines. False, and nothing is done,
-  // when that question is not open: a second click on the same button must not answer the next one.
-  bool answer(int question, bool done);
-  void pause();            // ctrl-C: at the next safe point
-  void stop_now();         // both ctrl-C: the platform stops at once, whatever is under way is given up
+  // Answers the question with this id. False, and nothing is done, when another question is open or none (a second click
+  // on the same button must not answer the next one), or when the question does not take this answer.
+  bool answer(int id, const std::string& answer);
+  void pause();     // ctrl-C: at the next safe point
+  void stop_now();  // both ctrl-C: the platform stops at once, whatever is under way is given up
 
  private:
   class Process;

@@ -7,15 +7,15 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "calibration/sensor_file.h"
-#include "calibration/tags.h"
-#include "station/capture/file_name.h"
-#include "station/capture/picture_record.h"
-#include "station/checks/picture_measures.h"
-#include "station/exposure.h"
-#include "station/report/display.h"
+#include "calibration/geometry/tags.h"
+#include "calibration/sensor/sensor_file.h"
+#include "station/bench/camera_adapter.h"
+#include "station/bench/exposure.h"
+#include "station/documents/disk/file_name.h"
+#include "station/output/display.h"
 #include "station/serve/page_answers.h"
-#include "station/views.h"
+#include "station/session/checks/picture_measures.h"
+#include "station/session/record/picture_record.h"
 
 namespace station {
 namespace {
@@ -25,7 +25,7 @@ using nlohmann::json;
 
 constexpr int kBins = 64;
 constexpr int kWidest_px = 3000;                         // that tags are looked for in; larger pictures are reduced
-constexpr double kDoubtfulBlur_px = 2, kBadBlur_px = 3;  // as station/checks/capture_checks.h
+constexpr double kDoubtfulBlur_px = 2, kBadBlur_px = 3;  // as station/session/checks/capture_checks.h
 
 fs::file_time_type time_of(const fs::path& file) {
   std::error_code error;

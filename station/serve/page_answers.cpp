@@ -1,6 +1,6 @@
 #include "station/serve/page_answers.h"
 
-#include "station/capture/file_name.h"
+#include "station/documents/disk/file_name.h"
 
 namespace station {
 namespace {

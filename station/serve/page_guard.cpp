@@ -34,8 +34,8 @@ std::vector<std::string> loopback_hosts(std::uint16_t port) {
 std::optional<HttpResponse> refusal(const HttpRequest& request, const PageGuard& guard) {
   const std::string host = request.header("host");
   if (std::ranges::find(guard.hosts, host) == guard.hosts.end())
-    return refused(403, "this station does not answer to the name \"" + host.substr(0, 80) +
-                            "\"; open it as http://" + guard.hosts.front());
+    return refused(403, "this station does not answer to the name \"" + host.substr(0, 80) + "\"; open it as http://" +
+                            guard.hosts.front());
   if (request.method != "GET" && request.method != "HEAD" && request.method != "POST")
     return refused(405, "only GET and POST are answered");
   const std::string origin = request.header("origin"), site = request.header("sec-fetch-site");

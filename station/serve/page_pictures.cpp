@@ -7,16 +7,17 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
-#include "renderer/image_file.h"
+#include "renderer/picture/image_file.h"
 #include "station/documents/draft_drawing.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/thread_file.h"
 #include "station/documents/views_file.h"
-#include "station/invert/invert_session.h"
-#include "station/report/display.h"
-#include "station/report/fitted_twins.h"
+#include "station/output/display.h"
 #include "station/serve/job_command.h"
 #include "station/serve/page_answers.h"
+#include "station/session/results.h"
+#include "station/thread/invert/invert_session.h"
+#include "station/thread/report/fitted_twins.h"
 
 namespace station {
 namespace {
@@ -74,8 +75,7 @@ HttpResponse twin(const Asked& asked, const std::string& which) {
   const cv::Mat3f picture = which == "photographed" ? twins.photographed
                             : which == "fitted"     ? twins.fitted
                                                     : residual_picture(view, twins, block_px);
-  return png(
-      narrowed(display(picture, twins.scale, developed.linear_srgb_from_camera)(twins.box).clone(), kShown_px));
+  return png(narrowed(display(picture, twins.scale, developed.linear_srgb_from_camera)(twins.box).clone(), kShown_px));
 }
 
 HttpResponse cloth(const Asked& asked) {

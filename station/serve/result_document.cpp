@@ -1,14 +1,14 @@
 #include "station/serve/result_document.h"
 
 #include <Eigen/Dense>
-#include <algorithm>
-#include <cstdio>
 
-#include "inversion/energy_bands.h"
-#include "station/cloth_preview.h"
+#include "inversion/fit/energy_bands.h"
+#include "station/cloth/cloth_preview.h"
+#include "station/documents/number_text.h"
 #include "station/documents/reader.h"
-#include "station/invert/invert_session.h"
-#include "station/report/display.h"
+#include "station/output/display.h"
+#include "station/session/results.h"
+#include "station/thread/invert/invert_session.h"
 
 namespace station {
 namespace {
@@ -40,9 +40,7 @@ std::string colour_of(const std::vector<inversion::EnergyBand>& bands, const Thr
     for (int c = 0; c < 3; ++c)
       albedo[c] += static_cast<float>(band.albedo[static_cast<std::size_t>(c)] / static_cast<double>(bands.size()));
   const cv::Mat3b shown = display(cv::Mat3f(1, 1, albedo), 1, thread.linear_srgb_from_camera);
-  char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", shown(0, 0)[0], shown(0, 0)[1], shown(0, 0)[2]);
-  return text;
+  return formatted("#%02x%02x%02x", shown(0, 0)[0], shown(0, 0)[1], shown(0, 0)[2]);
 }
 
 json part_of(const json& fit, const char* key) {

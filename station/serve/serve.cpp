@@ -4,7 +4,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "station/interrupt.h"
+#include "station/output/interrupt.h"
 #include "station/serve/http_server.h"
 #include "station/serve/page_guard.h"
 #include "station/serve/technician_page.h"
@@ -19,8 +19,7 @@ void check(const ServeRequest& request) {
     throw std::runtime_error(
         "--lan opens the station to everybody in the network, who could then move it; give a --token too");
   if (request.lan && request.hosts.empty())
-    throw std::runtime_error(
-        "--lan needs the name or address under which this computer is asked; give it with --host");
+    throw std::runtime_error("--lan needs the name or address under which this computer is asked; give it with --host");
   if (!request.token.empty() &&
       (request.token.size() < kShortestToken ||
        request.token.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_") !=

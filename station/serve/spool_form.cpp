@@ -6,8 +6,8 @@
 #include "station/documents/reader.h"
 #include "station/documents/sample.h"
 #include "station/documents/spool.h"
-#include "station/queue/spool_queue.h"
 #include "station/serve/page_answers.h"
+#include "station/session/spool_queue.h"
 
 namespace station {
 namespace {

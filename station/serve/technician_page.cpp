@@ -6,7 +6,6 @@
 #include <iterator>
 #include <thread>
 
-#include "station/library/library.h"
 #include "station/serve/checked_devices.h"
 #include "station/serve/job_command.h"
 #include "station/serve/page_answers.h"
@@ -14,6 +13,7 @@
 #include "station/serve/page_pictures.h"
 #include "station/serve/result_document.h"
 #include "station/serve/spool_form.h"
+#include "station/thread/library.h"
 
 namespace station {
 namespace {
@@ -117,8 +117,7 @@ HttpResponse TechnicianPage::post(const HttpRequest& request) {
   if (!asked.is_object()) throw Refused(400, "expected a JSON object");
   if (request.path == "/api/control") return take_control(asked);
   const auto& path = request.path;
-  if (path != "/api/job" && path != "/api/answer" && path != "/api/pause" && path != "/api/spool")
-    refuse_path(request);
+  if (path != "/api/job" && path != "/api/answer" && path != "/api/pause" && path != "/api/spool") refuse_path(request);
   if (!in_control(asked)) throw Refused(409, "another browser is in control; take control first");
   if (path == "/api/job") return start(asked);
   if (path == "/api/answer") return answer(asked);
@@ -134,14 +133,14 @@ HttpResponse TechnicianPage::post(const HttpRequest& request) {
 
 HttpResponse TechnicianPage::answer(const json& asked) {
   const std::shared_ptr<Job> running = running_job();
-  const auto done = asked.find("done");
-  const auto question = asked.find("question");
-  if (done == asked.end() || !done->is_boolean() || question == asked.end() || !question->is_number_integer())
-    throw Refused(400, "expected \"done\": true or false, and \"question\": the number of what was asked");
-  if (!running->answer(question->get<int>(), done->get<bool>()))
-    throw Refused(409, "that question is not open any more; read what is asked now");
+  const auto question = asked.find("question"), answer = asked.find("answer");
+  if (question == asked.end() || !question->is_number_integer() || answer == asked.end() || !answer->is_string() ||
+      answer->get_ref<const std::string&>().size() > kLongestText)
+    throw Refused(400, "expected \"question\": the id of what was asked, and \"answer\": a text that it takes");
+  if (!running->answer(question->get<int>(), answer->get<std::string>()))
+    throw Refused(409, "that question is not open any more, or does not take this answer; read what is asked now");
   changed_();
-  return said(200, done->get<bool>() ? "answered: done" : "answered: cannot be done now");
+  return said(200, "answered");
 }
 
 HttpResponse TechnicianPage::take_control(const json& asked) {

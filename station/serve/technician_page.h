@@ -13,7 +13,7 @@
 //   POST /api/control {"client", "take"}          one browser controls, the others watch
 //   POST /api/job {"client", "kind", ...}         job_command.h; a live view ends for it
 //   POST /api/spool {"client", ...}               spool_form.h
-//   POST /api/answer {"client", "question", "done"}  of the question of this number that the job asks (job.h)
+//   POST /api/answer {"client", "question", "answer"}  to the question with this id that the job asks (job.h)
 //   POST /api/pause {"client"}
 //   POST /api/stop                                 emergency stop: any browser's, at once
 #pragma once

@@ -4,16 +4,16 @@
 #include <functional>
 #include <stdexcept>
 
-#include "station/capture/file_name.h"
-#include "station/capture/folder_lock.h"
-#include "station/capture/picture_record.h"
-#include "station/capture/run_state.h"
-#include "station/capture/session_folder.h"
+#include "station/documents/disk/file_name.h"
+#include "station/documents/disk/folder_lock.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
-#include "station/library/library.h"
-#include "station/queue/spool_queue.h"
 #include "station/serve/page_answers.h"
+#include "station/session/record/picture_record.h"
+#include "station/session/record/run_state.h"
+#include "station/session/record/session_folder.h"
+#include "station/session/spool_queue.h"
+#include "station/thread/library.h"
 
 namespace station {
 namespace {

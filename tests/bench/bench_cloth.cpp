@@ -1,10 +1,11 @@
-// Samples per second of cloth in two scales beside the same cloth as explicit curves: flat, and round a cylinder; and against
-// the cloth's area and the yarns of a patch, which should cost nothing.
+// Samples per second of cloth in two scales beside the same cloth as explicit curves, flat and round a cylinder; also
+// against the cloth's area and the number of yarns of a patch, which should cost nothing.
 #include <benchmark/benchmark.h>
 
-#include "../renderer/cloth_scenes.h"
-#include "renderer/path_tracer.h"
-#include "renderer/ray_scene.h"
+#include "renderer/trace/path_tracer.h"
+#include "renderer/trace/ray_scene.h"
+#include "renderer/weave/initial_patch.h"
+#include "tests/renderer/trace/cloth_scenes.h"
 
 namespace renderer {
 namespace {

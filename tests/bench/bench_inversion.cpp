@@ -1,15 +1,16 @@
-// Recorded path vertices shaded per second and core: what a fit spends its time on. Whole fits against the pictures' size, the
-// light paths and the number of unknowns, with the memory that they need at most, and Levenberg-Marquardt against Adam.
+// Recorded path vertices shaded per second and core, which is what a fit spends its time on. Also whole fits against
+// the pictures' size, the light paths and the number of unknowns, with the memory that they need at most, and
+// Levenberg-Marquardt against Adam.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
 #include <chrono>
 #include <map>
 
-#include "../inversion/synthetic_spool.h"
-#include "inversion/block_estimate.h"
-#include "inversion/blocks.h"
-#include "inversion/fit_views.h"
+#include "inversion/fit/block_estimate.h"
+#include "inversion/fit/fit_views.h"
+#include "inversion/view/blocks.h"
+#include "tests/inversion/fit/synthetic_spool.h"
 
 namespace inversion {
 namespace {

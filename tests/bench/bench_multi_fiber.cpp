@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "renderer/scattering/multi_fiber.h"
-#include "tests/renderer/plain_circle_tracer.h"
+#include "tests/renderer/scattering/plain_circle_tracer.h"
 
 namespace renderer {
 namespace {

@@ -1,15 +1,16 @@
-// Samples per second of the path tracer on the two scenes of fixtures/reference/README.md, the second as curves and as cloth in
-// two scales, beside the bare first-hit rays of the same picture through Embree alone. Items are samples or rays; the
-// processor time counts all cores. `noise` is the relative error of a pixel of 16 samples (root mean square, RGB, over the
-// picture's mean), as bench_cycles.py prints it: the time to equal noise goes as noise^2 over samples per second.
+// Samples per second of the path tracer on the two scenes of fixtures/reference/README.md, the second as curves and as
+// cloth in two scales, beside the bare first-hit rays of the same picture through Embree alone. Items are samples or
+// rays; the processor time counts all cores. `noise` is the relative error of a pixel of 16 samples (root mean square,
+// RGB, over the picture's mean), as bench_cycles.py prints it: the time to equal noise goes as noise^2 over samples per
+// second.
 #include <benchmark/benchmark.h>
 #include <embree3/rtcore.h>
 
 #include <cmath>
 #include <limits>
 
-#include "../renderer/curve_scenes.h"
-#include "renderer/path_tracer.h"
+#include "renderer/trace/path_tracer.h"
+#include "tests/renderer/trace/curve_scenes.h"
 
 namespace renderer {
 namespace {
@@ -37,8 +38,8 @@ void path_tracing(benchmark::State& state, const CurveScene& scene, int max_vert
   const PathTracer tracer(scene.scene);
   const int threads = static_cast<int>(state.range(0));
   for (auto _ : state) {
-    benchmark::DoNotOptimize(tracer.render(
-        scene.camera, {.samples_per_pixel = kSamples, .max_vertices = max_vertices, .threads = threads}));
+    benchmark::DoNotOptimize(
+        tracer.render(scene.camera, {.samples_per_pixel = kSamples, .max_vertices = max_vertices, .threads = threads}));
   }
   state.SetItemsProcessed(state.iterations() * kSamples * scene.camera.width * scene.camera.height);
   state.counters["noise"] = noise(tracer, scene.camera, max_vertices);

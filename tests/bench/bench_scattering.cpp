@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -36,7 +37,7 @@ const Places& places() {
       p.h[k] = uniform(engine);
       for (auto* w : {&p.wo, &p.wi}) {
         const float sine = uniform(engine), cosine = std::sqrt(1 - sine * sine),
-                    phi = static_cast<float>(kPi) * uniform(engine);
+                    phi = std::numbers::pi_v<float> * uniform(engine);
         (*w)[0][k] = sine, (*w)[1][k] = cosine * std::cos(phi), (*w)[2][k] = cosine * std::sin(phi);
       }
     }

@@ -1,8 +1,11 @@
-// An unattended session of 17 views at 24 megapixels on the simulated wire rig, and its development: memory, and how much of
-// the time is neither exposure nor motion nor download. The bench is drawn with 600 x 400 pixels and enlarged while the camera
-// delivers, so that the simulation itself needs little; what happens inside a device's call is the device's time.
+// An unattended session of 17 views at 24 megapixels on the simulated wire rig, and its development: memory, and how
+// much of the time is neither exposure nor motion nor download. The bench is drawn with 600 x 400 pixels and enlarged
+// while the camera delivers, so that the simulation itself needs little; what happens inside a device's call is the
+// device's time.
 //
-//   bench_session [FOLDER]      needs 5 GB there; the first session, on the injected clock, draws what the second one is given
+//   bench_session [FOLDER]      needs 5 GB there
+//
+// The first session, on the injected clock, draws what the second one is given.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -18,20 +21,20 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "calibration/sensor_file.h"
-#include "renderer/image_file.h"
+#include "calibration/sensor/sensor_file.h"
+#include "renderer/picture/image_file.h"
 #include "rig/cameras/camera_process.h"
-#include "rig/raw_writer.h"
+#include "rig/simulated/pty_server.h"
+#include "rig/simulated/raw_writer.h"
 #include "rig/turntables/controllers.h"
-#include "rig/turntables/pty_server.h"
 #include "rig/turntables/stepper_turntable.h"
 #include "station/bench/bench_picture.h"
-#include "station/capture/verify.h"
-#include "station/capture_session.h"
-#include "station/develop/develop_session.h"
+#include "station/bench/rig_devices.h"
 #include "station/documents/reader.h"
-#include "station/rig_devices.h"
-#include "station/run_session.h"
+#include "station/session/capture_session.h"
+#include "station/session/develop/develop_session.h"
+#include "station/session/record/verify.h"
+#include "station/session/run_session.h"
 
 namespace station {
 namespace {
@@ -84,15 +87,18 @@ RigCalibration large_calibration() {
 class LargeCamera final : public rig::Camera {
  public:
   LargeCamera(rig::SimulatedBench& bench, rig::Clock& clock)
-      : bench_(bench), clock_(clock), small_rig_(drawn_rig()),
+      : bench_(bench),
+        clock_(clock),
+        small_rig_(drawn_rig()),
         draw_(make_bench_picture(small_rig_, read_spool(std::string(FIXTURES_DIR) + "/spools/silk_red.json"))) {}
 
   rig::CameraIdentity identity() override {
     const rig::TrueLens& lens = bench_.truth().lens;
-    return {.make = "Sony", .model = "ILCE-7M2", .serial = "SIM7", .width_px = lens.width_px, .height_px = lens.height_px};
+    return {
+        .make = "Sony", .model = "ILCE-7M2", .serial = "SIM7", .width_px = lens.width_px, .height_px = lens.height_px};
   }
   std::vector<double> shutter_times_s() override { return small().shutter_times_s(); }
-  rig::ExposureSettings configure(const rig::ExposureSettings& wanted) override { return now_ = small().configure(wanted); }
+  rig::CameraSettings configure(const rig::CameraSettings& wanted) override { return now_ = small().configure(wanted); }
   rig::Picture capture() override {
     rig::RawFrame frame{.mosaic = mosaic(drawing()), .settings = now_, .utc = clock_.utc(), .serial = "SIM7"};
     clock_.sleep_s(now_.exposure_s);
@@ -130,8 +136,8 @@ class LargeCamera final : public rig::Camera {
           random_ = random_ * 6364136223846793005ULL + 1442695040888963407ULL;
           const float noise = 8 * (static_cast<float>(random_ >> 40U) / static_cast<float>(1 << 24) - 0.5F);
           const float dn = enlarged_plane(row, column) * factor + noise;
-          result(row, column) = static_cast<unsigned short>(std::clamp(
-              dn + static_cast<float>(sensor.black_level_dn), 0.F, static_cast<float>(sensor.white_level_dn)));
+          result(row, column) = static_cast<unsigned short>(std::clamp(dn + static_cast<float>(sensor.black_level_dn),
+                                                                       0.F, static_cast<float>(sensor.white_level_dn)));
         }
     }
     return result;
@@ -141,7 +147,7 @@ class LargeCamera final : public rig::Camera {
   rig::Clock& clock_;
   RigFile small_rig_;
   rig::DrawPicture draw_;
-  rig::ExposureSettings now_;
+  rig::CameraSettings now_;
   static inline std::list<std::pair<rig::BenchState, cv::Mat3f>> drawings_;  // all sessions have the same hand
   std::uint64_t random_ = 1;
 };
@@ -173,7 +179,7 @@ class TimedCamera final : public rig::Camera {
   std::vector<double> shutter_times_s() override {
     return settings_.of([&] { return camera_.shutter_times_s(); });
   }
-  rig::ExposureSettings configure(const rig::ExposureSettings& wanted) override {
+  rig::CameraSettings configure(const rig::CameraSettings& wanted) override {
     return now_ = settings_.of([&] { return camera_.configure(wanted); });
   }
   rig::Picture capture() override {
@@ -187,14 +193,18 @@ class TimedCamera final : public rig::Camera {
   DeviceTime& pictures_;
   DeviceTime& settings_;
   double& exposed_s_;
-  rig::ExposureSettings now_;
+  rig::CameraSettings now_;
 };
 
 class TimedTurntable final : public rig::Turntable {
  public:
   TimedTurntable(rig::Turntable& turntable, DeviceTime& moves) : turntable_(turntable), moves_(moves) {}
-  void home() override { moves_.of([&] { turntable_.home(); }); }
-  void move_to(double angle_rad) override { moves_.of([&] { turntable_.move_to(angle_rad); }); }
+  void home() override {
+    moves_.of([&] { turntable_.home(); });
+  }
+  void move_to(double angle_rad) override {
+    moves_.of([&] { turntable_.move_to(angle_rad); });
+  }
   void stop() override { turntable_.stop(); }
   double angle_rad() override { return turntable_.angle_rad(); }
   rig::TurntableState state() override { return turntable_.state(); }
@@ -221,13 +231,14 @@ void capture(const fs::path& folder, bool real_clock) {
   const auto body = rig::make_simulated_sony(lens);
   const auto network = rig::serve_on_ptpip(*body);
   rig::CameraProcessSetup setup{.command = {"/proc/self/exe", kCameraProcess}, .camera = rig.camera_wire->setup};
-  setup.camera.width_px = rig.simulation->truth.lens.width_px, setup.camera.height_px = rig.simulation->truth.lens.height_px;
+  setup.camera.width_px = rig.simulation->truth.lens.width_px,
+  setup.camera.height_px = rig.simulation->truth.lens.height_px;
   setup.camera.port = "ptpip:127.0.0.1:" + std::to_string(network->port()) + ":" + std::to_string(network->port());
   const auto camera = rig::make_process_camera(setup);
   const auto wire = rig::serve_on_pty(start_firmware(rig, bench, *clock));
   const auto turntable = rig::make_stepper_turntable(
-      [&] { return rig::connect_grbl(rig::open_pty_line(wire->path()), *clock, rig.turntable_wire->controller); }, *clock,
-      rig.turntable_wire->stepper);
+      [&] { return rig::connect_grbl(rig::open_pty_line(wire->path()), *clock, rig.turntable_wire->controller); },
+      *clock, rig.turntable_wire->stepper);
   const auto person = rig::make_simulated_operator(bench);
 
   DeviceTime pictures{*clock}, moves{*clock}, settings{*clock};
@@ -238,8 +249,8 @@ void capture(const fs::path& folder, bool real_clock) {
                        spool_document = read_json_file(spool_file);
   const RigCalibration calibration = large_calibration();
   const Plan plan = plan_of(rig, read_spool(spool_file));
-  SessionFile asked{.utc = clock->utc(), .software = software_version(), .rig = rig,
-                    .spool = read_spool(spool_file), .plan = plan};
+  SessionFile asked{
+      .utc = clock->utc(), .software = software_version(), .rig = rig, .spool = read_spool(spool_file), .plan = plan};
   const std::string text = to_json(calibration).dump();
   const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
   FileSystem disk;
@@ -248,8 +259,7 @@ void capture(const fs::path& folder, bool real_clock) {
       SessionFolder::create(folder, make_session_document(asked.utc, rig_document, spool_document, plan),
                             {{"calibration.json", {bytes, bytes + text.size()}}}, *clock, disk);
   const double began_wall_s = now_s(), began_clock_s = clock->monotonic_s();
-  const RunState state =
-      run_session(session, {timed_camera, timed_turntable, *person, *clock}, asked, calibration, {});
+  const RunState state = run_session(session, {timed_camera, timed_turntable, *person, *clock}, asked, calibration, {});
   const double wall_s = now_s() - began_wall_s, clock_s = clock->monotonic_s() - began_clock_s;
   rusage self{};
   ::getrusage(RUSAGE_SELF, &self);
@@ -277,8 +287,8 @@ void develop(const fs::path& folder) {
   rusage self{};
   ::getrusage(RUSAGE_SELF, &self);
   const double processor_s = static_cast<double>(self.ru_utime.tv_sec + self.ru_stime.tv_sec);
-  std::printf("developed %zu views: %.1f s, %.1f s of processor time, at most %.0f MiB\n", developed.views.size(), took_s,
-              processor_s, megabytes(self.ru_maxrss));
+  std::printf("developed %zu views: %.1f s, %.1f s of processor time, at most %.0f MiB\n", developed.views.size(),
+              took_s, processor_s, megabytes(self.ru_maxrss));
   // The same reading and writing alone, one after the other.
   double read_s = 0, libraw_s = 0, write_s = 0;
   for (const DevelopedView& view : developed.views) {

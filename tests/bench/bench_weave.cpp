@@ -1,20 +1,19 @@
-// Relaxation of the ready weaves against the number of yarns: processor time, and time per yarn over that of the smallest;
-// energy and gradient, and with second derivatives, against the number of control points.
+// The relaxation of the ready weaves against the number of yarns: processor time, and time per yarn over that of the
+// smallest. Also energy and gradient, and with second derivatives, against the number of control points.
 #include <benchmark/benchmark.h>
 
 #include <ctime>
 #include <map>
 
-#include "../renderer/weave/relaxed_cloths.h"
-#include "../renderer/weave/shaken_cell.h"
+#include "tests/renderer/weave/relaxed_cloths.h"
+#include "tests/renderer/weave/shaken_cell.h"
 
 namespace renderer {
 namespace {
 
 void relaxation(benchmark::State& state) {
   static std::map<std::int64_t, double> first_s_per_yarn;
-  const Draft draft =
-      ready_weaves(static_cast<std::size_t>(state.range(1)))[static_cast<std::size_t>(state.range(0))];
+  const Draft draft = ready_weaves(static_cast<std::size_t>(state.range(1)))[static_cast<std::size_t>(state.range(0))];
   double seconds = 0;
   int steps = 0;
   for (auto _ : state) {

@@ -1,17 +1,17 @@
-// Rays per second through scene b of fixtures/reference/README.md: bare Embree with every yarn a curve, the patch's own grid
-// alone, and the grid inside the world's scene with the point that was hit (RayScene). On one core, on the same rays: those of
-// the camera, and those that scatter from where they meet the cloth.
+// Rays per second through scene b of fixtures/reference/README.md: bare Embree with every yarn a curve, the patch's own
+// grid alone, and the grid inside the world's scene with the point that was hit (RayScene). All run on one core and on
+// the same rays: those of the camera, and those that scatter from where they meet the cloth.
 #include <benchmark/benchmark.h>
 #include <embree3/rtcore.h>
 
 #include <limits>
 #include <memory>
 
-#include "../renderer/curve_scenes.h"
-#include "renderer/path_vertex.h"
-#include "renderer/ray_scene.h"
-#include "renderer/weave/patch_curves.h"
-#include "renderer/yarn_grid.h"
+#include "renderer/scene/patch_curves.h"
+#include "renderer/trace/path_vertex.h"
+#include "renderer/trace/ray_scene.h"
+#include "renderer/trace/yarn_grid.h"
+#include "tests/renderer/trace/curve_scenes.h"
 
 namespace renderer {
 namespace {
@@ -94,9 +94,9 @@ void bare_grid(benchmark::State& state) {
     // Between the planes that bound the cloth, as a shell cell would have it.
     const float up = (half - ray.origin.z()) / ray.direction.z(), down = (-half - ray.origin.z()) / ray.direction.z();
     const float begin = std::max(0.0f, std::min(up, down)), end = std::min(100.0f, std::max(up, down));
-    return end > begin && grid.nearest((ray.origin + begin * ray.direction).cast<double>(),
-                                       ray.direction.cast<double>(), end - begin)
-                              .has_value();
+    return end > begin &&
+           grid.nearest((ray.origin + begin * ray.direction).cast<double>(), ray.direction.cast<double>(), end - begin)
+               .has_value();
   });
   state.counters["bytes"] = static_cast<double>(grid.bytes());
   state.counters["groups_per_cell"] = grid.groups_per_cell();

@@ -1,6 +1,6 @@
 // The technician's page: screens, keys, themes; each screen is a module of its own.
 
-import {answer, beginBench, showBench, showJob} from "/bench.js";
+import {beginBench, showBench, showJob} from "/bench.js";
 import {beginForms, showForms} from "/capture.js";
 import {byId, readTexts, text} from "/document.js";
 import {beginLibrary, showLibrary} from "/library.js";
@@ -31,8 +31,8 @@ function render() {
   const control = byId("control");
   control.textContent = text(inControl() ? "control_mine" : state.control ? "control_other" : "control_free");
   control.disabled = inControl();
-  for (const button of document.querySelectorAll("form button, #done, #decline, #pause, [data-kind]")) button.disabled = !inControl();
   showJob();
+  for (const button of document.querySelectorAll("form button, #choices button, #pause, [data-kind]")) button.disabled = !inControl();
   showForms();
   showSessionChoice();
   showScreen();
@@ -47,7 +47,7 @@ function key(event) {
   if (event.key === "Escape") { event.preventDefault(); stop(); return; }
   const on = event.target.tagName;
   if (event.ctrlKey || event.altKey || event.metaKey || /^(INPUT|SELECT|TEXTAREA)$/.test(on)) return;
-  if (event.key === "Enter" && !/^(BUTTON|A)$/.test(on) && !byId("question").hidden && inControl()) answer(true);
+  if (event.key === "Enter" && !/^(BUTTON|A)$/.test(on) && !byId("question").hidden) byId("choices").firstChild.click();
   if (event.key === "p" && !byId("progress").hidden && inControl()) post("/api/pause");
   if (event.key === "t") byId("theme").click();
   const screens = [...document.querySelectorAll("#screens button")], wanted = screens[Number(event.key) - 1];

@@ -12,17 +12,10 @@ export function showJob() {
   byId("job-title").textContent = !job ? text("idle")
     : `${text("kind_" + job.kind)} · ${job.title}: ${job.running ? text("running") : job.status === 0 ? text("ended_well") : text("ended_badly")}`;
   byId("job-title").className = !job || job.running ? "" : job.status === 0 ? "well" : "badly";
-  byId("question").hidden = !(job && job.question);
-  const asked = String(job ? job.asked : 0);
-  if (job && job.question && byId("question").dataset.number !== asked && !byId("bench").hidden) scrollTo(0, 0);  // to the button
-  byId("question").dataset.number = asked;
+  showQuestion(job);
   byId("progress").hidden = !(job && job.running && !job.question);
   byId("preview").disabled = !inControl() || Boolean(job && job.running);
   if (!job) return;
-  if (job.question) {
-    items(byId("instructions"), job.question.filter(line => line.trim()));
-    showStep(job.arrangement);
-  }
   byId("label").textContent = `${job.done} / ${job.total} ${job.label}`;
   byId("bar").value = job.total ? job.done / job.total : 0;
   byId("left").textContent = job.seconds_left === null ? "" : `${time(job.seconds_left)} ${text("left")}`;
@@ -30,6 +23,30 @@ export function showJob() {
   const lines = byId("lines"), end = lines.scrollTop + lines.clientHeight >= lines.scrollHeight - 4;
   lines.textContent = job.lines.join("\n");
   if (end) lines.scrollTop = lines.scrollHeight;
+}
+
+// A question is shown once: its buttons stay the same until it has been answered.
+function showQuestion(job) {
+  const shown = byId("question"), question = job && job.question;
+  shown.hidden = !question;
+  if (!question || shown.dataset.number === `${job.number} ${question.id}`) return;
+  shown.dataset.number = `${job.number} ${question.id}`;
+  byId("choices").replaceChildren(...question.choices.map((choice, i) => make("button", {
+    type: "button", className: i === 0 ? "primary" : "", textContent: i === 0 ? `${choice.label} ${text("by_enter")}` : choice.label,
+    onclick: () => answer(question, choice.answer)})));
+  byId("remark").textContent = question.remark || "";
+  byId("step-count").textContent = question.step ? `${text("step")} ${question.step} / ${question.of}` : "";
+  items(byId("instructions"), question.text.split("\n"));
+  const typed = byId("typed-form");
+  typed.hidden = !question.typed;
+  byId("typed-label").textContent = `${text("typed")} ${question.typed}`;
+  typed.reset();
+  typed.onsubmit = event => {
+    event.preventDefault();
+    answer(question, typed.typed.value);
+  };
+  showStep(question.arrangement);
+  if (!byId("bench").hidden) scrollTo(0, 0);  // to the buttons
 }
 
 function showStep(arrangement) {
@@ -101,12 +118,10 @@ export async function showBench() {
   await byId("frame-picture").decode().catch(() => {});  // the next picture waits for this one, or none would ever be seen
 }
 
-// Of the question that the person has read, not of one that has come meanwhile.
-export const answer = done => post("/api/answer", {done, question: Number(byId("question").dataset.number)});
+// Answers the question that the person has read, not one that has come meanwhile.
+const answer = (question, chosen) => post("/api/answer", {question: question.id, answer: chosen});
 
 export function beginBench() {
-  byId("done").onclick = () => answer(true);
-  byId("decline").onclick = () => answer(false);
   byId("pause").onclick = () => post("/api/pause");
   byId("preview").onclick = () => startJob({kind: "preview"});
   byId("check-form").onsubmit = event => {

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
-#include "renderer/cloth_shape.h"
-#include "renderer/scattering/lobes.h"
-#include "tests/renderer/cloth_scenes.h"
+#include "renderer/scene/cloth_shape.h"
+#include "tests/renderer/trace/cloth_scenes.h"
 
 namespace renderer {
 namespace {
@@ -27,7 +27,7 @@ std::vector<CurveSet> line(double from_mm, double to_mm, float height_mm) {
 TEST(SewnCurves, OnAFlatClothTheyAreMovedTurnedAndRaised) {
   const ClothSurface flat = surface_of(SwatchShape{40, 30}, plain_patch(), Eigen::Isometry3d::Identity());
   EXPECT_LT((middle_of(flat) - Vector2d(20, 15)).norm(), 1e-9);
-  const MotifPlace place{.at_mm = {20, 15}, .turn_rad = kPi / 2};
+  const MotifPlace place{.at_mm = {20, 15}, .turn_rad = std::numbers::pi / 2};
   const CurveSet sewn = sewn_curves(line(-5, 5, 0.3F), place, flat, 0.5).front();
   for (std::size_t i = 0; i < sewn.control_points.size(); ++i) {
     // The patch begins at the swatch's lower left corner, and its middle is the world's origin.

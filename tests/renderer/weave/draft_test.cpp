@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 
+#include "renderer/weave/initial_patch.h"
 #include "renderer/weave/patch.h"
 
 namespace renderer {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+#include "renderer/weave/initial_patch.h"
 #include "renderer/weave/patch_measures.h"
 #include "tests/renderer/weave/relaxed_cloths.h"
 

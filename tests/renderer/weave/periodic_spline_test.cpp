@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 namespace renderer {
@@ -65,12 +66,12 @@ TEST(PeriodicSplineTest, LengthOfAStraightLineAndOfASineWaveAreRight) {
   std::vector<Vector3d> line, wave;
   for (int k = 0; k < 64; ++k) {
     line.push_back({k / 32.0, 0.1, 0.2});
-    wave.push_back({k / 32.0, 0, 0.2 * std::sin(M_PI * k / 32.0)});
+    wave.push_back({k / 32.0, 0, 0.2 * std::sin(std::numbers::pi * k / 32.0)});
   }
   EXPECT_NEAR(spline_length(spline_through(line, period)), 2, 1e-12);
-  double length =
-      0;  // of the sine itself, by the trapezoidal rule, which is spectrally exact for periodic integrands
-  for (int k = 0; k < 1000; ++k) length += std::hypot(1, 0.2 * M_PI * std::cos(M_PI * k / 500.0)) / 500;
+  double length = 0;  // of the sine itself, by the trapezoidal rule, which is spectrally exact for periodic integrands
+  for (int k = 0; k < 1000; ++k)
+    length += std::hypot(1, 0.2 * std::numbers::pi * std::cos(std::numbers::pi * k / 500.0)) / 500;
   EXPECT_NEAR(spline_length(spline_through(wave, period)), length, 2e-6);  // cubic interpolation: (pi / 32)^4 / 384
 }
 

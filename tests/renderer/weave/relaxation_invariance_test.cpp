@@ -16,8 +16,8 @@ void expect_same_measures(const YarnPatch& a, const YarnPatch& b, double toleran
   EXPECT_NEAR(a.thickness_mm, b.thickness_mm, tolerance) << a.name;
 }
 
-// The same points and samples at the same places: what is left is where Newton's method stops, a gradient of 1e-8 of the
-// pull, over the least stiffness of a cloth, some 1e-3 of pull / mm.
+// The tolerance for the same points and samples at the same places. What differs is where Newton's method stops: a
+// gradient of 1e-8 of the pull over the least stiffness of a cloth, some 1e-3 of pull / mm.
 constexpr double kSame = 1e-6;
 
 TEST(RelaxationTest, RepeatsOfThePatchChangeNothing) {

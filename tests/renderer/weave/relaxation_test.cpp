@@ -39,8 +39,7 @@ TEST(RelaxationTest, CrimpUnderTensionIsThatOfPeircesTable) {
   std::printf("p/D    crimp %%   Peirce %%  with D = h1 + h2  difference %%  with D = d1 + d2  difference %%\n");
   const double table[][2]{{0.9, 18.71}, {1.0, 14.35}, {1.25, 8.648}, {1.5, 5.848}, {2.0, 3.212}, {3.0, 1.405}};
   for (const auto& [pitch, percent] : table) {
-    const RelaxedPatch cloth =
-        relax(plain_cloth(pitch, pitch, 5), {.points_per_crossing = 24, .overlap_goal = 0.002});
+    const RelaxedPatch cloth = relax(plain_cloth(pitch, pitch, 5), {.points_per_crossing = 24, .overlap_goal = 0.002});
     expect_at_rest(cloth);
     const double D = crown_to_trough(cloth.patch, cloth.patch.yarns.front()) +
                      crown_to_trough(cloth.patch, cloth.patch.yarns.back());
@@ -61,10 +60,11 @@ TEST(RelaxationTest, CrimpUnderTensionIsThatOfPeircesTable) {
   }
 }
 
-// Peirce's yarns wrap one another as if the other were rigid: each arc presses on one point of the yarn below, its crown, and
-// a limp yarn that is pressed at one point kinks there. So two limp yarns find the shorter way above, and his path is in
-// balance where the other yarn is stiff. With a weft of straight rods his formula holds at any angle of wrapping: h1 = D,
-// p = D / sin(theta), c = (theta + cot(theta)) sin(theta) - 1; at p / D = 1.1 the warp wraps by 65 degrees.
+// Peirce's yarns wrap one another as if the other were rigid: each arc presses on one point of the yarn below, its
+// crown, and a limp yarn that is pressed at one point kinks there. So two limp yarns find the shorter way above, and
+// Peirce's path is in balance where the other yarn is stiff. With a weft of straight rods his formula holds at any
+// angle of wrapping: h1 = D, p = D / sin(theta), c = (theta + cot(theta)) sin(theta) - 1; at p / D = 1.1 the warp wraps
+// by 65 degrees.
 TEST(RelaxationTest, CrimpOverStiffWeftIsThatOfPeirceAtAnyWrapping) {
   for (const double pitch : {1.1, 1.25, 1.5, 2.0, 3.0}) {
     Draft draft = plain_cloth(pitch, pitch, 5);
@@ -122,8 +122,8 @@ TEST(RelaxationTest, ClothThatIsTighterThanPeircesJamIsReportedAsJammed) {
   }
 }
 
-// Where floats begin and end both yarns are inclined, and yarns that touch there are apart in height by more than their
-// contact distance: in a 2/2 twill by 3.3 %. Between tangents 1.5 % are left, which is the yarns' curvature, at any sett.
+// Where floats begin and end both yarns are inclined, and yarns that touch there are further apart in height than their
+// contact distance, in a 2/2 twill by 3.3 %. Between tangents 1.5 % are left at any sett, because the yarns are curved.
 TEST(RelaxationTest, AnOpenTwillIsNotTakenForJammed) {
   for (const double pitch : {0.65, 0.8, 1.0}) {
     Draft draft = twill_draft(2, 2);
@@ -148,8 +148,8 @@ TEST(RelaxationTest, SquareClothIsSymmetric) {
   }
 }
 
-// Control points of cubic splines: curvature converges at second order, energies faster. Contact at one stiffness and, by
-// the choice of numbers, at the same 96 samples per crossing.
+// With more control points of cubic splines, curvature converges at second order and energies converge faster. Contact
+// has one stiffness and, by the choice of numbers, the same 96 samples per crossing.
 TEST(RelaxationTest, EnergyAndCrimpConvergeAtSecondOrderOrBetterInTheControlPoints) {
   const auto at = [](int points) {
     return relax(plain_cloth(1.25, 1.25, 0.5), {.points_per_crossing = points, .overlap_goal = 0, .most_stages = 3});
@@ -172,8 +172,9 @@ TEST(RelaxationTest, EnergyAndCrimpConvergeAtSecondOrderOrBetterInTheControlPoin
   EXPECT_GT(std::log2(first_crimp / last_crimp) / 2, 2);
 }
 
-// At rest only the gradient that is left, summed over a yarn's points, stands against its contacts. Along the yarn, where
-// points stay where they are drawn, it is the half turns of these weaves that balance; the next test has a weave without.
+// At rest only the gradient that is left, summed over a yarn's points, stands against the yarn's contacts. Along the
+// yarn, where points stay where they are drawn, the half turns of these weaves make the balance; the next test has a
+// weave without them.
 TEST(RelaxationTest, ContactForcesOnEachYarnBalance) {
   std::vector<Draft> drafts = ready_weaves(4);
   for (const Draft& draft : uneven_drafts()) drafts.push_back(draft);
@@ -185,8 +186,8 @@ TEST(RelaxationTest, ContactForcesOnEachYarnBalance) {
   }
 }
 
-// What points and samples of contact leave in the energy of a yarn that slides pushes it along, and the cloth as a whole
-// sideways; it falls with their number. Up and down nothing is left.
+// A yarn that slides has an energy that depends a little on points and samples of contact; this pushes it along, and
+// the cloth as a whole sideways, the less the more points there are. Up and down nothing is left.
 TEST(RelaxationTest, ContactForcesAlongTheYarnsOfAnIrregularWeaveVanishWithMorePoints) {
   Draft draft = plain_cloth(0.9, 0.9, 0.5);
   draft.warp_over.clear();
@@ -222,10 +223,9 @@ TEST(RelaxationTest, HeightScaleIsAppliedAfterTheYarnsCameToRest) {
   EXPECT_EQ(low.height_scale, 0.7);
   for (std::size_t i = 0; i < natural.yarns.size(); ++i)
     for (std::size_t k = 0; k < natural.yarns[i].control_points.size(); ++k)
-      EXPECT_LT(
-          (low.yarns[i].control_points[k] - natural.yarns[i].control_points[k].cwiseProduct(Vector3d(1, 1, 0.7)))
-              .norm(),
-          1e-12);
+      EXPECT_LT((low.yarns[i].control_points[k] - natural.yarns[i].control_points[k].cwiseProduct(Vector3d(1, 1, 0.7)))
+                    .norm(),
+                1e-12);
 }
 
 TEST(RelaxationTest, AYarnOnTheWrongSideOfACrossingIsNoticed) {
@@ -236,7 +236,8 @@ TEST(RelaxationTest, AYarnOnTheWrongSideOfACrossingIsNoticed) {
   EXPECT_FALSE(is_as_drafted(patch, draft));
 }
 
-// Yarns as long as Peirce's at p / D = 1.25 that may choose the size of their cell: square again, and pulling at nothing.
+// Yarns are as long as Peirce's at p / D = 1.25 and may choose the size of their cell: it is square again, without a
+// force.
 TEST(RelaxationTest, ACellOfFreePeriodsTakesTheSizeThatItsYarnsFill) {
   Draft draft = plain_cloth(1.25, 1.25, 0);
   draft.warp.contraction = draft.weft.contraction = 0.02;

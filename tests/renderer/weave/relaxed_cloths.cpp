@@ -49,8 +49,7 @@ Draft turned(const Draft& draft) {
   const std::size_t picks = draft.warp_over.size(), ends = draft.warp_over[0].size();
   result.warp_over.assign(ends, std::vector<bool>(picks));
   for (std::size_t pick = 0; pick < picks; ++pick)
-    for (std::size_t end = 0; end < ends; ++end)
-      result.warp_over[end][picks - 1 - pick] = !draft.warp_over[pick][end];
+    for (std::size_t end = 0; end < ends; ++end) result.warp_over[end][picks - 1 - pick] = !draft.warp_over[pick][end];
   return result;
 }
 

@@ -1,4 +1,4 @@
-// Cloths that the tests of the relaxation have in common.
+// The cloths that the tests of the relaxation have in common.
 #pragma once
 
 #include <vector>
@@ -7,13 +7,13 @@
 
 namespace renderer {
 
-// Plain cloth of yarns of 0.5 mm: D, the sum of both diameters, is 1 mm, so pitches are p / D.
+// A plain cloth of yarns of 0.5 mm: D, the sum of both diameters, is 1 mm, so that pitches are p / D.
 Draft plain_cloth(double warp_pitch_mm, double weft_pitch_mm, double tension_n);
 
 // A twill and a satin whose systems differ.
 std::vector<Draft> uneven_drafts();
 
-// The ready weaves at the setts of fixtures/drafts, `yarns` or a little more each way.
+// The ready weaves at the setts of fixtures/drafts, with `yarns` yarns or a little more each way.
 std::vector<Draft> ready_weaves(std::size_t yarns);
 
 // The cloth turned by 90 degrees about z: weft becomes warp; what is on top stays on top.
@@ -22,7 +22,7 @@ Draft turned(const Draft& draft);
 // Relaxes a draft of yarns of 0.5 mm, prints what it took, and expects it at rest, not jammed, with little overlap.
 void expect_woven(const Draft& draft);
 
-// Comes to rest at a gradient below 1e-6 of the pull on the yarns, as drafted.
+// Expects that the patch came to rest at a gradient below 1e-6 of the pull on the yarns, as drafted.
 void expect_at_rest(const RelaxedPatch& relaxed);
 
 }  // namespace renderer

@@ -6,6 +6,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "renderer/weave/initial_patch.h"
 #include "renderer/weave/patch_measures.h"
 #include "renderer/weave/woven_patch.h"
 

@@ -1,10 +1,12 @@
-// A cell of yarns away from rest, for what must hold of its energy anywhere.
+// A cell of yarns away from rest, for laws of its energy that must hold anywhere.
 #pragma once
 
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <vector>
 
+#include "renderer/weave/initial_patch.h"
 #include "renderer/weave/yarn_contact.h"
 #include "renderer/weave/yarn_elasticity.h"
 
@@ -33,7 +35,7 @@ struct ShakenCell {
       m.length_mm = spline_length(center_line(patch, yarn));
       m.rest_length_mm = 0.97 * m.length_mm;
       for (int k = 0; slub > 0 && k < m.count; ++k)
-        m.thickness.push_back(1 + slub * std::sin(2 * M_PI * k / m.count));
+        m.thickness.push_back(1 + slub * std::sin(2 * std::numbers::pi * k / m.count));
       model.points += m.count;
       model.yarns.push_back(m);
       all.insert(all.end(), yarn.control_points.begin(), yarn.control_points.end());
@@ -47,7 +49,7 @@ struct ShakenCell {
 
   WeaveDerivatives at(const Eigen::Matrix3Xd& where, Curvature curvature) const {
     ContactList contacts;
-    contacts.update(model, points);  // one set of samples for all places
+    contacts.update(model, points);  // the same samples wherever the points are
     return at(where, curvature, contacts);
   }
   WeaveDerivatives at(const Eigen::Matrix3Xd& where, Curvature curvature, const ContactList& contacts) const {

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
-#include "renderer/weave/patch_curves.h"
+#include "renderer/scene/patch_curves.h"
+#include "renderer/weave/initial_patch.h"
 #include "renderer/weave/patch_measures.h"
 #include "renderer/weave/woven_patch.h"
 #include "tests/renderer/weave/relaxed_cloths.h"
@@ -45,7 +47,7 @@ TEST(UnevennessTest, NoiseHasMeanZeroAndTheVarianceAndCorrelationThatWereAsked) 
       EXPECT_NEAR(mean, 0, 1e-12);
     }
     // The cycle of length 0 is missing, whose share sqrt(pi) correlation / length the others have in its place.
-    const double missing = std::sqrt(M_PI) * correlation / kLength;
+    const double missing = std::sqrt(std::numbers::pi) * correlation / kLength;
     const auto expected = [&](double distance) {
       return (std::exp(-std::pow(distance / correlation, 2)) - missing) / (1 - missing);
     };
@@ -129,8 +131,7 @@ TEST(UnevennessTest, SlubsAreDrawnWithTheRadiusOfEachPlace) {
   const Yarn& first = *std::find_if(patch.yarns.begin(), patch.yarns.end(), [](const Yarn& y) { return !y.warp; });
   const std::size_t count = first.control_points.size();
   for (std::size_t k = 0; k < 2 * count; ++k)  // the curve starts with the point before the border
-    EXPECT_FLOAT_EQ(curves.control_points[k].w(),
-                    static_cast<float>(0.25 * first.thickness[(k + count - 1) % count]));
+    EXPECT_FLOAT_EQ(curves.control_points[k].w(), static_cast<float>(0.25 * first.thickness[(k + count - 1) % count]));
 }
 
 TEST(UnevennessTest, ShadesChangeAlongAYarnInPiecesOfTheMeanLengthAsked) {
@@ -191,9 +192,9 @@ TEST(UnevennessTest, PliesTurnUnevenlyAndStillWholeTimes) {
     EXPECT_NEAR(arm.norm() + ply.radius_mm * thickness(ply, share * fine), 0.25 * thickness(yarn, share * knots),
                 0.003);
   }
-  std::printf("%.3f turns; from %.2f to %.2f of the mean per step\n", turned / (2 * M_PI), least * kSteps / turned,
-              most * kSteps / turned);
-  EXPECT_NEAR(turned / (2 * M_PI), std::round(0.9 * spline_length(center)), 0.01);
+  std::printf("%.3f turns; from %.2f to %.2f of the mean per step\n", turned / (2 * std::numbers::pi),
+              least * kSteps / turned, most * kSteps / turned);
+  EXPECT_NEAR(turned / (2 * std::numbers::pi), std::round(0.9 * spline_length(center)), 0.01);
   EXPECT_LT(least * kSteps / turned, 0.9);
   EXPECT_GT(most * kSteps / turned, 1.1);
   EXPECT_TRUE(ply.twist.empty());

@@ -4,9 +4,11 @@
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
-#include "renderer/cloth_shape.h"
-#include "renderer/ray_scene.h"
+#include "renderer/scene/cloth_shape.h"
+#include "renderer/trace/ray_scene.h"
+#include "renderer/weave/initial_patch.h"
 #include "renderer/weave/patch_measures.h"
 #include "tests/renderer/weave/relaxed_cloths.h"
 
@@ -54,8 +56,8 @@ TEST(WovenPatchTest, FlattenedYarnsAreDrawnAsEllipsesOfTheRoundYarnsArea) {
         worst_angle = std::max(worst_angle, normal.normalized().cross(found.cast<double>()).norm());
       }
       std::printf("%s, flatness %.1f: area %.6f mm^2 (round %.6f), normals within %.1e rad\n", warp ? "warp" : "weft",
-                  flatness, area, M_PI / 16, worst_angle);
-      EXPECT_NEAR(area / (M_PI / 16), 1, 1e-3);
+                  flatness, area, std::numbers::pi / 16, worst_angle);
+      EXPECT_NEAR(area / (std::numbers::pi / 16), 1, 1e-3);
       EXPECT_LT(worst_angle, 1e-5);  // floats
       EXPECT_FALSE(scene.intersect({Vector3f(0, 0, 0), Vector3f(0.6f, 0.5f, 0.62f).normalized()})) << "from inside";
     }
@@ -159,7 +161,8 @@ TEST(WovenPatchTest, PliesTouchEachOtherInsideTheirYarnAndRepeatWithThePatch) {
         if (i > 0) turned += std::atan2(before.cross(arm).dot(along), before.dot(arm));
         before = arm;
       }
-      EXPECT_NEAR(std::abs(turned) / (2 * M_PI), std::round(0.9 * spline_length(center)), 0.01);  // whole turns
+      EXPECT_NEAR(std::abs(turned) / (2 * std::numbers::pi), std::round(0.9 * spline_length(center)),
+                  0.01);  // whole turns
     }
     std::printf("%d plies of radius %.4f mm: centres at least %.4f mm apart, reach %.4f mm from the yarn's line\n",
                 count, radius, least, farthest);

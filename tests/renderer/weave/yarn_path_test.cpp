@@ -4,25 +4,24 @@
 
 #include <cmath>
 
+#include "renderer/scattering/degree.h"
+
 namespace renderer {
 namespace {
-
-constexpr double kRad = M_PI / 180;
 
 struct PeirceRow {
   double pitch_over_d, angle_deg, length_over_d;
 };
 
 // Square plain cloth, D = sum of both diameters (models.md 4.3).
-const PeirceRow kPeirce[]{{0.8660254, 60.00, 1.0472}, {0.9, 47.18, 1.0684}, {1.0, 36.87, 1.1435},
-                          {1.25, 26.17, 1.3581},      {1.5, 20.80, 1.5877}, {2.0, 14.98, 2.0642},
-                          {3.0, 9.73, 3.0422}};
+const PeirceRow kPeirce[]{{0.8660254, 60.00, 1.0472}, {0.9, 47.18, 1.0684}, {1.0, 36.87, 1.1435}, {1.25, 26.17, 1.3581},
+                          {1.5, 20.80, 1.5877},       {2.0, 14.98, 2.0642}, {3.0, 9.73, 3.0422}};
 
 TEST(YarnPathTest, SquareClothHasTheAnglesAndLengthsOfPeircesTable) {
   for (const PeirceRow& row : kPeirce) {
     const double pitch = std::max(row.pitch_over_d, std::sqrt(0.75));
     const HalfWave wave = taut_half_wave(pitch, 0.25, 0.25);  // D = 1, so each system's crown is D / 4
-    EXPECT_NEAR(wave.angle_rad / kRad, row.angle_deg, row.pitch_over_d < 0.87 ? 0.02 : 0.006)
+    EXPECT_NEAR(wave.angle_rad / kDegree, row.angle_deg, row.pitch_over_d < 0.87 ? 0.02 : 0.006)
         << pitch;                                                         // printed digits; at
     EXPECT_NEAR(2 * wave.length_mm(), row.length_over_d, 6e-5) << pitch;  // the jam the angle has an infinite slope
   }
@@ -85,7 +84,7 @@ double crimp_of(const HalfWave& wave, double pitch) {
 TEST(YarnPathTest, InOpenClothTheTautCrimpIsThatOfAStringAndTheWovenOneThatOfAClampedBeam) {
   const double pitch = 40, rise = 0.5, unit = rise * rise / (pitch * pitch);
   EXPECT_NEAR(crimp_of(taut_half_wave(pitch, rise / 2, rise / 2), pitch) / unit, 0.5,
-              0.01);  // plus about D / (2 p) of it
+              0.01);                                                                       // plus about D / (2 p) of it
   EXPECT_NEAR(crimp_of(half_wave(pitch, rise / 2, rise / 2), pitch) / unit, 0.6, 0.0002);  // plus (h / p)^2 of it
 }
 

@@ -14,7 +14,7 @@
 #include <set>
 #include <vector>
 
-#include "gphoto_camera_fixture.h"
+#include "tests/rig/cameras/gphoto_camera_fixture.h"
 
 namespace {
 
@@ -24,13 +24,13 @@ using testing::HasSubstr;
 
 constexpr int kAtOnce = 12;  // most of the time is libgphoto2's waiting for an answer that does not come
 
-const rig::ExposureSettings kFirst{.exposure_s = 0.25, .iso = 100, .f_number = 8};
-const rig::ExposureSettings kSecond{.exposure_s = 0.5, .iso = 200, .f_number = 5.6};
+const rig::CameraSettings kFirst{.exposure_s = 0.25, .iso = 100, .f_number = 8};
+const rig::CameraSettings kSecond{.exposure_s = 0.5, .iso = 200, .f_number = 5.6};
 
 // Two pictures with different settings; what is delivered must be what was made last, and with those settings.
 void take_pictures(rig::Camera& camera, const WiredCamera& wired) {
-  for (const rig::ExposureSettings& wanted : {kFirst, kSecond}) {
-    const rig::ExposureSettings set = camera.configure(wanted);
+  for (const rig::CameraSettings& wanted : {kFirst, kSecond}) {
+    const rig::CameraSettings set = camera.configure(wanted);
     EXPECT_DOUBLE_EQ(set.exposure_s, wanted.exposure_s);
     const rig::Picture picture = camera.capture();
     const rig::Picture made = wired.recorded.last();
@@ -51,17 +51,14 @@ std::unique_ptr<rig::Camera> open_camera(const WiredCamera& wired) {
 void crash_process_of(const std::string& port) {
   for (const pid_t child : children()) {
     std::ifstream file("/proc/" + std::to_string(child) + "/cmdline");
-    if (std::string(std::istreambuf_iterator<char>(file), {}).find(port) != std::string::npos) {
-      kill(child, SIGSEGV);
-    }
+    if (std::string(std::istreambuf_iterator<char>(file), {}).find(port) != std::string::npos) kill(child, SIGSEGV);
   }
 }
 
 // Ports differ from run to run.
 std::string without_port(std::string message, const WiredCamera& wired) {
-  if (const std::size_t begin = message.find(wired.port()); begin != std::string::npos) {
+  if (const std::size_t begin = message.find(wired.port()); begin != std::string::npos)
     message.replace(begin, wired.port().size(), "ptpip:...");
-  }
   return message;
 }
 
@@ -72,15 +69,11 @@ std::string try_work(WiredCamera& wired) {
     camera = open_camera(wired);
     take_pictures(*camera, wired);
   });
-  if (said == "(accepted)") {
-    return {};
-  }
+  if (said == "(accepted)") return {};
   wired.sony->set_condition({});
   wired.server->plug_in();
   EXPECT_EQ(refusal([&] {
-              if (!camera) {
-                camera = open_camera(wired);
-              }
+              if (!camera) camera = open_camera(wired);
               take_pictures(*camera, wired);
             }),
             "(accepted)")
@@ -109,9 +102,7 @@ std::set<std::string> at_each_operation(const std::function<std::string(int)>& w
       int at = 0;
       {
         const std::lock_guard hold(mutex);
-        if (next > operations) {
-          return;
-        }
+        if (next > operations) return;
         at = next++;
       }
       SCOPED_TRACE("at operation " + std::to_string(at));
@@ -124,16 +115,10 @@ std::set<std::string> at_each_operation(const std::function<std::string(int)>& w
     }
   };
   std::vector<std::future<void>> workers;
-  for (int i = 0; i < kAtOnce; ++i) {
-    workers.push_back(std::async(std::launch::async, worker));
-  }
-  for (auto& one : workers) {
-    one.get();
-  }
+  for (int i = 0; i < kAtOnce; ++i) workers.push_back(std::async(std::launch::async, worker));
+  for (auto& one : workers) one.get();
   std::cout << operations << " operations, " << failed << " ended with a message:\n";
-  for (const std::string& message : said) {
-    std::cout << "  " << message << "\n";
-  }
+  for (const std::string& message : said) std::cout << "  " << message << "\n";
   return said;
 }
 
@@ -168,9 +153,7 @@ TEST(CameraFaults, AProcessThatCrashesAtAnyQuestionCostsNoPicture) {
     std::atomic<int> heard = 0;
     std::promise<std::string> port;  // is known when the server has begun
     const auto before_answer = [&, known = port.get_future().share()] {
-      if (++heard == at) {
-        crash_process_of(known.get());
-      }
+      if (++heard == at) crash_process_of(known.get());
     };
     WiredCamera wired({}, before_answer);
     port.set_value(wired.port());
@@ -194,9 +177,7 @@ TEST(CameraFaults, ACameraThatAnotherProgramHoldsIsSaidWithWhatToClose) {
     }
     take_pictures(*first, wired);
   }
-  for (const std::string& message : said) {
-    std::cout << "  " << message << "\n";
-  }
+  for (const std::string& message : said) std::cout << "  " << message << "\n";
   EXPECT_THAT(said, testing::ElementsAre(HasSubstr("another program holds the camera; close")));
   EXPECT_EQ(try_work(wired), "");
 }

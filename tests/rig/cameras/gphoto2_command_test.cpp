@@ -9,8 +9,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "../raw_reader.h"
-#include "wired_camera.h"
+#include "tests/rig/cameras/wired_camera.h"
+#include "tests/rig/simulated/raw_reader.h"
 
 namespace {
 
@@ -31,9 +31,7 @@ struct Gphoto2Command : testing::Test {
     std::string said;
     FILE* pipe = popen(command.c_str(), "r");
     std::array<char, 4096> piece{};
-    for (std::size_t got = 0; (got = fread(piece.data(), 1, piece.size(), pipe)) > 0;) {
-      said.append(piece.data(), got);
-    }
+    for (std::size_t got = 0; (got = fread(piece.data(), 1, piece.size(), pipe)) > 0;) said.append(piece.data(), got);
     EXPECT_EQ(pclose(pipe), 0) << command << "\n" << said;
     return said;
   }
@@ -60,9 +58,8 @@ TEST_F(Gphoto2Command, FindsAnAlphaSevenTwo) {
 TEST_F(Gphoto2Command, ListsTheSettingsOfASony) {
   const std::string said = run("--list-config");
   for (const char* name :
-       {"/iso", "/shutterspeed", "/f-number", "/imagequality", "/expprogram", "/focusmode", "/Battery Level"}) {
+       {"/iso", "/shutterspeed", "/f-number", "/imagequality", "/expprogram", "/focusmode", "/Battery Level"})
     EXPECT_THAT(said, HasSubstr(name));
-  }
 }
 
 TEST_F(Gphoto2Command, SetsAndReadsTheExposureAndTheQuality) {
@@ -102,8 +99,6 @@ TEST_F(Gphoto2Command, DownloadsRawAndJpegOfOneExposure) {
   ASSERT_EQ(wired.recorded.count(), 1u);
   EXPECT_EQ(bytes_of("capt0000.arw"), wired.recorded.last().bytes);
   std::size_t jpegs = 0;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    jpegs += entry.path().extension() == ".jpg";
-  }
+  for (const auto& entry : fs::directory_iterator(folder)) jpegs += entry.path().extension() == ".jpg";
   EXPECT_EQ(jpegs, 1u);
 }

@@ -13,8 +13,9 @@
 #include <vector>
 
 #include "rig/cameras/camera_process.h"
-#include "wired_camera.h"
+#include "tests/rig/cameras/wired_camera.h"
 
+// What an action says when it is refused.
 inline std::string refusal(const std::function<void()>& action) {
   try {
     action();
@@ -24,7 +25,7 @@ inline std::string refusal(const std::function<void()>& action) {
   return "(accepted)";
 }
 
-// Programs with a sanitizer in them take so many times longer, and under load none of their processes may be taken for
+// The factor by which programs with a sanitizer take longer; even under load none of their processes may be taken for
 // one that hangs.
 #ifdef THREADSTATION_SANITIZED
 inline constexpr double kPatience = 15;
@@ -32,18 +33,17 @@ inline constexpr double kPatience = 15;
 inline constexpr double kPatience = 1;
 #endif
 
-// The processes that this program started and that live.
+// The child processes of this program that are alive.
 inline std::vector<pid_t> children() {
   std::vector<pid_t> found;
   for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
     std::ifstream list(task.path() / "children");
-    for (pid_t one = 0; list >> one;) {
-      found.push_back(one);
-    }
+    for (pid_t one = 0; list >> one;) found.push_back(one);
   }
   return found;
 }
 
+// The number of files that this program has open.
 inline std::size_t open_descriptors() {
   const std::filesystem::directory_iterator all("/proc/self/fd");
   return static_cast<std::size_t>(std::distance(begin(all), end(all)));

@@ -1,5 +1,6 @@
-// The USB of this test program: one bus with one ILCE-7M2 on it, which another program holds. libgphoto2's own USB driver
-// asks libusb, and the program answers in its place. What the driver asks only after it has the camera is not here.
+// The USB of this test program: one bus with one ILCE-7M2 on it, which another program holds. libgphoto2's own USB
+// driver asks libusb, and these functions answer in its place. What the driver asks only after it has the camera is not
+// here.
 #include <libusb-1.0/libusb.h>
 
 #include <cstdint>

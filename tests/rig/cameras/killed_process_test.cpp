@@ -6,7 +6,7 @@
 #include <random>
 #include <thread>
 
-#include "gphoto_camera_fixture.h"
+#include "tests/rig/cameras/gphoto_camera_fixture.h"
 
 TEST_F(GphotoCamera, AProcessThatIsKilledAtAnyMomentCostsNoPicture) {
   const auto camera = open();
@@ -18,9 +18,7 @@ TEST_F(GphotoCamera, AProcessThatIsKilledAtAnyMomentCostsNoPicture) {
   for (int run = 0; run < 50; ++run) {
     std::thread killer([&, wait = moment_ms(random)] {
       std::this_thread::sleep_for(std::chrono::milliseconds(wait));
-      for (const pid_t child : children()) {
-        kill(child, SIGKILL);
-      }
+      for (const pid_t child : children()) kill(child, SIGKILL);
     });
     try {
       const rig::Picture picture = camera->capture();

@@ -6,14 +6,14 @@
 #include <cmath>
 #include <iostream>
 #include <map>
-#include <numbers>
 #include <random>
 #include <set>
 
-#include "gphoto_camera_fixture.h"
+#include "rig/devices/degree.h"
+#include "rig/simulated/simulated_port.h"
 #include "rig/turntables/controllers.h"
-#include "rig/turntables/simulated_port.h"
 #include "rig/turntables/stepper_turntable.h"
+#include "tests/rig/cameras/gphoto_camera_fixture.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 extern "C" std::size_t __sanitizer_get_current_allocated_bytes();  // Debian's GCC comes without its header
@@ -21,8 +21,9 @@ extern "C" std::size_t __sanitizer_get_current_allocated_bytes();  // Debian's G
 
 namespace {
 
+using rig::kDegree;
+
 constexpr int kCaptures = 1000, kFaults = 20;  // 2 %
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kStepsPerDeg = 40;
 
 // Memory of this program that is in use, in MB. A sanitizer keeps what was freed resident for a while, and counts.
@@ -57,18 +58,15 @@ struct LongRun : GphotoCamera {
     std::uniform_int_distribution<int> at(30, 20 * kCaptures), which(0, 7);
     const std::array kinds{LineFault::silence,  LineFault::lost_reply, LineFault::garbage, LineFault::late,
                            LineFault::repeated, LineFault::reset,      LineFault::alarm,   LineFault::unplug};
-    for (int i = 0; i < kFaults / 2; ++i) {
+    for (int i = 0; i < kFaults / 2; ++i)
       plan.push_back({at(random), kinds.at(static_cast<std::size_t>(which(random)))});
-    }
     return plan;
   }
 
   void break_camera() {
     switch (std::uniform_int_distribution<int>(0, 3)(random)) {
       case 0:
-        for (const pid_t child : children()) {
-          kill(child, SIGKILL);
-        }
+        for (const pid_t child : children()) kill(child, SIGKILL);
         break;
       case 1:
         wired.server->cut_after(1000);
@@ -113,9 +111,7 @@ TEST_F(LongRun, AThousandCapturesWithFaultsInTwoPercentEndCompleteAndLeakNothing
   table->home();
   camera->configure({.exposure_s = 0.25, .iso = 100, .f_number = 8});
   std::set<int> breaks;
-  while (breaks.size() < kFaults / 2) {
-    breaks.insert(std::uniform_int_distribution<int>(0, kCaptures - 1)(random));
-  }
+  while (breaks.size() < kFaults / 2) breaks.insert(std::uniform_int_distribution<int>(0, kCaptures - 1)(random));
   std::set<std::size_t> different;
   double early_mb = 0;
   std::size_t early_descriptors = 0;
@@ -123,9 +119,7 @@ TEST_F(LongRun, AThousandCapturesWithFaultsInTwoPercentEndCompleteAndLeakNothing
     const double angle_rad = (capture % 120 - 60) * 1.5 * kDegree;
     until_done([&] { table->move_to(angle_rad); });
     EXPECT_NEAR(wired.bench.state().platform_angle_rad, angle_rad, kDegree / kStepsPerDeg / 2 + 1e-9);
-    if (breaks.contains(capture)) {
-      break_camera();
-    }
+    if (breaks.contains(capture)) break_camera();
     until_done([&] {
       const rig::Picture picture = camera->capture();
       EXPECT_TRUE(picture.bytes == wired.recorded.last().bytes) << capture;
@@ -144,7 +138,5 @@ TEST_F(LongRun, AThousandCapturesWithFaultsInTwoPercentEndCompleteAndLeakNothing
   EXPECT_LT(used_mb() - early_mb, 5);  // one raw file leaked each time would be 5 MB more
   std::cout << "in use " << early_mb << " MB after 100 captures, " << used_mb() << " MB after " << kCaptures
             << "; said on the way:\n";
-  for (const auto& [message, times] : said) {
-    std::cout << "  " << times << " x " << message << "\n";
-  }
+  for (const auto& [message, times] : said) std::cout << "  " << times << " x " << message << "\n";
 }

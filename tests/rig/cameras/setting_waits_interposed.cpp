@@ -1,6 +1,6 @@
 // The time of a camera process in this test program: while a setting has not come about, libgphoto2 looks again every
-// 200 ms for more than 3 s. The simulated camera does a setting when it is told or never, so these waits are passed over:
-// nobody sleeps, and the clock that the library reads goes on by as much. Every other wait is a real one.
+// 200 ms for more than 3 s. The simulated camera makes a setting when it is told or never, so these waits are passed
+// over: nobody sleeps, and the clock that the library reads goes on by as much. Every other wait is a real one.
 #include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
@@ -42,9 +42,7 @@ int usleep(useconds_t duration_us) {
 
 time_t time(time_t* also) noexcept {
   const time_t now_s = std::chrono::duration_cast<std::chrono::seconds>(seen_time()).count();
-  if (also != nullptr) {
-    *also = now_s;
-  }
+  if (also != nullptr) *also = now_s;
   return now_s;
 }
 

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "gphoto_camera_fixture.h"
-#include "rig/detect.h"
+#include "rig/devices/detect.h"
+#include "tests/rig/cameras/gphoto_camera_fixture.h"
 
 using testing::HasSubstr;
 
@@ -11,8 +11,8 @@ using testing::HasSubstr;
 TEST(UsbCamera, ThatAnotherProgramHoldsIsSaidWithWhatToClose) {
   for (const char* port : {"usb:", "usb:001,004"}) {
     const std::string said = refusal([&] {
-      rig::make_process_camera({.command = {"/proc/self/exe", "camera-process"},
-                                .camera = {.port = port, .width_px = 60, .height_px = 40}});
+      rig::make_process_camera(
+          {.command = {"/proc/self/exe", "camera-process"}, .camera = {.port = port, .width_px = 60, .height_px = 40}});
     });
     EXPECT_THAT(said, HasSubstr("Could not claim the USB device")) << port;
     EXPECT_THAT(said, HasSubstr("another program holds the camera; close")) << port;

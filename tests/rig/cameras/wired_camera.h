@@ -8,17 +8,18 @@
 #include <string>
 #include <utility>
 
-#include "rig/cameras/ptpip_server.h"
-#include "rig/cameras/simulated_sony.h"
-#include "rig/simulated_bench.h"
+#include "rig/simulated/ptpip_server.h"
+#include "rig/simulated/simulated_bench.h"
+#include "rig/simulated/simulated_sony.h"
 
-// Keeps what the bench's camera drew, to be compared with what came over the wire; asked from any thread.
+// A camera that keeps what the bench's camera drew, to be compared with what came over the wire; may be asked from any
+// thread.
 class RecordingCamera final : public rig::Camera {
  public:
   explicit RecordingCamera(rig::Camera& camera) : camera_(camera) {}
   rig::CameraIdentity identity() override { return camera_.identity(); }
   std::vector<double> shutter_times_s() override { return camera_.shutter_times_s(); }
-  rig::ExposureSettings configure(const rig::ExposureSettings& wanted) override { return camera_.configure(wanted); }
+  rig::CameraSettings configure(const rig::CameraSettings& wanted) override { return camera_.configure(wanted); }
   rig::Picture capture() override {
     const rig::Picture picture = camera_.capture();
     const std::lock_guard hold(mutex_);
@@ -45,15 +46,13 @@ class RecordingCamera final : public rig::Camera {
   std::deque<rig::Picture> taken_;
 };
 
-// Lets a test act when the camera hears a question.
+// A simulated camera that lets a test act when it hears a question.
 class WatchedSony final : public rig::SimulatedSony {
  public:
   WatchedSony(rig::SimulatedSony& sony, std::function<void()> before_answer)
       : sony_(sony), before_answer_(std::move(before_answer)) {}
   rig::PtpAnswer handle(const rig::PtpRequest& request) override {
-    if (before_answer_) {
-      before_answer_();
-    }
+    if (before_answer_) before_answer_();
     return sony_.handle(request);
   }
   int waiting_pictures() override { return sony_.waiting_pictures(); }
@@ -65,16 +64,14 @@ class WatchedSony final : public rig::SimulatedSony {
 };
 
 struct WiredCamera {
-  // `before_answer`: called in the server's thread, which begins here.
+  // Starts the server; `before_answer` is called in its thread.
   explicit WiredCamera(rig::CameraFaultPlan plan = {}, std::function<void()> before_answer = {})
       : faults(std::move(plan)), watched(*sony, std::move(before_answer)) {}
   static cv::Mat3f draw(const rig::BenchState& state) {
     cv::Mat3f picture(state.lens.height_px, state.lens.width_px);
-    for (int row = 0; row < picture.rows; ++row) {
-      for (int column = 0; column < picture.cols; ++column) {
+    for (int row = 0; row < picture.rows; ++row)
+      for (int column = 0; column < picture.cols; ++column)
         picture(row, column) = {0.01F * static_cast<float>(row), 0.01F * static_cast<float>(column), 0.2F};
-      }
-    }
     return picture;
   }
   std::string port() const {

@@ -6,9 +6,9 @@
 #include <limits>
 #include <thread>
 
-#include "gphoto_camera_fixture.h"
 #include "rig/cameras/camera_process.h"
-#include "rig/device_contract.h"
+#include "rig/devices/device_contract.h"
+#include "tests/rig/cameras/gphoto_camera_fixture.h"
 
 namespace {
 
@@ -18,9 +18,8 @@ using testing::HasSubstr;
 
 TEST_F(GphotoCamera, KeepsTheContractOfCameras) {
   const auto camera = open();
-  for (const rig::ContractRow& row : rig::check_camera(*camera)) {
+  for (const rig::ContractRow& row : rig::check_camera(*camera))
     EXPECT_TRUE(row.passed) << row.name << ": " << row.what;
-  }
 }
 
 TEST_F(GphotoCamera, SaysWhoItIsAndWhichTimesItHas) {
@@ -36,7 +35,7 @@ TEST_F(GphotoCamera, SaysWhoItIsAndWhichTimesItHas) {
 TEST_F(GphotoCamera, DeliversTheBytesThatTheCameraMade) {
   const auto camera = open();
   for (const double exposure_s : {1 / 60.0, 0.5, 2.5}) {
-    const rig::ExposureSettings wanted{.exposure_s = exposure_s, .iso = 200, .f_number = 5.6};
+    const rig::CameraSettings wanted{.exposure_s = exposure_s, .iso = 200, .f_number = 5.6};
     camera->configure(wanted);
     const rig::Picture picture = camera->capture();
     EXPECT_EQ(picture.extension, "arw");
@@ -85,9 +84,7 @@ TEST_F(GphotoCamera, APictureThatWaitsFromBeforeIsDrainedAndNotTakenForTheNextOn
   const auto camera = open();
   camera->configure({.exposure_s = 0.25, .iso = 100, .f_number = 8});
   wired.sony->handle({.code = 0x9207, .parameters = {0xd2c2}, .data = std::string("\2\0", 2)});  // somebody's finger
-  while (wired.sony->waiting_pictures() == 0) {
-    std::this_thread::yield();
-  }
+  while (wired.sony->waiting_pictures() == 0) std::this_thread::yield();
   const rig::Picture picture = camera->capture();
   ASSERT_EQ(wired.recorded.count(), 2u);
   EXPECT_EQ(picture.bytes, wired.recorded.last().bytes);
@@ -119,9 +116,7 @@ TEST_F(GphotoCamera, NobodyThereIsSaidWithWhatToCheck) {
 TEST_F(GphotoCamera, AProcessThatHangsIsEndedAndStartedAgain) {
   const auto camera = open(6 * kPatience);  // s; a process starts in less
   camera->capture();
-  for (const pid_t child : children()) {
-    kill(child, SIGSTOP);
-  }
+  for (const pid_t child : children()) kill(child, SIGSTOP);
   EXPECT_TRUE(delivers_what_was_made(*camera));
 }
 

@@ -33,9 +33,8 @@ TEST(GrblReply, ReadsEveryLineThatRealFirmwareWasSeenToSay) {
   EXPECT_EQ(as<rig::GrblMessage>(version)->text, "VER:1.1h.20190830:");
   for (const char* line :
        {"[OPT:V,15,128]", "[MSG:Caution: Unlocked]", "[MSG:'$H'|'$X' to unlock]", "[MSG:Reset to continue]",
-        "[G54:0.000,0.000,0.000]", "[G92:-2.000,0.000,0.000]", "[TLO:0.000]", "[PRB:0.000,0.000,0.000:0]"}) {
+        "[G54:0.000,0.000,0.000]", "[G92:-2.000,0.000,0.000]", "[TLO:0.000]", "[PRB:0.000,0.000,0.000:0]"})
     EXPECT_TRUE(as<rig::GrblMessage>(rig::parse_grbl_line(line))) << line;
-  }
   const auto setting = rig::parse_grbl_line("$100=40.000");
   ASSERT_TRUE(as<rig::GrblSetting>(setting));
   EXPECT_EQ(as<rig::GrblSetting>(setting)->number, 100);
@@ -80,19 +79,16 @@ TEST(GrblReply, ReadsTheDialectsOfGrblhalAndFluidnc) {
 }
 
 TEST(GrblReply, TakesNothingForAnOkThatIsNotExactlyOne) {
-  for (const char* line : {"okok", "xok", "ok ", "OK", "\xffok", "o", "k", ""}) {
-    EXPECT_TRUE(is_noise(line)) << line;
-  }
+  for (const char* line : {"okok", "xok", "ok ", "OK", "\xffok", "o", "k", ""}) EXPECT_TRUE(is_noise(line)) << line;
 }
 
 TEST(GrblReply, SeesThatACharacterOfAPositionWasLost) {
   for (const char* line :
-       {"<Idle|MPos:3.00,0.000,0.000|FS:0,0>", "<Idle|MPos:,0.000,0.000|FS:0,0>",
-        "<Idle|MPos:3000,0.000,0.000|FS:0,0>", "<Idle|MPos:3.000|FS:0,0>", "<Idle|FS:0,0>",
-        "<Idl|MPos:3.000,0.000,0.000|FS:0,0>", "<>", "<", "Idle|MPos:3.000,0.000,0.000|FS:0,0>",
-        "<Idle|MPos:3.000,0.000,0.000|FS:0,0", "<Idle|MPos:nan,0.000,0.000>", "<Idle|MPos:1e9.000,0.000,0.000>"}) {
+       {"<Idle|MPos:3.00,0.000,0.000|FS:0,0>", "<Idle|MPos:,0.000,0.000|FS:0,0>", "<Idle|MPos:3000,0.000,0.000|FS:0,0>",
+        "<Idle|MPos:3.000|FS:0,0>", "<Idle|FS:0,0>", "<Idl|MPos:3.000,0.000,0.000|FS:0,0>", "<>", "<",
+        "Idle|MPos:3.000,0.000,0.000|FS:0,0>", "<Idle|MPos:3.000,0.000,0.000|FS:0,0", "<Idle|MPos:nan,0.000,0.000>",
+        "<Idle|MPos:1e9.000,0.000,0.000>"})
     EXPECT_TRUE(is_noise(line)) << line;
-  }
 }
 
 TEST(GrblReply, FindsAStatusThatRunsIntoOtherWords) {
@@ -108,16 +104,13 @@ TEST(GrblReply, EveryAlarmAndErrorIsSaidInWords) {
 }
 
 TEST(LineFrames, MakeTheSameLinesHoweverTheBytesAreSplit) {
-  const std::string text =
-      "\r\nGrbl 1.1h ['$' for help]\r\nok\r\n<Idle|MPos:0.000,0.000,0.000|FS:0,0>\r\nerror:9\r\n";
+  const std::string text = "\r\nGrbl 1.1h ['$' for help]\r\nok\r\n<Idle|MPos:0.000,0.000,0.000|FS:0,0>\r\nerror:9\r\n";
   for (std::size_t piece = 1; piece <= text.size(); ++piece) {
     rig::LineFrames frames;
     std::vector<std::string> lines;
     for (std::size_t begin = 0; begin < text.size(); begin += piece) {
       frames.add(text.substr(begin, piece));
-      while (const auto line = frames.next()) {
-        lines.push_back(*line);
-      }
+      while (const auto line = frames.next()) lines.push_back(*line);
     }
     EXPECT_THAT(lines, testing::ElementsAre("Grbl 1.1h ['$' for help]", "ok", "<Idle|MPos:0.000,0.000,0.000|FS:0,0>",
                                             "error:9"));
@@ -126,9 +119,7 @@ TEST(LineFrames, MakeTheSameLinesHoweverTheBytesAreSplit) {
 
 TEST(LineFrames, StayBoundedWhenNoLineEnds) {
   rig::LineFrames frames;
-  for (int i = 0; i < 10000; ++i) {
-    frames.add(std::string(1000, 'x'));
-  }
+  for (int i = 0; i < 10000; ++i) frames.add(std::string(1000, 'x'));
   frames.add("\nok\n");
   const auto noise = frames.next();
   ASSERT_TRUE(noise);

@@ -6,10 +6,11 @@
 #include <iostream>
 #include <set>
 
-#include "wired_bench.h"
+#include "tests/rig/turntables/wired_bench.h"
 
 namespace {
 
+using rig::kDegree;
 using testing::AnyOf;
 using testing::Each;
 using testing::HasSubstr;
@@ -48,9 +49,8 @@ void come_back(Rig& rig) {
 // By its serial number it is found there.
 void come_back_at_another_port(Rig& rig) {
   rig::SimulatedMotor motor(rig.bench, rig.clock, rig.kStepsPerDeg);
-  rig.port =
-      rig::make_simulated_port(rig.protocol == Protocol::grbl ? rig::make_simulated_grbl(motor, rig.clock, true)
-                                                              : rig::make_simulated_zaber(motor));
+  rig.port = rig::make_simulated_port(rig.protocol == Protocol::grbl ? rig::make_simulated_grbl(motor, rig.clock, true)
+                                                                     : rig::make_simulated_zaber(motor));
 }
 
 void expect_sound_again(Rig& rig, std::unique_ptr<rig::Turntable>& table) {
@@ -92,9 +92,7 @@ struct LineFaults : testing::TestWithParam<Protocol> {
       }
     }
     std::cout << GetParam() << ", " << operations << " operations, " << failed << " ended with a message:\n";
-    for (const std::string& message : said) {
-      std::cout << "  " << message << "\n";
-    }
+    for (const std::string& message : said) std::cout << "  " << message << "\n";
     return said;
   }
 };

@@ -50,9 +50,7 @@ int ioctl(int descriptor, unsigned long request, ...) {
   const long status = syscall(SYS_ioctl, descriptor, request, argument);
   const bool modem_lines = request == TIOCMGET || request == TIOCMBIS || request == TIOCMBIC || request == TIOCMSET;
   if (status < 0 && errno == ENOTTY && modem_lines) {
-    if (request == TIOCMGET) {
-      *static_cast<int*>(argument) = 0;
-    }
+    if (request == TIOCMGET) *static_cast<int*>(argument) = 0;
     return 0;
   }
   return static_cast<int>(status);

@@ -4,11 +4,12 @@
 
 #include <limits>
 
-#include "rig/device_contract.h"
-#include "wired_bench.h"
+#include "rig/devices/device_contract.h"
+#include "tests/rig/turntables/wired_bench.h"
 
 namespace {
 
+using rig::kDegree;
 using testing::HasSubstr;
 
 std::string refusal(const std::function<void()>& action) {
@@ -92,9 +93,8 @@ INSTANTIATE_TEST_SUITE_P(OverTheWire, StepperTurntable, testing::Values(Protocol
 TEST_P(StepperTurntable, KeepsTheContractOfTurntables) {
   WiredBench<rig::SimulatedClock> own(GetParam());
   const auto table = own.make_turntable();
-  for (const rig::ContractRow& row : rig::check_turntable(*table, own.kStepRad)) {
+  for (const rig::ContractRow& row : rig::check_turntable(*table, own.kStepRad))
     EXPECT_TRUE(row.passed) << row.name << ": " << row.what;
-  }
 }
 
 TEST_P(StepperTurntable, KnowsNoAngleUntilItIsHomed) {
@@ -124,9 +124,8 @@ TEST_P(StepperTurntable, RefusesAnglesThatAreNoneBeforeTheWire) {
   table->home();
   const int before = rig.port->operations();
   for (const double angle_rad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
-                                 361 * kDegree, -361 * kDegree, 1e300}) {
+                                 361 * kDegree, -361 * kDegree, 1e300})
     EXPECT_THAT(refusal([&] { table->move_to(angle_rad); }), HasSubstr("it turns between -360.000000 deg and"));
-  }
   EXPECT_EQ(rig.port->operations(), before);
   EXPECT_EQ(table->state(), rig::TurntableState::idle);
 }
@@ -185,8 +184,7 @@ TEST_P(StepperTurntable, AStopEndsTheMoveKeepsThePositionAndTheNextMoveGoesOn) {
 
 TEST_P(StepperTurntable, AStopBeforeAnyWriteOfAMoveStopsThePlatform) {
   expect_stopped_before_every_write([](rig::Turntable& table, Rig&) { table.home(); },
-                                    [](rig::Turntable& table, Rig&) { table.move_to(90 * kDegree); },
-                                    "was stopped at");
+                                    [](rig::Turntable& table, Rig&) { table.move_to(90 * kDegree); }, "was stopped at");
 }
 
 TEST_P(StepperTurntable, AStopBeforeAnyWriteOfAHomingStopsThePlatform) {
@@ -246,8 +244,7 @@ TEST_P(StepperTurntable, RefusesAControllerThatIsSetUpForOtherSteps) {
 TEST_P(StepperTurntable, SaysWhatAWrongDeviceAnswered) {
   rig.port = rig::make_simulated_port(rig::make_echo());
   const std::string said = refusal([&] { rig.make_turntable(); });
-  EXPECT_THAT(said,
-              testing::AllOf(HasSubstr("answered \""), HasSubstr("rig file"), HasSubstr("threadstation devices")))
+  EXPECT_THAT(said, testing::AllOf(HasSubstr("answered \""), HasSubstr("rig file"), HasSubstr("threadstation devices")))
       << said;
 }
 

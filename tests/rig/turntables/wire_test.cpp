@@ -6,13 +6,14 @@
 #include <future>
 #include <thread>
 
-#include "rig/device_contract.h"
-#include "rig/turntables/pty_server.h"
+#include "rig/devices/device_contract.h"
+#include "rig/simulated/pty_server.h"
 #include "rig/turntables/serial_line.h"
-#include "wired_bench.h"
+#include "tests/rig/turntables/wired_bench.h"
 
 namespace {
 
+using rig::kDegree;
 using testing::HasSubstr;
 
 using Rig = WiredBench<EventfulClock>;
@@ -56,9 +57,8 @@ INSTANTIATE_TEST_SUITE_P(OverAPty, Wire,
 
 TEST_P(Wire, TheContractOfTurntablesIsKept) {
   const auto table = rig.make_turntable();
-  for (const rig::ContractRow& row : rig::check_turntable(*table, rig.kStepRad)) {
+  for (const rig::ContractRow& row : rig::check_turntable(*table, rig.kStepRad))
     EXPECT_TRUE(row.passed) << row.name << ": " << row.what;
-  }
   EXPECT_NEAR(rig.true_angle_rad(), 0, 1e-12);
 }
 

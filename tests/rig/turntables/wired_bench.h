@@ -4,18 +4,16 @@
 #include <cmath>
 #include <functional>
 #include <memory>
-#include <numbers>
 #include <ostream>
 #include <string>
 
-#include "../eventful_clock.h"
-#include "rig/clock.h"
-#include "rig/simulated_bench.h"
+#include "rig/devices/clock.h"
+#include "rig/devices/degree.h"
+#include "rig/simulated/simulated_bench.h"
+#include "rig/simulated/simulated_port.h"
 #include "rig/turntables/controllers.h"
-#include "rig/turntables/simulated_port.h"
 #include "rig/turntables/stepper_turntable.h"
-
-inline constexpr double kDegree = std::numbers::pi / 180;
+#include "tests/rig/devices/eventful_clock.h"
 
 enum class Protocol { grbl, zaber };
 
@@ -26,17 +24,17 @@ inline std::ostream& operator<<(std::ostream& out, Protocol protocol) {
 template <typename ClockKind>
 struct WiredBench {
   static constexpr double kStepsPerDeg = 40;
-  static constexpr double kStepRad = kDegree / kStepsPerDeg;
+  static constexpr double kStepRad = rig::kDegree / kStepsPerDeg;
 
   explicit WiredBench(Protocol which, rig::HomeBy home_by = rig::HomeBy::home_switch, rig::LineFaultPlan faults = {})
       : protocol(which),
-        bench({.turntable = {.scale = 1, .step_rad = kStepRad, .speed_rad_s = 30 * kDegree}},
+        bench({.turntable = {.scale = 1, .step_rad = kStepRad, .speed_rad_s = 30 * rig::kDegree}},
               [](const rig::BenchState& state) {
                 return cv::Mat3f(state.lens.height_px, state.lens.width_px, cv::Vec3f::all(0.1F));
               }) {
     setup.steps_per_deg = kStepsPerDeg;
     setup.home_by = stepper.home_by = home_by;
-    bench.turn_platform(50 * kDegree);  // where somebody left it
+    bench.turn_platform(50 * rig::kDegree);  // where somebody left the platform
     rig::SimulatedMotor motor(bench, clock, kStepsPerDeg);
     const bool with_switch = home_by == rig::HomeBy::home_switch;
     port = rig::make_simulated_port(which == Protocol::grbl ? rig::make_simulated_grbl(motor, clock, with_switch)
@@ -61,16 +59,13 @@ struct WiredBench {
   rig::StepperSetup stepper;
   rig::SimulatedBench bench;
   std::shared_ptr<rig::SimulatedPort> port;
-  std::function<std::unique_ptr<rig::ByteLine>()> open_line = [this] {
-    return rig::open_simulated_line(port, clock);
-  };
+  std::function<std::unique_ptr<rig::ByteLine>()> open_line = [this] { return rig::open_simulated_line(port, clock); };
 
  private:
   static ClockKind make_clock() {
-    if constexpr (std::is_same_v<ClockKind, rig::SimulatedClock>) {
+    if constexpr (std::is_same_v<ClockKind, rig::SimulatedClock>)
       return rig::SimulatedClock(1.8e9);
-    } else {
+    else
       return {};
-    }
   }
 };

@@ -38,9 +38,7 @@ TEST(ZaberReply, BelievesALineWithACheckSumOnlyWhenItIsRight) {
 TEST(ZaberReply, ItsCheckSumMakesTheBytesAddUpToNothing) {
   for (const std::string text : {"1 1 home", "", "1 1 99 move abs -123456"}) {
     unsigned sum = static_cast<unsigned>(std::stoul(rig::zaber_check_sum(text), nullptr, 16));
-    for (const char c : text) {
-      sum += static_cast<unsigned char>(c);
-    }
+    for (const char c : text) sum += static_cast<unsigned char>(c);
     EXPECT_EQ(sum % 256, 0u) << text;
   }
 }
@@ -48,16 +46,13 @@ TEST(ZaberReply, ItsCheckSumMakesTheBytesAddUpToNothing) {
 TEST(ZaberReply, TakesNothingElseForAReply) {
   for (const char* line : {"", "@", "#01 0 info", "!01 1 IDLE --", "@1 0 OK IDLE -- 0", "@01 0 OK IDLE --",
                            "@01 0 OK IDLE -- ", "@01 0 NO IDLE -- 0", "@01 0 OK HALF -- 0", "@01 0 OK IDLE W 0",
-                           "x@01 0 OK IDLE -- 0", "@01 0 OK IDLE -- \xff", "/1 1 get pos"}) {
+                           "x@01 0 OK IDLE -- 0", "@01 0 OK IDLE -- \xff", "/1 1 get pos"})
     EXPECT_FALSE(rig::parse_zaber_line(line)) << line;
-  }
 }
 
 TEST(ZaberReply, EveryWarningAndRejectionIsSaidInWords) {
-  for (const char* warning : {"WR", "FS", "FD", "WV", "WT", "WM", "XX"}) {
+  for (const char* warning : {"WR", "FS", "FD", "WV", "WT", "WM", "XX"})
     EXPECT_THAT(rig::zaber_warning_words(warning), testing::StartsWith(std::string("warning ") + warning + ": "));
-  }
-  for (const char* reason : {"BADDATA", "BADCOMMAND", "BADAXIS", "STATUSBUSY", "PARKED", "ELSE"}) {
+  for (const char* reason : {"BADDATA", "BADCOMMAND", "BADAXIS", "STATUSBUSY", "PARKED", "ELSE"})
     EXPECT_THAT(rig::zaber_rejection_words(reason), testing::StartsWith(std::string(reason) + ": "));
-  }
 }

@@ -1,0 +1,116 @@
+#include "calibration/geometry/lattice.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <opencv2/calib3d.hpp>
+#include <stdexcept>
+
+#include "calibration/geometry/correspondences.h"
+
+namespace calibration {
+namespace {
+
+constexpr double kTolerance = 1e-6;  // part of a spacing; allows for rounding, not for the printer
+
+bool whole(double number) {
+  return std::abs(number - std::round(number)) < kTolerance * std::max(1.0, std::abs(number));
+}
+
+bool fits(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& origin, double spacing_mm) {
+  return std::all_of(points.begin(), points.end(), [&](const Eigen::Vector3d& point) {
+    const Eigen::Vector3d steps = (point - origin) / spacing_mm;
+    return whole(steps.x()) && whole(steps.y()) && std::abs(steps.z()) < kTolerance;
+  });
+}
+
+LatticeCorner corner_at(const TagLattice& tags, const Corner& corner) {
+  const Eigen::Vector3d steps = tags.lattice_from_board * corner.point / tags.lattice.spacing_mm;
+  return {static_cast<int>(std::lround(steps.x())), static_cast<int>(std::lround(steps.y())), corner.pixel};
+}
+
+}  // namespace
+
+TagLattice lattice_of(const TagLayout& board) {
+  std::vector<Eigen::Vector3d> points;
+  for (const Tag& tag : board.tags)
+    for (const Eigen::Vector3d& corner : corners_in_object(tag)) points.push_back(corner);
+  if (points.empty()) throw std::runtime_error("board \"" + board.name + "\" has no tags");
+  Eigen::Vector3d low = points.front(), high = low;
+  for (const Eigen::Vector3d& point : points) {
+    low = low.cwiseMin(point);
+    high = high.cwiseMax(point);
+  }
+  for (int parts = 1; parts <= 20; ++parts) {
+    const double spacing_mm = board.tags.front().size_mm / parts;
+    if (!fits(points, low, spacing_mm)) continue;
+    TagLattice tags;
+    const Eigen::Vector3d steps = (high - low) / spacing_mm;
+    tags.lattice = {.columns = static_cast<int>(std::lround(steps.x())) + 1,
+                    .rows = static_cast<int>(std::lround(steps.y())) + 1,
+                    .spacing_mm = spacing_mm};
+    tags.lattice_from_board = Eigen::Translation3d(-low);
+    return tags;
+  }
+  throw std::runtime_error("board \"" + board.name +
+                           "\": its corners do not lie on one lattice; use a flat board of upright tags whose gap is "
+                           "half a tag (threadstation target prints one)");
+}
+
+BoardPicture on_lattice(const TagLattice& tags, const TagLayout& board, const TagObservation& seen) {
+  BoardPicture view;
+  for (const Corner& corner : match_corners(board, seen)) view.push_back(corner_at(tags, corner));
+  return view;
+}
+
+std::optional<BoardCheck> check_view(const BoardPicture& view) {
+  if (view.size() < 8) return std::nullopt;
+  std::vector<cv::Point2d> nodes, pixels;
+  for (const LatticeCorner& corner : view) {
+    nodes.emplace_back(corner.column, corner.row);
+    pixels.emplace_back(corner.pixel.x(), corner.pixel.y());
+  }
+  // The map goes from pictures to the lattice, so that distances from nodes are in spacings at any size of the board.
+  cv::Mat1b inside;
+  constexpr double kSpacing = 1.0;
+  const cv::Mat1d map = cv::findHomography(pixels, nodes, cv::RANSAC, kSpacing, inside, 2000, 0.9999);
+  if (map.empty() || cv::countNonZero(inside) * 2 < static_cast<int>(view.size())) return std::nullopt;
+  BoardCheck check;
+  for (int i = 0; i < inside.rows; ++i) check.displaced.push_back(inside(i) == 0);
+  // Pixel rows count downwards and lattice rows upwards, so the map of a board seen from the front reverses
+  // orientation.
+  Eigen::Matrix3d lattice_from_pixel;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) lattice_from_pixel(row, column) = map(row, column);
+  const double depth = lattice_from_pixel.row(2).dot(view.front().pixel.homogeneous());
+  check.mirrored = lattice_from_pixel.determinant() * depth > 0.0;
+  return check;
+}
+
+std::string displaced_tags(const TagLattice& tags, const TagLayout& board, const std::vector<BoardPicture>& views) {
+  std::map<std::pair<int, int>, int> tag_at;  // lattice node -> id
+  for (const Tag& tag : board.tags)
+    for (const Eigen::Vector3d& point : corners_in_object(tag)) {
+      const LatticeCorner node = corner_at(tags, {point, {}});
+      tag_at[{node.column, node.row}] = tag.id;
+    }
+  std::map<int, int> seen, displaced;  // numbers of pictures, by tag
+  for (const BoardPicture& view : views) {
+    const std::optional<BoardCheck> check = check_view(view);
+    if (!check) continue;
+    std::map<int, int> corners_displaced;
+    for (std::size_t c = 0; c < view.size(); ++c)
+      corners_displaced[tag_at.at({view[c].column, view[c].row})] += check->displaced[c] ? 1 : 0;
+    for (const auto& [id, corners] : corners_displaced) {
+      ++seen[id];
+      displaced[id] += corners >= 3 ? 1 : 0;  // a good tag may share one or two nodes with a displaced neighbour
+    }
+  }
+  std::string names;
+  for (const auto& [id, times] : displaced)
+    if (times >= 2 && 2 * times > seen[id]) names += (names.empty() ? "tags " : ", ") + std::to_string(id);
+  return names;
+}
+
+}  // namespace calibration

@@ -1,0 +1,76 @@
+#include "calibration/geometry/still_tags.h"
+
+#include <cstdio>
+
+#include "calibration/sensor/median.h"
+
+namespace calibration {
+namespace {
+
+Eigen::Vector2d middle_of(const std::vector<Eigen::Vector2d>& points) {
+  std::vector<double> x, y;
+  for (const Eigen::Vector2d& point : points) {
+    x.push_back(point.x());
+    y.push_back(point.y());
+  }
+  return {median(x), median(y)};
+}
+
+}  // namespace
+
+StillTags still_tags(const TagLayout& layout, const std::vector<TagObservation>& views) {
+  StillTags still;
+  for (const Tag& tag : layout.tags) {
+    std::array<std::vector<Eigen::Vector2d>, 4> seen;
+    for (const TagObservation& view : views) {
+      for (const TagDetection& detection : view) {
+        if (detection.id != tag.id) continue;
+        for (std::size_t c = 0; c < 4; ++c) seen[c].push_back(detection.corners_px[c]);
+      }
+    }
+    if (seen[0].empty()) continue;
+    for (std::size_t c = 0; c < 4; ++c) still[tag.id][c] = middle_of(seen[c]);
+  }
+  return still;
+}
+
+std::optional<Shift> shift_of(const StillTags& reference, const TagObservation& seen) {
+  std::vector<int> ids;
+  std::vector<Eigen::Vector2d> shifts;
+  for (const TagDetection& detection : seen) {
+    const auto known = reference.find(detection.id);
+    if (known == reference.end()) continue;
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    for (std::size_t c = 0; c < 4; ++c) mean += 0.25 * (detection.corners_px[c] - known->second[c]);
+    ids.push_back(detection.id);
+    shifts.push_back(mean);
+  }
+  if (shifts.size() < 2) return std::nullopt;
+  Shift shift{.mean_px = middle_of(shifts), .tags = static_cast<int>(shifts.size())};
+  for (std::size_t i = 0; i < shifts.size(); ++i) {
+    const double own_px = (shifts[i] - shift.mean_px).norm();
+    if (own_px <= shift.odd_px) continue;
+    shift.odd_px = own_px;
+    shift.odd_id = ids[i];
+  }
+  return shift;
+}
+
+std::optional<std::string> shift_problem(const Shift& shift, double limit_px, const std::string& picture) {
+  char text[300];
+  if (shift.mean_px.norm() > limit_px)
+    std::snprintf(text, sizeof text,
+                  "%s: the table's tags stand %.2f px from where they were (limit %.2f): the camera or the table was "
+                  "bumped; fasten it and calibrate the platform again",
+                  picture.c_str(), shift.mean_px.norm(), limit_px);
+  else if (shift.odd_px > limit_px)
+    std::snprintf(text, sizeof text,
+                  "%s: tag %d on the table moved by %.2f px against the others (limit %.2f); fasten it and calibrate "
+                  "the platform again",
+                  picture.c_str(), shift.odd_id, shift.odd_px, limit_px);
+  else
+    return std::nullopt;
+  return text;
+}
+
+}  // namespace calibration

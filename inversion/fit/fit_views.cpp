@@ -1,0 +1,380 @@
+#include "inversion/fit/fit_views.h"
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "inversion/fit/loss_terms.h"
+#include "inversion/fit/view_objective.h"
+#include "inversion/solve/adam.h"
+#include "inversion/solve/bias_free.h"
+
+namespace inversion {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr int kMostSteps = 40;
+constexpr int kMostReweighings = 4;
+constexpr double kSettledWeight = 0.1;
+// With fewer paths the product of two halves' errors is larger than the bias that it is to remove.
+constexpr int kFewestPathsWithoutBias = 512;
+constexpr int kSeedStep = 1000003;  // between the seeds of a fit's traces, so that none shares the paths of another
+constexpr const char* kStopped = "the fit was stopped on request; start it again for a thread";
+
+struct FollowLoss : ceres::IterationCallback {
+  std::function<bool(int)> go_on;
+  std::vector<double>* losses = nullptr;
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& step) override {
+    losses->push_back(step.cost);
+    return go_on(step.iteration) ? ceres::SOLVER_CONTINUE : ceres::SOLVER_ABORT;
+  }
+};
+
+// What is searched, and how.
+struct Search {
+  const ScatteringFamily* family;
+  const FitOptions* options;
+  FamilyUnknowns unknowns;
+  std::vector<int> held;  // indices of unknowns
+};
+
+void set_bounds(ceres::Problem& problem, const Search& search, VectorXd& unknowns) {
+  const auto count = static_cast<int>(unknowns.size());
+  for (int k = 0; k < count; ++k) {
+    problem.SetParameterLowerBound(unknowns.data(), k, search.unknowns.lower[k]);
+    problem.SetParameterUpperBound(unknowns.data(), k, search.unknowns.upper[k]);
+  }
+  if (static_cast<int>(search.held.size()) == count)
+    problem.SetParameterBlockConstant(unknowns.data());
+  else if (!search.held.empty())
+    problem.SetManifold(unknowns.data(), new ceres::SubsetManifold(count, search.held));
+}
+
+FitRound solve(const ViewObjective& objective, const Search& search, double prior_scale,
+               const std::function<bool(int)>& go_on, VectorXd& unknowns) {
+  ceres::Problem problem;
+  problem.AddResidualBlock(new DataTerm(objective, static_cast<int>(unknowns.size())), nullptr, unknowns.data());
+  add_penalties(*search.family, problem, unknowns.data());
+  const PriorTerm prior(prior_scale);
+  if (prior_scale > 0) problem.AddResidualBlock(new PriorTerm(prior_scale), nullptr, unknowns.data());
+  set_bounds(problem, search, unknowns);
+
+  FitRound round;
+  FollowLoss callback;
+  callback.go_on = go_on;
+  callback.losses = &round.losses;
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = kMostSteps;
+  options.function_tolerance = 1e-6;
+  options.initial_trust_region_radius = 1;  // the start is far: full Gauss-Newton steps end at the bounds
+  options.logging_type = ceres::SILENT;
+  options.callbacks = {&callback};
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  if (summary.termination_type == ceres::USER_FAILURE) throw std::runtime_error(kStopped);
+  if (!summary.IsSolutionUsable())
+    throw std::runtime_error("the fit found no thread: " + summary.message + "; look at the views and their masks");
+  round.steps = static_cast<int>(summary.iterations.size()) - 1;
+  round.loss_before = summary.initial_cost, round.loss_after = summary.final_cost;
+  if (prior_scale > 0) round.prior_share = prior.loss(unknowns) / std::max(round.loss_after, 1e-300);
+  round.converged = summary.termination_type == ceres::CONVERGENCE;
+  return round;
+}
+
+// One search from one start, round after round.
+struct Attempt {
+  int start = 0;
+  VectorXd unknowns;
+  std::vector<FitRound> rounds{};
+  std::vector<double> view_weights{};
+  double loss() const { return rounds.empty() ? 0 : rounds.back().loss_after; }
+};
+
+// The prior's chi square counts as much as that of residuals of the size that the round before left.
+double prior_scale(const ViewObjective& objective, const Search& search, const std::vector<FitRound>& before) {
+  if (search.options->model != ModelKind::thread) return 0;
+  const auto last =
+      std::find_if(before.rbegin(), before.rend(), [](const FitRound& round) { return !round.bias_free; });
+  if (last == before.rend()) return 0;
+  return search.options->prior_weight * 2 * last->loss_after / objective.residual_count();
+}
+
+class RoundRunner {
+ public:
+  RoundRunner(ViewObjective& objective, const Search& search, std::size_t starts)
+      : objective_(objective), search_(search) {
+    const std::vector<int>& paths = search.options->paths_per_block;
+    for (std::size_t round = 0; round < paths.size(); ++round)
+      whole_ += paths[round] * (round + 1 < paths.size() ? static_cast<double>(starts) : 1.0);
+  }
+
+  // robustly: the blocks are weighed at the attempt's unknowns first.
+  void run(Attempt& attempt, std::size_t round, bool robustly = false) {
+    constexpr double kTracingShare = 0.4;
+    const FitOptions& options = *search_.options;
+    const int paths = options.paths_per_block[round];
+    const std::string name = "start " + std::to_string(attempt.start + 1) + ", round " + std::to_string(round + 1) +
+                             " of " + std::to_string(options.paths_per_block.size());
+    const auto go_on = [&](const std::string& what, double share) {
+      return !options.progress || options.progress(name + ", " + what, (done_ + share * paths) / whole_);
+    };
+    // Every start gets the same seed, because the starts' losses are compared: pixels and random numbers are alike,
+    // though the paths part where they are traced with other parameters.
+    objective_.trace(attempt.unknowns, paths, options.seed + kSeedStep * round, [&](int views_done, int total) {
+      if (!go_on("tracing", kTracingShare * views_done / total)) throw std::runtime_error(kStopped);
+    });
+    const auto search_on = [&] {
+      return solve(
+          objective_, search_, prior_scale(objective_, search_, attempt.rounds),
+          [&](int step) {
+            return go_on("step " + std::to_string(step), kTracingShare + (1 - kTracingShare) * step / kMostSteps);
+          },
+          attempt.unknowns);
+    };
+    if (robustly) attempt.view_weights = objective_.weigh_robustly(attempt.unknowns);
+    attempt.rounds.push_back(search_on());
+    // A bad view has pulled the fit towards itself before it is told from the others: as it loses weight, it stands out
+    // more.
+    for (int again = 0; robustly && again < kMostReweighings; ++again) {
+      std::vector<double> weights = objective_.weigh_robustly(attempt.unknowns);
+      const bool settled = std::equal(weights.begin(), weights.end(), attempt.view_weights.begin(),
+                                      [](double x, double y) { return std::abs(x - y) < kSettledWeight; });
+      attempt.view_weights = std::move(weights);
+      if (settled) break;
+      attempt.rounds.back() = search_on();
+    }
+    attempt.rounds.back().paths_per_block = paths;
+    done_ += paths;
+  }
+
+ private:
+  ViewObjective& objective_;
+  const Search& search_;
+  double whole_ = 0, done_ = 0;
+};
+
+Attempt search_by_rounds(ViewObjective& objective, const Search& search, const std::vector<VectorXd>& starts) {
+  std::vector<Attempt> attempts;
+  for (const VectorXd& start : starts)
+    attempts.push_back({.start = static_cast<int>(attempts.size()), .unknowns = start});
+  RoundRunner runner(objective, search, attempts.size());
+  const std::size_t last = search.options->paths_per_block.size() - 1;
+  for (Attempt& attempt : attempts)
+    for (std::size_t round = 0; round < last; ++round) runner.run(attempt, round);
+  Attempt& best = *std::min_element(attempts.begin(), attempts.end(),
+                                    [](const Attempt& a, const Attempt& b) { return a.loss() < b.loss(); });
+  runner.run(best, last, search.options->robust && last > 0);
+  return best;
+}
+
+BiasFreeTerms data_terms(const ViewObjective::Halves& both) {
+  const auto& [a, b] = both.residuals;
+  const auto& [by_a, by_b] = both.jacobians;
+  const Eigen::MatrixXd product = by_a.transpose() * by_b;
+  return {.loss = 0.5 * a.dot(b),
+          .gradient = 0.5 * (by_a.transpose() * b + by_b.transpose() * a),
+          .hessian = 0.5 * (product + product.transpose())};
+}
+
+// The covariance that the noise of paths and pictures gives the gradient of data_terms, summed over blocks, because the
+// three colours of a block share their paths.
+Eigen::MatrixXd gradient_covariance(const ViewObjective::Halves& both) {
+  const auto& [a, b] = both.residuals;
+  const auto& [by_a, by_b] = both.jacobians;
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(by_a.cols(), by_a.cols());
+  for (Eigen::Index row = 0; row < a.size(); row += 3) {
+    const VectorXd of_block = 0.5 * (by_a.middleRows<3>(row).transpose() * b.segment<3>(row) +
+                                     by_b.middleRows<3>(row).transpose() * a.segment<3>(row));
+    covariance += of_block * of_block.transpose();
+  }
+  return covariance;
+}
+
+// Goes on from where the search has ended by steps without bias. The last step's paths remain recorded.
+void remove_bias(ViewObjective& objective, const Search& search, Attempt& attempt) {
+  const FitOptions& options = *search.options;
+  const int paths = options.paths_per_block.back();
+  OtherTerms others(*search.family, prior_scale(objective, search, attempt.rounds));
+  const auto loss = [&](int step, const VectorXd& unknowns) {
+    const std::string name = "without bias, step " + std::to_string(step + 1);
+    const auto number = options.paths_per_block.size() + static_cast<std::size_t>(step);
+    objective.trace(unknowns, paths, options.seed + kSeedStep * number, [&](int, int) {
+      if (options.progress && !options.progress(name, 1)) throw std::runtime_error(kStopped);
+    });
+    BiasFreeTerms terms = others.at(unknowns);
+    const BiasFreeTerms data = data_terms(objective.halves(unknowns));
+    return BiasFreeTerms{terms.loss + data.loss, terms.gradient + data.gradient, terms.hessian + data.hessian};
+  };
+  if (options.robust) attempt.view_weights = objective.weigh_robustly(attempt.unknowns);
+  FitRound round{.paths_per_block = paths, .bias_free = true, .converged = true};
+  round.losses = minimise_bias_free(
+      loss, {.lower = search.unknowns.lower, .upper = search.unknowns.upper, .held = search.held}, attempt.unknowns);
+  round.steps = static_cast<int>(round.losses.size());
+  round.loss_before = round.losses.front(), round.loss_after = round.losses.back();
+  attempt.rounds.push_back(std::move(round));
+}
+
+Attempt search_by_adam(ViewObjective& objective, const Search& search, const VectorXd& start) {
+  const FitOptions& options = *search.options;
+  Attempt attempt{.unknowns = start};
+  VectorXd low = search.unknowns.lower, high = search.unknowns.upper;
+  for (int k : search.held) low[k] = high[k] = start[k];
+  ceres::Problem problem;
+  problem.AddResidualBlock(new DataTerm(objective, static_cast<int>(start.size())), nullptr, attempt.unknowns.data());
+  add_penalties(*search.family, problem, attempt.unknowns.data());
+  const auto evaluate = [&](int step, const VectorXd& unknowns, VectorXd& gradient) {
+    const double share = (step - 1.0) / options.adam_steps;
+    if (options.progress && !options.progress("step " + std::to_string(step), share))
+      throw std::runtime_error(kStopped);
+    objective.trace(unknowns, options.adam_paths, options.seed + kSeedStep * static_cast<std::uint64_t>(step),
+                    [](int, int) {});
+    double loss = 0;
+    std::vector<double> slopes;
+    problem.Evaluate({}, &loss, nullptr, &slopes, nullptr);
+    gradient = Eigen::Map<const VectorXd>(slopes.data(), unknowns.size());
+    return loss;
+  };
+  FitRound round{.paths_per_block = options.adam_paths, .steps = options.adam_steps};
+  round.losses = minimise_by_adam(evaluate, {.steps = options.adam_steps}, low, high, attempt.unknowns);
+  round.loss_before = round.losses.front();
+  VectorXd gradient(start.size());
+  round.loss_after = evaluate(options.adam_steps + 1, attempt.unknowns, gradient);
+  round.losses.push_back(round.loss_after);
+  attempt.rounds.push_back(std::move(round));
+  return attempt;
+}
+
+std::vector<bool> fixed_unknowns(const Search& search, const VectorXd& unknowns) {
+  constexpr double kTouching = 1e-9;
+  const VectorXd &low = search.unknowns.lower, &high = search.unknowns.upper;
+  std::vector<bool> fixed;
+  for (Eigen::Index k = 0; k < unknowns.size(); ++k)
+    fixed.push_back(unknowns[k] <= low[k] + kTouching || unknowns[k] >= high[k] - kTouching);
+  for (int k : search.held) fixed[static_cast<std::size_t>(k)] = true;
+  return fixed;
+}
+
+// The certainty at the unknowns, by the paths that were recorded last.
+Certainty certainty_at(const ViewObjective& objective, const Search& search, double prior_scale,
+                       const VectorXd& unknowns) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  LinearisedFit fit;
+  RowMajor jacobian(objective.residual_count(), unknowns.size());
+  fit.residuals.resize(objective.residual_count());
+  objective.residuals(unknowns, fit.residuals.data(), jacobian.data());
+  fit.jacobian = jacobian;
+  const ViewObjective::Halves both = objective.halves(unknowns);
+  fit.hessian = data_terms(both).hessian;
+  fit.gradient_covariance = gradient_covariance(both);
+  fit.variances = objective.residual_variances(unknowns);
+  fit.views = objective.residual_views();
+  fit.fixed = fixed_unknowns(search, unknowns);
+  fit.scales = VectorXd::Ones(unknowns.size());
+  fit.penalty_jacobian = OtherTerms(*search.family, 0).jacobian(unknowns);
+  if (prior_scale > 0) fit.prior_jacobian = PriorTerm(prior_scale).jacobian();
+  return certainty_of(fit);
+}
+
+ViewFit fit_family(const WrappedSpool& spool, const std::vector<View>& views, const FitOptions& options,
+                   const ScatteringFamily& family, const std::vector<VectorXd>& starts) {
+  ViewObjective objective(spool, views, family);
+  Search search{.family = &family, .options = &options, .unknowns = unknowns_of(family), .held = {}};
+  if (options.model == ModelKind::thread)
+    for (int k = 0; k < renderer::kThreadParameterCount; ++k)
+      if (std::find(options.held.begin(), options.held.end(), group_of(k)) != options.held.end())
+        search.held.push_back(k);
+  Attempt best = options.solver == Solver::adam ? search_by_adam(objective, search, starts.front())
+                                                : search_by_rounds(objective, search, starts);
+  if (options.solver == Solver::levenberg_marquardt && options.without_bias &&
+      options.paths_per_block.back() >= kFewestPathsWithoutBias)
+    remove_bias(objective, search, best);
+  ViewFit fit{
+      .model = model_at(family, best.unknowns),
+      .unknowns = best.unknowns,
+      .unknown_names = search.unknowns.names,
+      .certainty = certainty_at(objective, search, prior_scale(objective, search, best.rounds), best.unknowns),
+      .rounds = best.rounds,
+      .start = best.start,
+      .view_weights = best.view_weights.empty() ? std::vector<double>(views.size(), 1.0) : std::move(best.view_weights),
+      .block_px = objective.block_px(),
+      .blocks = objective.block_count()};
+  if (auto* thread = std::get_if<renderer::ThreadParameters>(&fit.model)) thread->limit_energy = true;
+  return fit;
+}
+
+ViewFit fit_best_yarn(const WrappedSpool& spool, const std::vector<View>& views, const FitOptions& options) {
+  std::optional<ViewFit> best;
+  for (std::size_t i = 0; i < kYarnFiberCounts.size(); ++i) {
+    FitOptions one = options;
+    const std::string name = std::to_string(kYarnFiberCounts[i]) + " fibers, ";
+    if (options.progress)
+      one.progress = [&](const std::string& what, double share) {
+        return options.progress(name + what, (static_cast<double>(i) + share) / kYarnFiberCounts.size());
+      };
+    const ScatteringFamily family = YarnFamily{kYarnFiberCounts[i]};
+    ViewFit fit = fit_family(spool, views, one, family, unknowns_of(family).starts);
+    if (!best || fit.loss() < best->loss()) best = std::move(fit);
+  }
+  return *std::move(best);
+}
+
+}  // namespace
+
+FitOptions first_rounds(FitOptions options, std::size_t rounds) {
+  options.solver = Solver::levenberg_marquardt;
+  options.other_starts.clear();
+  if (rounds < options.paths_per_block.size()) options.paths_per_block.resize(rounds);
+  return options;
+}
+
+double ViewFit::loss() const {
+  const auto last =
+      std::find_if(rounds.rbegin(), rounds.rend(), [](const FitRound& round) { return !round.bias_free; });
+  return last == rounds.rend() ? rounds.back().loss_after : last->loss_after;
+}
+
+ViewFit fit_views(const WrappedSpool& spool, const std::vector<View>& views, const FitOptions& options) {
+  const std::vector<int>& paths = options.paths_per_block;
+  if (paths.empty() || *std::min_element(paths.begin(), paths.end()) < 1)
+    throw std::invalid_argument("a fit was asked for without rounds or with a round without light paths");
+  if (options.adam_steps < 1 || options.adam_paths < 1)
+    throw std::invalid_argument("a fit by Adam was asked for without steps or without light paths");
+  switch (options.model) {
+    case ModelKind::yarn:
+      return fit_best_yarn(spool, views, options);
+    case ModelKind::fiber:
+      return fit_family(spool, views, options, FiberFamily{}, unknowns_of(FiberFamily{}).starts);
+    case ModelKind::thread:
+      break;
+  }
+  std::vector<VectorXd> starts{unknowns_of(options.start)};
+  if (options.held.empty())
+    for (const renderer::ThreadParameters& start : options.other_starts) starts.emplace_back(unknowns_of(start));
+  return fit_family(spool, views, options, ThreadFamily{}, starts);
+}
+
+IndependentLoss independent_loss(const WrappedSpool& spool, const std::vector<View>& views, const ViewFit& fit,
+                                 int paths_per_block, int repetitions, std::uint64_t seed) {
+  ViewObjective objective(spool, views, family_of(fit.model));
+  VectorXd residuals(objective.residual_count());
+  double sum = 0, squares = 0;
+  VectorXd together = VectorXd::Zero(residuals.size());
+  for (int i = 0; i < repetitions; ++i) {
+    objective.trace(fit.unknowns, paths_per_block, seed + kSeedStep * static_cast<std::uint64_t>(i), [](int, int) {});
+    objective.residuals(fit.unknowns, residuals.data(), nullptr);
+    const double loss = 0.5 * residuals.squaredNorm();
+    sum += loss;
+    squares += loss * loss;
+    together += residuals;
+  }
+  const double mean = sum / repetitions;
+  const double variance = std::max(0.0, squares / repetitions - mean * mean) / (repetitions - 1);
+  return {.mean = mean,
+          .standard_error = std::sqrt(variance),
+          .without_noise = (0.5 * together.squaredNorm() - sum) / (repetitions * (repetitions - 1))};
+}
+
+}  // namespace inversion

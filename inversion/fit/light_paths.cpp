@@ -1,0 +1,172 @@
+#include "inversion/fit/light_paths.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "renderer/picture/sampler.h"
+#include "renderer/trace/lights.h"
+#include "renderer/trace/path_vertex.h"
+
+namespace inversion {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using renderer::CurveLobes;
+
+PathDirection stored(const renderer::LobeAngles<float>& at) {
+  return {at.distance2[0], at.cos_cos[0], {at.from_center[0], at.from_center[1], at.from_center[2]}};
+}
+
+// Traces the paths of one view; the lamp has unit intensity.
+class PathRecorder {
+ public:
+  PathRecorder(const renderer::RayScene& rays, const View& view, const renderer::ScatteringModel& traced_with)
+      : rays_(rays),
+        traced_with_(traced_with),
+        model_(renderer::prepare_curve_models({traced_with}).front()),
+        far_side_(renderer::leaves_on_far_side(model_)),
+        lights_({.lights = {unit_lamp(view.light)}}) {}
+
+  void record(renderer::CameraRay camera_ray, renderer::Sampler& sampler, std::vector<PathEvent>& events) const {
+    if (!renderer::advance_to(rays_.bounds(), camera_ray)) return;
+    renderer::Ray ray{camera_ray.origin.cast<float>(), camera_ray.direction.cast<float>()};
+    float throughput = 1;
+    for (int vertex = 0; vertex < renderer::kMostVertices && throughput > 0; ++vertex) {
+      const std::optional<renderer::SurfaceHit> hit = rays_.intersect(ray);
+      const auto* curve = hit ? std::get_if<renderer::CurvePoint>(&hit->point) : nullptr;
+      if (!curve) {
+        if (vertex > 0) events.back().inverse_next_pdf = 0;  // nothing there: nothing to shade
+        return;
+      }
+      ray = record_event(*curve, ray.direction, vertex + 1 >= renderer::kFirstRouletteVertex, sampler, throughput,
+                         events);
+    }
+  }
+
+ private:
+  static renderer::SphereLight unit_lamp(NearLight light) {
+    light.intensity.setOnes();
+    return sphere_light(light);
+  }
+
+  // Appends the event; returns the ray that goes on and scales its throughput, which is 0 where the path ends.
+  renderer::Ray record_event(const renderer::CurvePoint& curve, const Vector3f& arriving, bool roulette,
+                             renderer::Sampler& sampler, float& throughput, std::vector<PathEvent>& events) const {
+    const Eigen::Matrix3f frame = renderer::local_from_world(curve);
+    const Vector3f wo = frame * -arriving;
+    const float h = renderer::viewing_offset(wo);
+    const CurveLobes<float> lobes = std::visit([&](const auto& model) { return model.lobes_at(h, wo); }, model_);
+    PathEvent event{};
+    event.point = point_at(h, wo);
+    const auto start_toward = [&](const Vector3f& direction) {
+      return far_side_ ? renderer::far_side_position(curve, direction, sampler.next_1d()) : curve.position;
+    };
+    event.light_weight = record_light(curve.position, start_toward, frame, lobes, sampler.next_2d(), event.light);
+
+    const Eigen::Vector2f u = sampler.next_2d(), u_angles = sampler.next_2d();
+    const Vector3f next = lobes.sample(u.x(), u.y(), u_angles.x(), u_angles.y());
+    event.next = stored(lobes.angles(next));
+    const renderer::ScatteringValue<float> scattering = lobes.evaluate(next);
+    float weight = scattering.pdf > 0 ? scattering.f_cos.maxCoeff() / scattering.pdf : 0.0F;
+    event.inverse_next_pdf = scattering.pdf > 0 ? 1 / scattering.pdf : 0.0F;
+    if (roulette) {
+      const float survival = std::min(renderer::kMostSurvival, throughput * weight);
+      if (sampler.next_1d() < survival) {
+        event.inverse_next_pdf /= survival;
+        weight /= survival;
+      } else {
+        event.inverse_next_pdf = weight = 0;
+      }
+    }
+    throughput *= weight;
+    events.push_back(event);
+    const Vector3f onwards = (frame.transpose() * next).normalized();
+    return {start_toward(onwards), onwards};
+  }
+
+  renderer::ThreadPoint<float> point_at(float h, const Vector3f& wo) const {
+    const float cosine = std::hypot(wo.y(), wo.z());
+    if (const auto* yarn = std::get_if<renderer::YarnParameters>(&traced_with_))
+      return {cosine, static_cast<float>(
+                          renderer::fibers_on_chord(yarn->fiber_count, yarn->radius_ratio, static_cast<double>(h)))};
+    const auto* fiber = std::get_if<renderer::FiberParameters>(&traced_with_);
+    const auto eta = static_cast<float>(fiber ? fiber->eta : renderer::kThreadEta);
+    return {cosine, renderer::InnerChord<float>(h, wo.x(), cosine, eta).length};
+  }
+
+  template <class StartToward>
+  float record_light(const Vector3f& position, const StartToward& start_toward, const Eigen::Matrix3f& frame,
+                     const CurveLobes<float>& lobes, const Eigen::Vector2f& u, PathDirection& direction) const {
+    const Vector3f start = start_toward(lights_.sample(position.cast<double>(), 0, u)->cast<float>());
+    const Vector3d origin = start.cast<double>();
+    const std::optional<Vector3d> wi = lights_.sample(origin, 0, u);
+    const std::optional<renderer::LightHit> light = lights_.intersect(origin, *wi, false);
+    if (!light) return 0;  // rounding at the rim of the cone
+    direction = stored(lobes.angles(frame * wi->cast<float>()));
+    if (rays_.occluded({start, wi->cast<float>()}, static_cast<float>(light->distance))) return 0;
+    return light->radiance[0] / static_cast<float>(lights_.pdf(origin, *wi));
+  }
+
+  const renderer::RayScene& rays_;
+  renderer::ScatteringModel traced_with_;
+  renderer::CurveModel model_;
+  bool far_side_;
+  renderer::Lights lights_;
+};
+
+struct BlockPaths {
+  std::vector<PathEvent> events;
+  std::vector<std::uint32_t> ends;
+};
+
+BlockPaths trace_block(const PathRecorder& recorder, const View& view, const Block& block, int count,
+                       std::uint64_t seed, std::size_t number) {
+  BlockPaths traced;
+  int batch = -1, first = 0;
+  std::optional<renderer::Sampler> stream;
+  for (int i = 0; i < count; ++i) {
+    while (batch < 0 || i >= batch_end(count, batch)) {
+      first = i;
+      ++batch;
+      stream.emplace(seed, number * kPathBatches + static_cast<std::size_t>(batch));
+    }
+    renderer::Sampler& sampler = *stream;
+    sampler.start_sample(static_cast<std::uint32_t>(i - first));
+    const auto chosen = static_cast<std::size_t>(sampler.next_1d() * static_cast<float>(block.pixels.size()));
+    const cv::Point& pixel = block.pixels[std::min(chosen, block.pixels.size() - 1)];
+    const Eigen::Vector2f u = sampler.next_2d();
+    const renderer::CameraRay ray = renderer::ray_through(view.camera, pixel.x + static_cast<double>(u.x()) - 0.5,
+                                                          pixel.y + static_cast<double>(u.y()) - 0.5);
+    recorder.record(ray, sampler, traced.events);
+    traced.ends.push_back(static_cast<std::uint32_t>(traced.events.size()));
+  }
+  return traced;
+}
+
+}  // namespace
+
+renderer::RayScene spool_rays(const WrappedSpool& spool) {
+  return renderer::RayScene(view_scene(spool, renderer::ThreadParameters{}, NearLight{}));
+}
+
+LightPaths trace_light_paths(const renderer::RayScene& rays, const View& view, const std::vector<Block>& blocks,
+                             const renderer::ScatteringModel& traced_with, int paths_per_block, std::uint64_t seed) {
+  const PathRecorder recorder(rays, view, traced_with);
+  std::vector<BlockPaths> traced(blocks.size());
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+    traced[b] = trace_block(recorder, view, blocks[b], paths_per_block, seed, b);
+  });
+  LightPaths paths;
+  for (const BlockPaths& block : traced) {
+    const auto first = static_cast<std::uint32_t>(paths.events.size());
+    paths.block_paths.push_back(static_cast<std::uint32_t>(paths.path_ends.size()));
+    paths.events.insert(paths.events.end(), block.events.begin(), block.events.end());
+    for (std::uint32_t end : block.ends) paths.path_ends.push_back(first + end);
+  }
+  paths.block_paths.push_back(static_cast<std::uint32_t>(paths.path_ends.size()));
+  return paths;
+}
+
+}  // namespace inversion

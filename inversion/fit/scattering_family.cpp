@@ -1,0 +1,194 @@
+#include "inversion/fit/scattering_family.h"
+
+#include <ceres/ceres.h>
+
+#include <cmath>
+
+namespace inversion {
+namespace {
+
+using Eigen::VectorXd;
+using RgbByUnknowns = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+using renderer::kThreadParameterCount;
+
+constexpr double kGamma = 1e-4;          // of eq. 6's trend of lambda_0
+constexpr double kTrendRounding = 1e-3;  // below this the hinge is rounded, so that it has a derivative
+constexpr int kEnergyAngles = 33;        // c = 0, where no view sees how high lambda_2 rises, to c = 1
+// Weight of the mean squared excess: 1 % of it costs as much as a tenth of the data term.
+constexpr double kEnergyPenalty = 30;
+constexpr double kMostFiberAbsorption = 50;  // per radius: black
+constexpr double kLeastRoughness = 0.02;
+
+// Energy beyond 1 at evenly spaced c, both ends included: it is there that fits exceed it first.
+struct EnergyTerm {
+  template <class S>
+  bool operator()(const S* u, S* residuals) const {
+    renderer::BasicThreadParameters<S> p;
+    renderer::set_energies(u + kL0, p);
+    p.limit_energy = false;
+    const double weight = std::sqrt(2 * kEnergyPenalty / kEnergyAngles);
+    for (int i = 0; i < kEnergyAngles; ++i) {
+      const double c = i / (kEnergyAngles - 1.0);
+      const auto lambda = renderer::thread_lobe_energies<S>(p, c);
+      const S excess = lambda[0] + lambda[1] + lambda[2] - S(1.0);
+      residuals[i] = excess > S(0.0) ? S(weight) * excess : S(0.0);
+    }
+    return true;
+  }
+};
+
+// lambda_0(1) - lambda_0(0) where positive.
+struct TrendTerm {
+  template <class S>
+  bool operator()(const S* u, S* residual) const {
+    residual[0] = u[kL1] > u[kL0] ? u[kL1] - u[kL0] : S(0.0);
+    return true;
+  }
+};
+
+VectorXd vector_of(std::initializer_list<double> numbers) {
+  VectorXd vector(static_cast<Eigen::Index>(numbers.size()));
+  std::copy(numbers.begin(), numbers.end(), vector.data());
+  return vector;
+}
+
+FamilyUnknowns unknowns(const ThreadFamily&) {
+  std::vector<VectorXd> starts{unknowns_of(starting_thread())};
+  for (const renderer::ThreadParameters& start : other_starting_threads()) starts.emplace_back(unknowns_of(start));
+  return {.names = {"sigma_a_r", "sigma_a_g", "sigma_a_b", "alpha_r", "alpha_tt", "alpha_trt", "beta_r", "beta_tt",
+                    "beta_trt", "l0", "l1", "kappa", "r1a", "log_r2a", "log_r2b", "n2"},
+          .lower = lower_bounds(),
+          .upper = upper_bounds(),
+          .starts = std::move(starts)};
+}
+
+FamilyUnknowns unknowns(const FiberFamily&) {
+  return {.names = {"sigma_a_r", "sigma_a_g", "sigma_a_b", "beta_m", "beta_n"},
+          .lower = vector_of({0, 0, 0, kLeastRoughness, kLeastRoughness}),
+          .upper = vector_of({kMostFiberAbsorption, kMostFiberAbsorption, kMostFiberAbsorption, 1, 1}),
+          .starts = {vector_of({0.3, 0.3, 0.3, 0.3, 0.3}), vector_of({0.1, 0.1, 0.1, 0.6, 0.6}),
+                     vector_of({1, 1, 1, 0.4, 0.9})}};
+}
+
+FamilyUnknowns unknowns(const YarnFamily&) {
+  return {.names = {"sigma_a_r", "sigma_a_g", "sigma_a_b", "beta_r", "beta_tt", "gamma_tt"},
+          .lower = vector_of({0, 0, 0, kLeastRoughness, kLeastRoughness, kLeastRoughness}),
+          .upper = vector_of({kMostFiberAbsorption, kMostFiberAbsorption, kMostFiberAbsorption, 1, 1, 1}),
+          .starts = {vector_of({0.3, 0.3, 0.3, 0.3, 0.3, 0.3}), vector_of({1, 1, 1, 0.5, 0.2, 0.6})}};
+}
+
+renderer::ThreadParameters parameters(const ThreadFamily&, const VectorXd& u) {
+  return parameters_of(u);
+}
+
+renderer::FiberParameters parameters(const FiberFamily&, const VectorXd& u) {
+  return {.sigma_a = u.head<3>(), .beta_m = u[3], .beta_n = u[4]};
+}
+
+renderer::YarnParameters parameters(const YarnFamily& family, const VectorXd& u) {
+  return {.fiber_count = family.fiber_count,
+          .radius_ratio = std::sqrt(kYarnPacking / family.fiber_count),
+          .sigma_a = u.head<3>(),
+          .beta_r = u[3],
+          .beta_tt = u[4],
+          .gamma_tt = u[5]};
+}
+
+BlockShader shader(const ThreadFamily&, const VectorXd& u) {
+  return ThreadShader{block_model(parameters_of(u)), parameters_by_unknowns(u)};
+}
+
+template <class Family>
+BlockShader shader(const Family& family, const VectorXd& u) {
+  return block_model(parameters(family, u));
+}
+
+const BlockModel& model_of(const ThreadShader& shader) {
+  return shader.model;
+}
+
+template <class Model>
+const Model& model_of(const Model& model) {
+  return model;
+}
+
+// RGB x parameters: sigma_a of the three channels, then the parameters of the rows of slopes after the first.
+template <int kSlopeCount>
+Eigen::Matrix<double, 3, kSlopeCount + 2> by_parameters(const renderer::ThreadSlopes<double>& slopes) {
+  Eigen::Matrix<double, 3, kSlopeCount + 2> rows;
+  rows.setZero();
+  for (int c = 0; c < 3; ++c) {
+    rows(c, c) = slopes(0, c);
+    for (int k = 1; k < kSlopeCount; ++k) rows(c, k + 2) = slopes(k, c);
+  }
+  return rows;
+}
+
+RgbByUnknowns by_unknowns_of(const ThreadShader& shader, const renderer::ThreadSlopes<double>& slopes) {
+  return by_parameters<BlockModel::kSlopeCount>(slopes) * shader.parameters_by_unknowns;
+}
+
+// The unknowns are the parameters.
+template <class Model>
+RgbByUnknowns by_unknowns_of(const Model&, const renderer::ThreadSlopes<double>& slopes) {
+  return by_parameters<Model::kSlopeCount>(slopes);
+}
+
+}  // namespace
+
+ScatteringFamily family_of(const renderer::ScatteringModel& model) {
+  if (std::holds_alternative<renderer::FiberParameters>(model)) return FiberFamily{};
+  if (const auto* yarn = std::get_if<renderer::YarnParameters>(&model)) return YarnFamily{yarn->fiber_count};
+  return ThreadFamily{};
+}
+
+FamilyUnknowns unknowns_of(const ScatteringFamily& family) {
+  return std::visit([](const auto& of) { return unknowns(of); }, family);
+}
+
+renderer::ScatteringModel model_at(const ScatteringFamily& family, const VectorXd& u) {
+  return std::visit([&](const auto& of) { return renderer::ScatteringModel(parameters(of, u)); }, family);
+}
+
+void add_penalties(const ScatteringFamily& family, ceres::Problem& problem, double* unknowns) {
+  if (!std::holds_alternative<ThreadFamily>(family)) return;
+  problem.AddResidualBlock(
+      new ceres::AutoDiffCostFunction<EnergyTerm, kEnergyAngles, kThreadParameterCount>(new EnergyTerm), nullptr,
+      unknowns);
+  // Huber's loss is linear beyond the rounding: half of it times the scale is gamma |x|.
+  problem.AddResidualBlock(
+      new ceres::AutoDiffCostFunction<TrendTerm, 1, kThreadParameterCount>(new TrendTerm),
+      new ceres::ScaledLoss(new ceres::HuberLoss(kTrendRounding), kGamma / kTrendRounding, ceres::TAKE_OWNERSHIP),
+      unknowns);
+}
+
+BlockShader shader_at(const ScatteringFamily& family, const VectorXd& u) {
+  return std::visit([&](const auto& of) { return shader(of, u); }, family);
+}
+
+BlockEstimate shade(const BlockShader& shader, const LightPaths& paths, std::size_t block, bool with_slopes) {
+  return std::visit([&](const auto& of) { return shade_block(paths, block, model_of(of), with_slopes); }, shader);
+}
+
+RgbByUnknowns by_unknowns(const BlockShader& shader, const renderer::ThreadSlopes<double>& slopes) {
+  return std::visit([&](const auto& of) { return by_unknowns_of(of, slopes); }, shader);
+}
+
+renderer::ThreadParameters starting_thread() {
+  renderer::ThreadParameters p;
+  p.sigma_a.setConstant(0.3);
+  return p;
+}
+
+std::vector<renderer::ThreadParameters> other_starting_threads() {
+  renderer::ThreadParameters clear = starting_thread(), dark = starting_thread();
+  clear.sigma_a.setConstant(0.1);
+  clear.alpha = {0.4, 0.3, 0.3};
+  clear.beta = {0.9, 0.6, 0.6};
+  dark.sigma_a.setConstant(0.6);
+  dark.alpha = {0.15, 0.3, 0.8};
+  dark.beta = {0.9, 0.6, 0.3};
+  return {clear, dark};
+}
+
+}  // namespace inversion

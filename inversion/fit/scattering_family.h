@@ -1,0 +1,73 @@
+// A family of scattering models as a fit sees it: a vector of unknowns with bounds and starts, and the shading of
+// recorded light paths with its slopes. There are three: the thread model (the default) and, to compare it with, a
+// single fiber and a yarn aggregated analytically.
+//
+//   family | unknowns | what they are
+//   thread | 16       | thread_unknowns.h
+//   fiber  | 5        | sigma_a (R G B, per thread radius), beta_m, beta_n; index of refraction 1.55
+//   yarn   | 6        | sigma_a (R G B, per thread radius), beta_r, beta_tt, gamma_tt; the number of fibers is given
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "inversion/fit/block_estimate.h"
+#include "inversion/fit/thread_unknowns.h"
+#include "renderer/scene/scene.h"
+
+namespace ceres {
+class Problem;
+}
+
+namespace inversion {
+
+struct ThreadFamily {};
+struct FiberFamily {};
+struct YarnFamily {
+  int fiber_count;
+};
+using ScatteringFamily = std::variant<ThreadFamily, FiberFamily, YarnFamily>;
+
+// The family that the model is one of.
+ScatteringFamily family_of(const renderer::ScatteringModel& model);
+
+struct FamilyUnknowns {
+  std::vector<std::string> names;
+  Eigen::VectorXd lower, upper;         // bounds
+  std::vector<Eigen::VectorXd> starts;  // the first is the default
+};
+FamilyUnknowns unknowns_of(const ScatteringFamily& family);
+
+renderer::ScatteringModel model_at(const ScatteringFamily& family, const Eigen::VectorXd& unknowns);
+
+// Adds what the loss asks for besides agreement with the views; `unknowns` is the problem's only parameter block. Threads
+// pay for lobes' energies whose sum exceeds 1 at some angle, and for lambda_0(1) > lambda_0(0) [Xia 2025, eq. 6].
+void add_penalties(const ScatteringFamily& family, ceres::Problem& problem, double* unknowns);
+
+// A family's model at some unknowns, prepared to shade blocks.
+struct ThreadShader {
+  BlockModel model;
+  ThreadJacobian parameters_by_unknowns;
+};
+using BlockShader = std::variant<ThreadShader, FiberBlockModel, YarnBlockModel>;
+BlockShader shader_at(const ScatteringFamily& family, const Eigen::VectorXd& unknowns);
+BlockEstimate shade(const BlockShader& shader, const LightPaths& paths, std::size_t block, bool with_slopes);
+// A block's slopes by the unknowns: RGB x unknowns.
+Eigen::Matrix<double, 3, Eigen::Dynamic> by_unknowns(const BlockShader& shader,
+                                                     const renderer::ThreadSlopes<double>& slopes);
+
+// The start that no thread is far from: grey, half rough, reflecting a third and passing a third of the light.
+renderer::ThreadParameters starting_thread();
+// Further starts, as the loss has local minima where the lobes have changed roles: a clearer thread with lobes of like
+// width, a darker one with a narrow reflection.
+std::vector<renderer::ThreadParameters> other_starting_threads();
+
+// The numbers of fibers that a yarn is fitted with; the best fit is kept [Xia 2025, section 6: the model needs one given].
+inline constexpr std::array<int, 5> kYarnFiberCounts{5, 10, 20, 40, 80};
+// The share of a yarn's cross-section that its fibers fill.
+inline constexpr double kYarnPacking = 0.45;
+
+}  // namespace inversion

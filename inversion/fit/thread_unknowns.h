@@ -1,0 +1,45 @@
+// The unknowns that the fit varies: the 16 thread parameters, with the energies in the positive form of
+// thread_energies.h.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+
+#include "renderer/scattering/thread_energies.h"
+
+namespace inversion {
+
+// The order of the unknowns; sigma_a is R G B, alpha and beta are three each.
+enum Unknown {
+  kSigma = 0,
+  kAlpha = 3,
+  kBeta = 6,
+  kL0 = 9,
+  kL1,
+  kConcavity,
+  kR1a,
+  kLogR2a,
+  kLogR2b,
+  kN2
+};  // from kL0 on: EnergyUnknown
+using ThreadUnknowns = Eigen::Matrix<double, renderer::kThreadParameterCount, 1>;
+using ThreadJacobian = Eigen::Matrix<double, renderer::kThreadParameterCount, renderer::kThreadParameterCount>;
+
+// The unknowns of these parameters, or the nearest ones within the bounds; and the parameters of unknowns.
+ThreadUnknowns unknowns_of(const renderer::ThreadParameters& parameters);
+renderer::ThreadParameters parameters_of(const ThreadUnknowns& unknowns);
+// The derivatives d parameter (order of renderer::thread_parameters) / d unknown.
+ThreadJacobian parameters_by_unknowns(const ThreadUnknowns& unknowns);
+
+ThreadUnknowns lower_bounds();
+ThreadUnknowns upper_bounds();
+
+// The groups that a fit may hold at their start, to see what each is good for.
+enum class ParameterGroup { sigma_a, alpha, beta, r };
+inline constexpr std::array<ParameterGroup, 4> kParameterGroups{ParameterGroup::sigma_a, ParameterGroup::alpha,
+                                                                ParameterGroup::beta, ParameterGroup::r};
+std::string name_of(ParameterGroup group);
+ParameterGroup group_of(int unknown);
+
+}  // namespace inversion

@@ -1,0 +1,51 @@
+// The certainty of a fit's unknowns: the covariance of a least-squares estimate whose residuals have other variances
+// than its weights say,
+//
+//   C = H^-1 G H^-1,    H = J' J + the other terms' part
+//
+// (White 1980). G is the covariance of the gradient: the sum of g_b g_b' over blocks b of pixels, whose noise is
+// independent, with g_b the block's part of the gradient as the fit forms it. So G contains the photographs' noise and
+// that of the light paths. J' S J of residuals with variances S would not contain the latter in full, because the three
+// colours of a block share the paths and J is as noisy as the residuals. Where the model cannot explain a block, its
+// misfit counts in G as noise.
+//
+// The total covariance contains besides: what the model cannot explain, which is a view's mean squared residual beyond
+// its noise, taken as common to all its blocks, because misfit is smooth over a view; the prior's own uncertainty; and
+// a deviation of 1 in the scales for directions that nothing speaks of.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace inversion {
+
+struct Certainty {
+  Eigen::MatrixXd noise_covariance;  // unknowns x unknowns; the spread that other noise would give
+  Eigen::MatrixXd covariance;        // the total, with misfit
+  std::vector<bool> at_bound;        // also true for held unknowns: not varied, no variance
+  // The directions that the views determine worst, worst first: unit vectors in units of the unknowns' scales
+  // (LinearisedFit::scales), with the standard deviation along them.
+  struct Direction {
+    Eigen::VectorXd direction;
+    double sigma;
+  };
+  std::vector<Direction> weakest;
+  double misfit = 0;  // root mean square of the residuals over that of their noise; 1: the model explains the views
+};
+
+struct LinearisedFit {
+  Eigen::MatrixXd jacobian;             // residuals x unknowns
+  Eigen::MatrixXd hessian;              // of the data, without the noise of J itself; may be empty: J' J
+  Eigen::MatrixXd gradient_covariance;  // G; may be empty: J' S J
+  Eigen::VectorXd residuals, variances;
+  std::vector<int> views;            // the view of each residual, from 0
+  Eigen::MatrixXd penalty_jacobian;  // penalties x unknowns; may have no rows
+  Eigen::MatrixXd prior_jacobian;    // the prior's terms, of variance as the residuals; may be empty
+  std::vector<bool> fixed;           // unknowns that are held or at a bound
+  Eigen::VectorXd scales;            // what counts as a large change of each unknown
+};
+
+// The certainty of the unknowns of a fit that was linearised at its end.
+Certainty certainty_of(const LinearisedFit& fit);
+
+}  // namespace inversion

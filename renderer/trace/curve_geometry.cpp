@@ -1,0 +1,111 @@
+#include "renderer/trace/curve_geometry.h"
+
+#include <embree3/rtcore.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <optional>
+
+namespace renderer {
+namespace {
+
+using Eigen::Vector3f;
+
+// How far below the surface scattered rays start, in curve radii: well above rounding of positions, far below a radius.
+constexpr float kStartDepth = 1e-3f;
+
+// Embree calls this for each candidate hit of a curve: 0 refuses it.
+void refuse_back_sides(const RTCFilterFunctionNArguments* arguments) {
+  const auto* ray = reinterpret_cast<const RTCRay*>(arguments->ray);
+  const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
+  if (hit->Ng_x * ray->dir_x + hit->Ng_y * ray->dir_y + hit->Ng_z * ray->dir_z > 0) arguments->valid[0] = 0;
+}
+
+Vector3f across(const Vector3f& v, const Vector3f& unit_axis) {
+  return v - v.dot(unit_axis) * unit_axis;
+}
+
+// The outward normal where a ray, already close to the surface at `point` (relative to the axis), enters the cylinder
+// that touches the curve there. Embree's iteration for round curves stops up to 0.002 radii early; this finishes it.
+std::optional<Vector3f> cylinder_normal(const Vector3f& point, const Vector3f& direction, const Vector3f& axis,
+                                        float radius) {
+  const Vector3f o = across(point, axis), d = across(direction, axis);
+  const float a = d.squaredNorm(), b = o.dot(d), c = o.squaredNorm() - radius * radius;
+  const float root2 = b * b - a * c;
+  if (!(root2 >= 0 && a > 0)) return std::nullopt;  // rounding at the silhouette, or a ray along the axis
+  const float step = (-b - std::sqrt(root2)) / a;
+  if (std::abs(step) > 0.5f * radius) return std::nullopt;
+  return (o + step * d).normalized();
+}
+
+Ray unplaced(const Eigen::Affine3f& placed, const Ray& ray) {
+  const Eigen::Affine3f inverse = placed.inverse();
+  return {inverse * ray.origin, inverse.linear() * ray.direction};
+}
+
+bool is_in_place(const CurveSet& curves) {
+  return curves.placed.matrix() == Eigen::Matrix4f::Identity();
+}
+
+void add_round_curves(RTCDevice device, RTCScene scene, const CurveSet& curves) {
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_BSPLINE_CURVE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, curves.control_points.data(), 0,
+                             sizeof(Eigen::Vector4f), curves.control_points.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, curves.segments.data(), 0,
+                             sizeof(std::uint32_t), curves.segments.size());
+  rtcSetGeometryIntersectFilterFunction(geometry, refuse_back_sides);
+  rtcSetGeometryOccludedFilterFunction(geometry, refuse_back_sides);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene, geometry);
+  rtcReleaseGeometry(geometry);
+}
+
+}  // namespace
+
+void add_curves(RTCDevice device, RTCScene scene, const CurveSet& curves) {
+  if (is_in_place(curves)) return add_round_curves(device, scene, curves);
+  const RTCScene apart = rtcNewScene(device);
+  rtcSetSceneBuildQuality(apart, RTC_BUILD_QUALITY_HIGH);
+  add_round_curves(device, apart, curves);
+  rtcCommitScene(apart);
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, apart);
+  const Eigen::Matrix<float, 3, 4> transform = curves.placed.matrix().topRows<3>();
+  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, transform.data());
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcReleaseScene(apart);
+}
+
+std::size_t bytes_of(const CurveSet& curves) {
+  return curves.control_points.size() * sizeof(Eigen::Vector4f) + curves.segments.size() * sizeof(std::uint32_t);
+}
+
+CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u, const Vector3f& hit_normal,
+                          const Ray& ray, float distance) {
+  const Eigen::Vector4f* p = &curves.control_points[curves.segments[segment]];
+  const float w = 1 - u;
+  const Eigen::Vector4f center =
+      (w * w * w * p[0] + (4 + 3 * u * u * (u - 2)) * p[1] + (4 + 3 * w * w * (w - 2)) * p[2] + u * u * u * p[3]) / 6;
+  const Vector3f derivative =
+      (-w * w * p[0] + u * (3 * u - 4) * p[1] - w * (3 * w - 4) * p[2] + u * u * p[3]).head<3>();
+  const bool in_place = is_in_place(curves);
+  const Ray local = in_place ? ray : unplaced(curves.placed, ray);
+  CurvePoint point;
+  point.tangent = derivative.normalized();
+  point.normal = across(hit_normal, point.tangent).normalized();
+  const Vector3f from_center = local.origin + distance * local.direction - center.head<3>();
+  if (const auto exact = cylinder_normal(from_center, local.direction, point.tangent, center.w()))
+    point.normal = *exact;
+  point.radius = center.w() * (1 - kStartDepth);
+  point.position = center.head<3>() + point.radius * point.normal;
+  if (in_place) return point;
+  const Eigen::Matrix3f linear = curves.placed.linear();
+  point.position = curves.placed * point.position;
+  point.normal = (linear.inverse().transpose() * point.normal).normalized();
+  point.tangent = (linear * point.tangent).normalized();
+  return point;
+}
+
+}  // namespace renderer

@@ -1,0 +1,25 @@
+// Round curves inside Embree: seen from outside only, with exact normals (ray_scene.h).
+#pragma once
+
+#include "renderer/trace/ray_hit.h"
+
+struct RTCDeviceTy;
+struct RTCSceneTy;
+
+namespace renderer {
+
+// Adds the curves to the scene as one geometry. Embree reads the buffers of `curves`, which must outlive the scene and
+// stay where it is. Hits of curves that are placed elsewhere (CurveSet::placed) have the number of the geometry as
+// instID.
+void add_curves(RTCDeviceTy* device, RTCSceneTy* scene, const CurveSet& curves);
+
+// Bytes of the set's control points and segments.
+std::size_t bytes_of(const CurveSet& curves);
+
+// The point where a ray met segment `segment` at parameter u. `hit_normal`, not unit, is given where the curves are
+// round; the ray is given where they are placed, and its direction need not be a unit vector. The caller fills in
+// CurvePoint::curve_set.
+CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u, const Eigen::Vector3f& hit_normal,
+                          const Ray& ray, float distance);
+
+}  // namespace renderer

@@ -1,0 +1,70 @@
+// One scattering event of a path: a curve or a diffuse surface, hit by a ray, ready to be evaluated and sampled in
+// world directions. It is made once per hit; light sampling and scattering sampling share its state.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "renderer/picture/sampler.h"
+#include "renderer/scattering/fiber.h"
+#include "renderer/scattering/thread.h"
+#include "renderer/scattering/yarn.h"
+#include "renderer/trace/ray_scene.h"
+
+namespace renderer {
+
+// How paths end by Russian roulette.
+inline constexpr int kFirstRouletteVertex = 4;  // earlier vertices always go on
+inline constexpr float kMostSurvival = 0.97f;   // upper bound, so that paths of light that is hardly absorbed end too
+inline constexpr int kMostVertices = 1000;      // a guard; roulette ends paths long before it
+
+// The scattering models of a scene's curves (scattering_models()), in float and with everything precomputed.
+using CurveModel = std::variant<FiberModel<float>, ThreadModel<float>, YarnModel<float>>;
+std::vector<CurveModel> prepare_curve_models(const std::vector<ScatteringModel>& scattering);
+std::vector<CurveModel> prepare_curve_models(const std::vector<CurveSet>& curves);
+
+// The rotation into the scattering models' frame at a point of a curve: x = tangent, z = outward normal.
+Eigen::Matrix3f local_from_world(const CurvePoint& point);
+
+// The offset h of the ray along which a curve was hit from outside: the angle from the surface normal (local z) to the
+// direction wo back along the ray, in the normal plane, is gamma_o = asin h.
+float viewing_offset(const Eigen::Vector3f& wo_local);
+
+// Whether light leaves such a curve anywhere across its far side (ThreadExit).
+bool leaves_on_far_side(const CurveModel& model);
+
+// The place, just below the surface, where light that met a thread at `entry` leaves it along unit direction wi, in the
+// same cross-section; u in [0, 1) chooses the place across the far side. A single fiber sends light on from where it
+// came in. Among a thread's fibers light wanders: what comes back leaves near the place of entry; what goes on has
+// forgotten it and leaves anywhere across the width that is seen from direction wi. Between touching threads that
+// decides what light the neighbours catch.
+Eigen::Vector3f far_side_position(const CurvePoint& entry, const Eigen::Vector3f& wi, float u);
+
+class PathVertex {
+ public:
+  // `wo`: unit direction back along the ray. The hit and the models must outlive the vertex.
+  PathVertex(const SurfaceHit& hit, const Eigen::Vector3f& wo, const std::vector<CurveModel>& models);
+
+  ScatteringValue<float> evaluate(const Eigen::Vector3f& wi) const;
+  Eigen::Vector3f sample(Sampler& sampler) const;
+  bool is_curve() const { return is_curve_; }
+  // M_p N_p of a curve's lobes along wi.
+  Lanes<float> lobe_densities(const Eigen::Vector3f& wi) const { return lobes_.lobe_densities(local_from_world_ * wi); }
+  const Eigen::Vector3f& position() const { return position_; }
+  // Where light scattered along wi starts: `position`, or elsewhere on a thread (far_side_position).
+  Eigen::Vector3f start_toward(const Eigen::Vector3f& wi, Sampler& sampler) const {
+    return far_side_of_ ? far_side_position(*far_side_of_, wi, sampler.next_1d()) : position_;
+  }
+
+ private:
+  Eigen::Vector3f position_;
+  Eigen::Matrix3f local_from_world_;  // curve: tangent, side, normal; surface: z = normal
+  Eigen::Array3f albedo_;             // matt surfaces
+  const ReflectanceFactor* reflectance_factor_ = nullptr;
+  Eigen::Vector3f wo_local_;  // of a surface that is not Lambertian
+  bool is_curve_;
+  const CurvePoint* far_side_of_ = nullptr;
+  CurveLobes<float> lobes_;  // curves
+};
+
+}  // namespace renderer

@@ -1,0 +1,51 @@
+// Rays, and what they meet.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <variant>
+
+#include "renderer/scene/scene.h"
+
+namespace renderer {
+
+struct Ray {
+  Eigen::Vector3f origin;
+  Eigen::Vector3f direction;  // unit
+};
+
+struct CurvePoint {
+  std::uint32_t curve_set;   // number of the scattering model, as in scattering_models()
+  Eigen::Vector3f position;  // just below the surface, where scattered rays start: they cannot meet the same spot again
+  Eigen::Vector3f tangent, normal;        // unit, perpendicular to each other; normal points outwards
+  float radius;                           // from the curve's axis to `position`, before a flattened yarn's stretching
+  const cv::Vec3f* absorption = nullptr;  // texel of the cloth's AbsorptionTexture there, if it has one
+};
+
+struct MeshPoint {
+  std::uint32_t mesh;
+  Eigen::Vector3f position;
+  Eigen::Vector3f normal;  // unit, towards the ray's origin
+  Eigen::Array3f albedo;
+  const ReflectanceFactor* reflectance_factor;  // null: Lambertian
+};
+
+struct SurfaceHit {
+  float distance;  // mm
+  std::variant<CurvePoint, MeshPoint> point;
+};
+
+// What a cloth knows about a hit, in the frame of the patch's cell [0, period). It is valid after a query whose nearest
+// hit is on a cloth.
+struct ClothHit {
+  // Number of the shell's cell, of the curves in it (ClothGeometry) and of their segment; parameter on the segment.
+  std::uint32_t cell = 0, yarns = 0, segment = 0;
+  float u = 0;
+  Eigen::Vector3f hit_normal = Eigen::Vector3f::Zero();
+  Ray ray{};                                       // in that frame; its direction is not unit
+  float distance = 0;                              // along `ray`
+  Eigen::Vector3d tile = Eigen::Vector3d::Zero();  // place in the endless patch = place in that frame + tile
+};
+
+}  // namespace renderer

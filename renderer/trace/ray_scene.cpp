@@ -1,0 +1,196 @@
+#include "renderer/trace/ray_scene.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "renderer/trace/cloth_geometry.h"
+#include "renderer/trace/cloth_query.h"
+#include "renderer/trace/curve_geometry.h"
+
+namespace renderer {
+namespace {
+
+using Eigen::Vector3f;
+
+// How far above a mesh scattered rays start, relative to its coordinates.
+constexpr float kMeshLift = 1e-5f;
+
+RTCRayHit nearest(RTCScene scene, const Ray& ray, ClothQuery& query) {
+  RTCRayHit found{};
+  found.ray = embree_ray(ray, std::numeric_limits<float>::infinity());
+  found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(scene, &query.context, &found);
+  return found;
+}
+
+template <class Element>
+std::size_t bytes_of(const std::vector<Element>& elements) {
+  return elements.size() * sizeof(Element);
+}
+
+// Numbers of the segments with which a curve begins: segments that go on share control points.
+std::vector<std::uint32_t> first_segments(const CurveSet& curves) {
+  std::vector<std::uint32_t> first;
+  for (std::uint32_t i = 0; i < curves.segments.size(); ++i)
+    if (i == 0 || curves.segments[i] != curves.segments[i - 1] + 1) first.push_back(i);
+  return first;
+}
+
+// The number of the geometry that was hit; for curves that are placed elsewhere it is the instance's.
+std::uint32_t geometry_of(const RTCHit& hit) {
+  return hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? hit.geomID : hit.instID[0];
+}
+
+}  // namespace
+
+RayScene::RayScene(Scene scene)
+    : scene_(std::move(scene)), embree_bytes_(std::make_shared<std::atomic<std::int64_t>>(0)) {
+  device_ = {rtcNewDevice(nullptr), rtcReleaseDevice};
+  if (!device_)
+    throw std::runtime_error("ray tracing: Embree could not start on this processor; it needs SSE2 or better");
+  rtcSetDeviceMemoryMonitorFunction(
+      device_.get(),
+      [](void* bytes, ssize_t change, bool) {
+        *static_cast<std::atomic<std::int64_t>*>(bytes) += change;
+        return true;
+      },
+      embree_bytes_.get());
+  embree_ = {rtcNewScene(device_.get()), rtcReleaseScene};
+  rtcSetSceneBuildQuality(embree_.get(), RTC_BUILD_QUALITY_HIGH);
+  for (const CurveSet& curves : scene_.curves) {
+    add_curves(device_.get(), embree_.get(), curves);
+    first_segments_.push_back(first_segments(curves));
+  }
+  for (const TriangleMesh& mesh : scene_.meshes) add_mesh(mesh);
+  auto curve_set = static_cast<std::uint32_t>(scene_.curves.size());
+  for (const Cloth& cloth : scene_.cloths) {
+    cloths_.push_back(std::make_shared<ClothGeometry>(cloth, curve_set));
+    cloths_.back()->attach_to(device_.get(), embree_.get());
+    curve_set += static_cast<std::uint32_t>(cloth.threads.size());
+  }
+  rtcCommitScene(embree_.get());
+  if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) {
+    throw std::runtime_error(
+        "ray tracing: Embree refused the scene; check its control points, triangles and free memory");
+  }
+  RTCBounds b;
+  rtcGetSceneBounds(embree_.get(), &b);
+  if (b.lower_x <= b.upper_x)
+    bounds_ = {Eigen::Vector3d(b.lower_x, b.lower_y, b.lower_z), Eigen::Vector3d(b.upper_x, b.upper_y, b.upper_z)};
+}
+
+void RayScene::add_mesh(const TriangleMesh& mesh) {
+  const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  // Copied, because Embree may read 16 bytes at the last vertex of a shared buffer.
+  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vector3f),
+                                           mesh.vertices.size());
+  std::copy(mesh.vertices.begin(), mesh.vertices.end(), static_cast<Vector3f*>(vertices));
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
+                             sizeof(std::array<std::uint32_t, 3>), mesh.triangles.size());
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(embree_.get(), geometry);
+  rtcReleaseGeometry(geometry);
+}
+
+std::optional<SurfaceHit> RayScene::intersect(const Ray& ray) const {
+  ClothQuery query;
+  const RTCRayHit found = nearest(embree_.get(), ray, query);
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  const auto first_mesh = static_cast<std::uint32_t>(scene_.curves.size());
+  const auto first_cloth = first_mesh + static_cast<std::uint32_t>(scene_.meshes.size());
+  const std::uint32_t geometry = geometry_of(found.hit);
+  if (geometry >= first_cloth)
+    return SurfaceHit{found.ray.tfar, cloths_[geometry - first_cloth]->point_at(query.cloth)};
+  if (geometry >= first_mesh)
+    return SurfaceHit{found.ray.tfar,
+                      mesh_point(geometry - first_mesh, found.hit.primID, found.hit.u, found.hit.v, ray)};
+  CurvePoint point = point_on_curve(scene_.curves[geometry], found.hit.primID, found.hit.u,
+                                    {found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z}, ray, found.ray.tfar);
+  point.curve_set = geometry;
+  return SurfaceHit{found.ray.tfar, point};
+}
+
+bool RayScene::occluded(const Ray& ray, float distance) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay query = embree_ray(ray, distance);
+  rtcOccluded1(embree_.get(), &context, &query);
+  return query.tfar < 0;
+}
+
+std::optional<YarnPlace> RayScene::yarn_at(const Ray& ray) const {
+  ClothQuery query;
+  const RTCHit hit = nearest(embree_.get(), ray, query).hit;
+  if (hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  const std::uint32_t geometry = geometry_of(hit);
+  const std::size_t first_mesh = scene_.curves.size(), first_cloth = first_mesh + scene_.meshes.size();
+  if (geometry >= first_cloth) {
+    YarnPlace place = cloths_[geometry - first_cloth]->yarn_at(query.cloth);
+    place.group = static_cast<std::uint32_t>(geometry - scene_.meshes.size());
+    return place;
+  }
+  if (geometry >= first_mesh) return std::nullopt;
+  const std::vector<std::uint32_t>& first = first_segments_[geometry];
+  const auto after = std::upper_bound(first.begin(), first.end(), hit.primID);
+  return YarnPlace{.group = geometry, .number = static_cast<int>(after - first.begin()) - 1};
+}
+
+bool RayScene::meets_curve_first(const Ray& ray) const {
+  ClothQuery query;
+  const RTCRayHit found = nearest(embree_.get(), ray, query);
+  const std::size_t first_mesh = scene_.curves.size(), first_cloth = first_mesh + scene_.meshes.size();
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  const std::uint32_t geometry = geometry_of(found.hit);
+  return geometry < first_mesh || geometry >= first_cloth;
+}
+
+std::size_t RayScene::yarn_bytes() const {
+  std::size_t bytes = 0;
+  for (const CurveSet& curves : scene_.curves) bytes += bytes_of(curves);
+  for (const auto& cloth : cloths_) bytes += cloth->yarn_bytes();
+  return bytes;
+}
+
+SceneMemory RayScene::memory() const {
+  SceneMemory memory{.yarns = yarn_bytes(), .trees = static_cast<std::size_t>(embree_bytes_->load())};
+  for (const auto& cloth : cloths_) memory.surfaces += cloth->shell_bytes(), memory.trees += cloth->grid_bytes();
+  for (const Cloth& cloth : scene_.cloths) {
+    const ClothSurface& s = cloth.surface;
+    memory.surfaces += bytes_of(s.vertices) + bytes_of(s.normals) + bytes_of(s.patch_mm) + bytes_of(s.triangles);
+    if (cloth.absorption) memory.surfaces += cloth.absorption->sigma_a.total() * sizeof(cv::Vec3f);
+  }
+  for (const TriangleMesh& mesh : scene_.meshes)
+    memory.surfaces += bytes_of(mesh.vertices) + bytes_of(mesh.triangles) + bytes_of(mesh.texture_coordinates) +
+                       mesh.albedo.total() * mesh.albedo.elemSize();
+  return memory;
+}
+
+MeshPoint RayScene::mesh_point(std::uint32_t mesh_index, std::uint32_t triangle, float u, float v,
+                               const Ray& ray) const {
+  const TriangleMesh& mesh = scene_.meshes[mesh_index];
+  const auto& corner = mesh.triangles[triangle];
+  const Vector3f &a = mesh.vertices[corner[0]], &b = mesh.vertices[corner[1]], &c = mesh.vertices[corner[2]];
+  MeshPoint point;
+  point.mesh = mesh_index;
+  point.normal = (b - a).cross(c - a).normalized();
+  if (point.normal.dot(ray.direction) > 0) point.normal = -point.normal;
+  const Vector3f surface = (1 - u - v) * a + u * b + v * c;
+  point.position = surface + kMeshLift * (1 + surface.cwiseAbs().maxCoeff()) * point.normal;
+  Eigen::Vector2f texture(0, 0);
+  if (!mesh.texture_coordinates.empty()) {
+    const auto& t = mesh.texture_coordinates;
+    texture = (1 - u - v) * t[corner[0]] + u * t[corner[1]] + v * t[corner[2]];
+  }
+  const auto texel = [](float position, int size) {
+    return std::clamp(static_cast<int>(position * static_cast<float>(size)), 0, size - 1);
+  };
+  const cv::Vec3f& albedo = mesh.albedo(texel(texture.y(), mesh.albedo.rows), texel(texture.x(), mesh.albedo.cols));
+  point.albedo = {albedo[0], albedo[1], albedo[2]};
+  point.reflectance_factor = mesh.reflectance_factor ? &mesh.reflectance_factor : nullptr;
+  return point;
+}
+
+}  // namespace renderer

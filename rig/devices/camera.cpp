@@ -1,0 +1,20 @@
+#include "rig/devices/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace rig {
+
+double nearest_shutter_s(const std::vector<double>& offered_s, double wanted_s) {
+  if (offered_s.empty()) {
+    throw std::runtime_error("an exposure of " + std::to_string(wanted_s) +
+                             " s was asked, but the camera offers no shutter times; set it to manual mode (M)");
+  }
+  if (!std::isfinite(wanted_s) || wanted_s <= 0)
+    throw std::runtime_error("an exposure of " + std::to_string(wanted_s) + " s was asked; it must be a positive time");
+  const auto distance_stops = [&](double offered) { return std::abs(std::log2(offered / wanted_s)); };
+  return *std::ranges::min_element(offered_s, {}, distance_stops);
+}
+
+}  // namespace rig

@@ -1,0 +1,69 @@
+#include "station/bench/calibrate/calibrate_rig.h"
+
+#include "station/bench/calibrate/calibration_report.h"
+#include "station/bench/drawing_operator.h"
+#include "station/bench/rig_devices.h"
+#include "station/documents/lens_file.h"
+#include "station/documents/reader.h"
+#include "station/documents/session_file.h"
+#include "station/output/interrupt.h"
+
+namespace station {
+namespace {
+
+bool belongs_to(CalibrationRole role, const std::string& part) {
+  switch (role) {
+    case CalibrationRole::lens:
+      return part == "camera";
+    case CalibrationRole::turning:
+      return part == "platform";
+    case CalibrationRole::front_light:
+    case CalibrationRole::back_light:
+      return part == "light";
+    case CalibrationRole::response:
+    case CalibrationRole::rapid:
+    case CalibrationRole::dark:
+    case CalibrationRole::white_field:
+    case CalibrationRole::colour:
+      return part == "response";
+  }
+  return false;
+}
+
+}  // namespace
+
+RigCalibration calibrate_rig(const CalibrateRequest& request) {
+  const RigFile rig = read_rig(request.rig);
+  ProgressDisplay progress("calibrate", request.progress_style);
+  const auto show = [&](int done, int total, const std::string& label) {
+    if (request.asked) request.asked->prepare({{"step", done + 1}, {"of", total}}, "");
+    progress.show(done, total, label);
+  };
+  std::string utc;
+  if (!request.solve_only) {
+    watch_interrupts();
+    const std::vector<CalibrationStep> plan = make_calibration_plan(rig);
+    if (!request.only.empty())
+      forget_calibration_pictures(request.out, [&](CalibrationRole role) { return belongs_to(role, request.only); });
+    RigDevices devices = open_rig(rig, std::nullopt, request.asked);
+    std::unique_ptr<rig::Operator> person;  // behind its drawing, which a program makes
+    if (rig.operator_driver == "console" && request.progress_style == ProgressStyle::json) {
+      person = std::move(devices.person);
+      devices.person = make_drawing_operator(*person, *request.asked);
+    }
+    const StopOnInterrupt emergency([&devices] { devices.turntable->stop(); });
+    record_calibration(plan, devices, request.out, show, interrupted);
+    utc = devices.clock->utc();
+  }
+  RigCalibration calibration = solve_calibration(rig, request.out, read_calibration_pictures(request.out), show);
+  calibration.utc = utc.empty() ? rig::SystemClock().utc() : utc;
+  calibration.software = software_version();
+  if (calibration.sensor) write_sensor_maps(request.out, *calibration.sensor);
+  write_json_file(request.out / "calibration.json", to_json(calibration));
+  write_cameramodel_beside(calibration.lens, request.out / "calibration.json");
+  write_calibration_page(request.out, calibration);
+  progress.finish("done");
+  return calibration;
+}
+
+}  // namespace station

@@ -1,0 +1,24 @@
+#include "station/bench/calibrate/calibration_step.h"
+
+#include <array>
+#include <stdexcept>
+
+namespace station {
+namespace {
+
+constexpr std::array<const char*, 9> kRoleWords{"lens",  "turning", "front_light", "back_light", "response",
+                                                "rapid", "dark",    "white_field", "colour"};
+
+}  // namespace
+
+std::string to_text(CalibrationRole role) {
+  return kRoleWords.at(static_cast<std::size_t>(role));
+}
+
+CalibrationRole calibration_role(const std::string& text) {
+  for (std::size_t i = 0; i < kRoleWords.size(); ++i)
+    if (text == kRoleWords[i]) return static_cast<CalibrationRole>(i);
+  throw std::runtime_error("unknown calibration role \"" + text + "\"");
+}
+
+}  // namespace station

@@ -1,0 +1,37 @@
+#include "station/bench/calibrate/lamps.h"
+
+namespace station {
+namespace {
+
+constexpr double kHandLift_mm = 2.0;  // above the platform, so that no tilted plate dips into it
+
+// The size of the camera's pictures; a real one's are not known before the first.
+cv::Size picture_size(const RigFile& rig) {
+  if (!rig.simulation) return {6000, 4000};
+  return {rig.simulation->truth.lens.width_px, rig.simulation->truth.lens.height_px};
+}
+
+}  // namespace
+
+std::vector<calibration::LightGuess> lamp_guesses(const RigFile& rig) {
+  return {{.name = "front lamp", .position = rig.front_lamp_mm, .aim = rig.lamp_aim_mm},
+          {.name = "back lamp", .position = rig.back_lamp_mm, .aim = rig.lamp_aim_mm}};
+}
+
+calibration::LightOptions light_options(const RigFile& rig, cv::Size picture) {
+  return {.albedo = rig.spectralon.albedo, .image_size = picture};
+}
+
+calibration::PanelBench panel_bench(const RigFile& rig) {
+  const cv::Size size = picture_size(rig);
+  const double f = rig.focal_length_guess_px;
+  return {.lens = {size.width, size.height, f, f, 0.5 * (size.width - 1), 0.5 * (size.height - 1), {}},
+          .world_from_camera = rig.world_from_camera_by_tape,
+          .white_mm = rig.spectralon.white_mm,
+          .plate_mm = rig.spectralon.plate_mm,
+          .tags = rig.spectralon.tags,
+          .centre = {0, 0, rig.platform_height_mm + rig.spectralon.plate_mm / 2 + kHandLift_mm},
+          .lowest_mm = rig.platform_height_mm + kHandLift_mm};
+}
+
+}  // namespace station

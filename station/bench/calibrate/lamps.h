@@ -1,0 +1,16 @@
+// The lamps and the Spectralon panel of a rig file, as the light calibration takes them.
+#pragma once
+
+#include <vector>
+
+#include "calibration/light/light_plan.h"
+#include "station/documents/rig_file.h"
+
+namespace station {
+
+std::vector<calibration::LightGuess> lamp_guesses(const RigFile& rig);  // front, back
+calibration::LightOptions light_options(const RigFile& rig, cv::Size picture);
+// The bench as it is known by tape, before anything is calibrated.
+calibration::PanelBench panel_bench(const RigFile& rig);
+
+}  // namespace station

@@ -1,0 +1,35 @@
+// The adapter between a calibrated camera and those who use it: the renderer, the fit, and the search for tags in its
+// pictures.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "calibration/geometry/lens.h"
+#include "calibration/geometry/tags.h"
+#include "calibration/sensor/sensor_file.h"
+#include "inversion/view/view.h"
+#include "renderer/picture/camera.h"
+#include "rig/simulated/simulated_bench.h"
+#include "station/documents/calibration_file.h"
+#include "station/documents/rig_file.h"
+
+namespace station {
+
+// The renderer's camera for a calibrated lens; `undistorted` for pictures whose distortion has been removed.
+renderer::Camera camera_of(const calibration::Lens& lens, const Eigen::Isometry3d& frame_from_camera, bool undistorted);
+
+// The simulated bench's lens as calibration describes lenses.
+calibration::Lens lens_of(const rig::TrueLens& lens);
+
+// The grey of a raw picture: the mean of its demosaiced colours, linear, with the lens's distortion, nothing below zero.
+cv::Mat1f linear_grey(const calibration::SensorPicture& picture);
+
+// The calibrated lamp at one of its places, as the fit of the threads sees it. In front on the left its place is the rig
+// file's, and all else is calibrated.
+inversion::NearLight lamp_in_holder(const RigCalibration& calibration, const RigFile& rig, rig::Lamp place,
+                                    const Eigen::Isometry3d& holder_from_world);
+
+// The tags in a raw picture, found in its linear_grey.
+calibration::TagObservation tags_in(const calibration::SensorPicture& picture);
+
+}  // namespace station

@@ -1,0 +1,54 @@
+#include "station/bench/mounted_holder.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "calibration/geometry/pose.h"
+#include "station/bench/bench_reading.h"
+
+namespace station {
+namespace {
+
+void require_tags(const PosePicture& picture, const calibration::TagLayout& holder) {
+  const long count = tags_of_holder(picture, holder);
+  if (count < kFewestHolderTags)
+    throw std::runtime_error("step " + picture.step + ": " + std::to_string(count) +
+                             " of the holder's tags were found, " + std::to_string(kFewestHolderTags) +
+                             " are needed; uncover the tags and take the picture again");
+}
+
+}  // namespace
+
+long tags_of_holder(const PosePicture& picture, const calibration::TagLayout& holder) {
+  const auto of_holder = [&](const calibration::TagDetection& seen) {
+    return std::any_of(holder.tags.begin(), holder.tags.end(),
+                       [&](const calibration::Tag& tag) { return tag.id == seen.id; });
+  };
+  return std::count_if(picture.seen.begin(), picture.seen.end(), of_holder);
+}
+
+bool shows_holder(const PosePicture& picture, const calibration::TagLayout& holder) {
+  return tags_of_holder(picture, holder) >= kFewestHolderTags;
+}
+
+MountedHolder measure_holder(const std::vector<PosePicture>& pictures, const RigCalibration& calibration,
+                             const RigFile& rig) {
+  std::vector<calibration::Sighting> sightings;
+  for (const PosePicture& picture : pictures) {
+    require_tags(picture, rig.holder_tags);
+    const BenchReading bench = read_bench(calibration, rig, picture.seen);
+    require_calibrated_bench(calibration, bench, picture.reading_rad, "step " + picture.step);
+    const double angle_rad = bench.angle ? bench.angle->angle_rad : calibration.platform.scale * picture.reading_rad;
+    const Eigen::AngleAxisd turned(angle_rad, Eigen::Vector3d::UnitZ());
+    sightings.push_back({calibration.platform.world_from_camera.inverse() * turned, picture.seen});
+  }
+  const auto fit = calibration::fit_mounted_pose(calibration.lens.lens, rig.holder_tags, sightings);
+  if (!fit) throw std::runtime_error("the holder's tags give no pose; uncover them and take the pose pictures again");
+  if (!fit->odd_tags.empty())
+    throw std::runtime_error("step " + pictures.front().step + ": tag " + std::to_string(fit->odd_tags.front()) +
+                             " of the holder is not where the others want it; put it right, or mount the holder so "
+                             "that it does not move between the pose pictures");
+  return {.platform_from_holder = fit->platform_from_object, .rms_px = fit->rms_px};
+}
+
+}  // namespace station

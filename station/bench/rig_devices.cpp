@@ -1,0 +1,158 @@
+#include "station/bench/rig_devices.h"
+
+#include <chrono>
+#include <stdexcept>
+#include <utility>
+
+#include "rig/cameras/camera_process.h"
+#include "rig/people/console_operator.h"
+#include "rig/people/manual_turntable.h"
+#include "rig/people/practice_operator.h"
+#include "rig/people/practice_turntable.h"
+#include "rig/turntables/serial_line.h"
+#include "station/bench/bench_picture.h"
+
+namespace station {
+namespace {
+
+bool turns_the_bench(const RigFile& rig) {
+  return rig.turntable_driver == "simulated" ||
+         (rig.turntable_wire && rig.turntable_wire->line == TurntableWire::Line::simulated);
+}
+
+bool photographs_the_bench(const RigFile& rig) {
+  return rig.camera_driver == "simulated" || (rig.camera_wire && rig.camera_wire->simulated);
+}
+
+std::unique_ptr<rig::Clock> make_clock(bool simulated) {
+  if (!simulated) return std::make_unique<rig::SystemClock>();
+  // Exposures and moves of a simulated rig take no real time; its clock starts at the real date.
+  const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return std::make_unique<rig::SimulatedClock>(now);
+}
+
+std::unique_ptr<rig::ByteLine> open_line(const TurntableWire& wire, const rig::PtyServer* server) {
+  switch (wire.line) {
+    case TurntableWire::Line::serial:
+      return rig::open_serial_line(wire.port);
+    case TurntableWire::Line::pty:
+      return rig::open_pty_line(wire.port.port);
+    case TurntableWire::Line::simulated:
+      break;
+  }
+  return rig::open_pty_line(server->path());
+}
+
+std::unique_ptr<rig::Turntable> make_wired_turntable(const RigFile& rig, RigDevices& devices) {
+  const TurntableWire wire = *rig.turntable_wire;
+  if (wire.line == TurntableWire::Line::simulated)
+    devices.simulated_wire = rig::serve_on_pty(start_firmware(rig, *devices.bench, *devices.clock));
+  const auto connect = rig.turntable_driver == "grbl" ? rig::connect_grbl : rig::connect_zaber;
+  // The addresses stay when the struct that owns them is moved.
+  return rig::make_stepper_turntable(
+      [wire, connect, server = devices.simulated_wire.get(), clock = devices.clock.get()] {
+        return connect(open_line(wire, server), *clock, wire.controller);
+      },
+      *devices.clock, wire.stepper);
+}
+
+std::unique_ptr<rig::Camera> make_camera(const RigFile& rig, RigDevices& devices) {
+  if (rig.camera_driver == "simulated") return rig::make_simulated_camera(*devices.bench, *devices.clock);
+  rig::CameraProcessSetup setup{.command = {"/proc/self/exe", kCameraProcess}, .camera = rig.camera_wire->setup};
+  if (rig.camera_wire->simulated) {
+    start_simulated_camera(devices);
+    const std::string port = std::to_string(devices.simulated_camera.network->port());
+    setup.camera.port = "ptpip:127.0.0.1:" + port + ":" + port;
+  }
+  return rig::make_process_camera(setup);
+}
+
+std::unique_ptr<rig::Turntable> make_turntable(const RigFile& rig, RigDevices& devices, rig::AskedPerson* asked) {
+  if (rig.turntable_driver == "simulated") return rig::make_simulated_turntable(*devices.bench, *devices.clock);
+  if (rig.turntable_driver != "manual") return make_wired_turntable(rig, devices);
+  auto by_hand = rig::make_manual_turntable(*asked);
+  return devices.bench ? rig::make_practice_turntable(std::move(by_hand),
+                                                      rig::make_simulated_turntable(*devices.bench, *devices.clock))
+                       : std::move(by_hand);
+}
+
+void require_person(const RigFile& rig, const rig::AskedPerson* asked) {
+  if (asked || (rig.operator_driver != "console" && rig.turntable_driver != "manual")) return;
+  throw std::runtime_error("rig \"" + rig.name + "\" needs a person (" +
+                           (rig.operator_driver == "console" ? "operator: console" : "turntable: manual") +
+                           "); run without --unattended");
+}
+
+// One grey for everything.
+cv::Mat3f undrawn(const rig::BenchState& state) {
+  return cv::Mat3f(state.lens.height_px, state.lens.width_px, cv::Vec3f::all(0.1F));
+}
+
+}  // namespace
+
+std::shared_ptr<rig::SimulatedPort> start_firmware(const RigFile& rig, rig::SimulatedBench& bench, rig::Clock& clock,
+                                                   const rig::LineFaultPlan& faults) {
+  if (!rig.turntable_wire || rig.turntable_wire->line != TurntableWire::Line::simulated)
+    throw std::runtime_error("rig \"" + rig.name +
+                             "\" names no turntable that is simulated on a wire; give it \"turntable\": \"grbl\" or "
+                             "\"zaber\" and \"line\": \"simulated\" in its turntable_setup");
+  const rig::ControllerSetup& setup = rig.turntable_wire->controller;
+  const rig::SimulatedMotor motor(bench, clock, setup.steps_per_deg);
+  return rig::make_simulated_port(
+      rig.turntable_driver == "grbl" ? rig::make_simulated_grbl(motor, clock, setup.home_by == rig::HomeBy::home_switch)
+                                     : rig::make_simulated_zaber(motor),
+      faults);
+}
+
+void start_simulated_camera(RigDevices& devices, const rig::CameraFaultPlan& faults) {
+  auto& simulated = devices.simulated_camera;
+  simulated.lens = rig::make_simulated_camera(*devices.bench, *devices.clock);
+  simulated.body = rig::make_simulated_sony(*simulated.lens);
+  simulated.network = rig::serve_on_ptpip(*simulated.body, 0, faults);
+}
+
+RigDevices open_rig(const RigFile& rig, const std::optional<Spool>& spool, rig::AskedPerson* asked) {
+  require_person(rig, asked);
+  const bool simulated = photographs_the_bench(rig);
+  if (rig.turntable_driver != "manual" && simulated != turns_the_bench(rig))
+    throw std::runtime_error("rig \"" + rig.name + "\" mixes a " + (simulated ? "simulated" : "real") +
+                             " camera with a " + (turns_the_bench(rig) ? "simulated" : "real") + " turntable (" +
+                             rig.turntable_driver +
+                             "), and the pictures would not turn with it; make both real or both simulated, or try one "
+                             "alone with \"threadstation check\"");
+  if (!simulated && rig.operator_driver == "simulated")
+    throw std::runtime_error("rig \"" + rig.name +
+                             "\" has real devices and a simulated operator; write \"operator\": \"console\"");
+  RigDevices devices;
+  devices.clock = make_clock(simulated);
+  if (simulated)
+    devices.bench = std::make_unique<rig::SimulatedBench>(rig.simulation->truth, make_bench_picture(rig, spool));
+  devices.camera = make_camera(rig, devices);
+  devices.turntable = make_turntable(rig, devices, asked);
+  if (rig.operator_driver == "console") devices.person = rig::make_console_operator(*asked);
+  if (devices.bench) {
+    auto hand = rig::make_simulated_operator(*devices.bench);
+    devices.person =
+        devices.person ? rig::make_practice_operator(std::move(devices.person), std::move(hand)) : std::move(hand);
+  }
+  return devices;
+}
+
+RigDevices open_turntable(const RigFile& rig, rig::AskedPerson* asked) {
+  require_person(rig, asked);
+  RigDevices devices;
+  devices.clock = make_clock(turns_the_bench(rig));
+  if (turns_the_bench(rig)) devices.bench = std::make_unique<rig::SimulatedBench>(rig.simulation->truth, undrawn);
+  devices.turntable = make_turntable(rig, devices, asked);
+  return devices;
+}
+
+RigDevices open_camera(const RigFile& rig) {
+  RigDevices devices;
+  devices.clock = make_clock(photographs_the_bench(rig));
+  if (photographs_the_bench(rig)) devices.bench = std::make_unique<rig::SimulatedBench>(rig.simulation->truth, undrawn);
+  devices.camera = make_camera(rig, devices);
+  return devices;
+}
+
+}  // namespace station

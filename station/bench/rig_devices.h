@@ -1,0 +1,55 @@
+// The devices that a rig file names, connected and ready, with their clock.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "rig/devices/camera.h"
+#include "rig/devices/clock.h"
+#include "rig/devices/turntable.h"
+#include "rig/people/asked_person.h"
+#include "rig/people/operator.h"
+#include "rig/simulated/ptpip_server.h"
+#include "rig/simulated/pty_server.h"
+#include "rig/simulated/simulated_bench.h"
+#include "station/documents/rig_file.h"
+#include "station/documents/spool.h"
+
+namespace station {
+
+// The command by which the program starts itself again as its camera process (rig/cameras/camera_process.h).
+inline constexpr const char* kCameraProcess = "camera-process";
+
+struct RigDevices {
+  std::unique_ptr<rig::Clock> clock;
+  std::unique_ptr<rig::SimulatedBench> bench;      // absent on a real rig
+  std::unique_ptr<rig::PtyServer> simulated_wire;  // the turntable's firmware, when it is simulated on a wire
+  struct {
+    std::unique_ptr<rig::Camera> lens;  // what the simulated body photographs with
+    std::unique_ptr<rig::SimulatedSony> body;
+    std::unique_ptr<rig::PtpipServer> network;
+  } simulated_camera;  // when it is simulated on a wire
+  std::unique_ptr<rig::Camera> camera;
+  std::unique_ptr<rig::Turntable> turntable;
+  std::unique_ptr<rig::Operator> person;
+};
+
+// Connects all devices. The clock is the machine's as soon as a device is real, and a simulated one otherwise. Errors: std::runtime_error, of
+// the devices; when the pictures would be of another bench than the turntable turns.
+// `spool` is what is wrapped on the holder; a simulated bench needs it to draw the holder.
+// `asked` is asked where the rig needs a person, and must outlive the devices; without one such a rig is refused. On a
+// simulated bench the simulated hand then does what the person was asked.
+RigDevices open_rig(const RigFile& rig, const std::optional<Spool>& spool, rig::AskedPerson* asked);
+
+// One device alone, with its clock; what is simulated stands on a bench that nobody draws.
+RigDevices open_turntable(const RigFile& rig, rig::AskedPerson* asked);
+RigDevices open_camera(const RigFile& rig);
+
+// Puts the simulated camera that a rig file names on this computer's network, photographing `devices.bench`.
+void start_simulated_camera(RigDevices& devices, const rig::CameraFaultPlan& faults = {});
+
+// The simulated firmware that a rig file names, turning `bench`. Throws when it names none.
+std::shared_ptr<rig::SimulatedPort> start_firmware(const RigFile& rig, rig::SimulatedBench& bench, rig::Clock& clock,
+                                                   const rig::LineFaultPlan& faults = {});
+
+}  // namespace station

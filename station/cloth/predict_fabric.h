@@ -1,0 +1,38 @@
+// The prediction of a photographed cloth from the threads and the draft that it is said to be woven of, view by view,
+// and how far the photographs are from it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "station/output/compare/compare_pictures.h"
+#include "station/output/progress.h"
+
+namespace station {
+
+struct PredictRequest {
+  std::filesystem::path session;   // a developed session of a cloth on the cylinder
+  std::filesystem::path fabric{};  // fabric file of the weave; empty: the session's own
+  int samples_per_pixel = 64;
+  std::uint64_t seed = 1;
+  ProgressStyle progress_style = ProgressStyle::automatic;
+};
+
+struct PredictedView {
+  std::string view;
+  std::filesystem::path prediction;  // EXR: linear camera RGB, radiance unit; 0 outside the mask
+  std::filesystem::path beside;      // PNG: photograph, prediction, difference
+  int block_px = 0;                  // size of the averages compared: two repeats of the weave or more
+  Comparison comparison;
+};
+
+nlohmann::json to_json(const PredictedView& view);
+
+// Predicts all views and writes result/fabric/<view>.exr and .png. Errors: std::runtime_error for a session of a
+// wrapped thread, one that is not developed, or a fabric without a weave.
+std::vector<PredictedView> predict_fabric(const PredictRequest& request);
+
+}  // namespace station

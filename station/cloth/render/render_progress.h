@@ -1,0 +1,26 @@
+// How far a rendering is and how long it still takes, on standard error and not too often.
+#pragma once
+
+#include <chrono>
+
+#include "station/output/progress.h"
+
+namespace station {
+
+class RenderProgress {
+ public:
+  RenderProgress(const std::string& task, ProgressStyle style) : display_(task, style) {}
+
+  // The pace is that of this run: what was there when it began took it no time.
+  void show(double fraction);
+  ProgressDisplay& display() { return display_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  ProgressDisplay display_;
+  Clock::time_point start_ = Clock::now(), shown_ = start_;
+  double first_ = -1;  // fraction that was there already
+  int step_ = -1;
+};
+
+}  // namespace station

@@ -1,0 +1,257 @@
+#include "station/cloth/render/render_scene.h"
+
+#include <chrono>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "renderer/picture/image_file.h"
+#include "renderer/trace/path_tracer.h"
+#include "station/cloth/render/checkpoint.h"
+#include "station/cloth/render/render_channels.h"
+#include "station/cloth/render/render_progress.h"
+#include "station/documents/number_text.h"
+#include "station/documents/session_file.h"
+#include "station/output/display.h"
+#include "station/output/interrupt.h"
+#include "station/output/picture_destination.h"
+
+namespace station {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void check_destination(const RenderRequest& request) {
+  check_picture_destination(request.out);
+  if (request.out.extension() != ".exr" && (request.layers || request.half))
+    throw std::runtime_error("cannot write " + request.out.string() +
+                             ": --layers and --half are for EXR files; give --out a name that ends in .exr");
+}
+
+double exposure_of(const RenderRequest& request, const SceneFile& scene, const cv::Mat3f& image) {
+  return request.exposure ? *request.exposure : scene.exposure ? *scene.exposure : display_scale(image);
+}
+
+constexpr const char* kRenderingAttribute = "threadstation/rendering";
+
+// All that decides what stands in an EXR file.
+std::string rendering_of(const RenderRequest& request, const RenderIdentity& identity) {
+  nlohmann::json rendering = to_json(identity);
+  rendering["layers"] = request.layers;
+  rendering["half"] = request.half;
+  return rendering.dump();
+}
+
+std::filesystem::path png_beside(const std::filesystem::path& picture) {
+  std::filesystem::path png = picture;
+  return png.replace_extension(".png");
+}
+
+bool is_finished(const RenderRequest& request, const RenderIdentity& identity) {
+  std::error_code ignored;
+  if (request.out.extension() != ".exr" || !std::filesystem::exists(request.out, ignored)) return false;
+  if (request.png && !std::filesystem::exists(png_beside(request.out), ignored)) return false;
+  try {
+    renderer::ImageHeader header;
+    renderer::read_exr(request.out, &header);
+    return header[kRenderingAttribute] == rendering_of(request, identity);
+  } catch (const std::runtime_error&) {
+    return false;  // a file that is damaged is made again
+  }
+}
+
+struct Rendering {
+  const RenderRequest& request;
+  const SceneFile& scene;
+  const std::vector<BuiltCloth>& cloths;
+  const RenderIdentity& identity;
+};
+
+void write_exr(const Rendering& rendering, const renderer::PathTracer& tracer, const cv::Mat3f& image) {
+  const auto& [request, scene, cloths, identity] = rendering;
+  std::optional<renderer::PictureLayers> layers;
+  if (request.layers)
+    layers = tracer.layers(
+        scene.camera,
+        {.samples_per_pixel = identity.samples_per_pixel, .seed = identity.seed, .threads = request.threads});
+  renderer::write_exr(request.out, render_channels(image, layers ? &*layers : nullptr, scene, cloths, request.half),
+                      {{kRenderingAttribute, rendering_of(request, identity)},
+                       {"threadstation/content", "linear camera RGB, radiance; not white-balanced"},
+                       {"threadstation/scene", scene.name},
+                       {"threadstation/software", identity.software},
+                       {"threadstation/samples_per_pixel", std::to_string(identity.samples_per_pixel)},
+                       {"threadstation/noise", std::to_string(identity.noise)},
+                       {"threadstation/seed", std::to_string(identity.seed)}});
+}
+
+void write_picture(const Rendering& rendering, const renderer::PathTracer& tracer, const cv::Mat3f& image,
+                   RenderReport& report) {
+  const RenderRequest& request = rendering.request;
+  const bool is_exr = request.out.extension() == ".exr";
+  if (!is_exr || request.png) {
+    report.exposure = exposure_of(request, rendering.scene, image);
+    renderer::write_png(png_beside(request.out),
+                        display(image, report.exposure, rendering.scene.linear_srgb_from_camera));
+  }
+  if (is_exr) write_exr(rendering, tracer, image);
+}
+
+// A checkpoint to go on from, and a picture of it to look at.
+void leave_behind(const Rendering& rendering, const renderer::Film& film) {
+  const cv::Mat3f image = renderer::mean_radiance(film);
+  const double exposure = exposure_of(rendering.request, rendering.scene, image);
+  store_checkpoint(checkpoint_of(rendering.request.out), rendering.identity, film);
+  renderer::write_png(preview_of(rendering.request.out),
+                      display(image, exposure, rendering.scene.linear_srgb_from_camera));
+}
+
+void remove_what_was_left(const std::filesystem::path& out) {
+  std::error_code ignored;
+  std::filesystem::remove(checkpoint_of(out), ignored);
+  std::filesystem::remove(preview_of(out), ignored);
+}
+
+renderer::Film film_to_begin_with(const RenderRequest& request, const RenderIdentity& identity, const cv::Size& size) {
+  if (request.fresh) remove_what_was_left(request.out);
+  std::optional<renderer::Film> film = read_checkpoint(checkpoint_of(request.out), identity, size);
+  return film ? *film : renderer::empty_film(size.width, size.height);
+}
+
+// Goes on with the film until it is finished. Errors: as render_scene.
+renderer::RenderStatistics gather(const Rendering& rendering, const renderer::PathTracer& tracer,
+                                  RenderProgress& progress, renderer::Film& film) {
+  Clock::time_point stored = Clock::now();
+  double finished = 0;
+  const auto go_on = [&](double fraction) {
+    finished = fraction;
+    progress.show(fraction);
+    return !interrupted() && seconds_since(stored) < rendering.request.checkpoint_every_s;
+  };
+  renderer::RenderStatistics sum, part;
+  const renderer::RenderOptions options{.samples_per_pixel = rendering.identity.samples_per_pixel,
+                                        .noise = rendering.identity.noise,
+                                        .seed = rendering.identity.seed,
+                                        .threads = rendering.request.threads,
+                                        .progress = go_on,
+                                        .statistics = &part};
+  for (bool all = false; !all;) {
+    all = tracer.refine(rendering.scene.camera, options, film);
+    sum.samples += part.samples, sum.rays += part.rays;
+    if (all) break;
+    leave_behind(rendering, film);
+    if (interrupted())
+      throw std::runtime_error("rendering was stopped on request at " +
+                               std::to_string(static_cast<int>(100 * finished)) +
+                               " %; the same command goes on with it, and " +
+                               preview_of(rendering.request.out).string() + " shows what is there");
+    stored = Clock::now();
+  }
+  return sum;
+}
+
+RenderIdentity identity_of(const RenderRequest& request, const SceneFile& scene) {
+  return {.scene_sha256 = sha256_of_scene(request.scene),
+          .software = software_version(),
+          .seed = request.seed,
+          .samples_per_pixel =
+              request.samples_per_pixel.value_or(request.noise > 0 ? kMostSamples : scene.samples_per_pixel),
+          .noise = request.noise};
+}
+
+void report_noise(const renderer::Film& film, double asked, RenderReport& report) {
+  double squares = 0, noisy = 0;
+  const std::vector<double> errors = renderer::relative_errors_of_tiles(film);
+  for (const double error : errors) {
+    squares += error * error;
+    if (error > asked) ++noisy;
+  }
+  report.noise = std::sqrt(squares / static_cast<double>(errors.size()));
+  report.noisy = asked > 0 ? noisy / static_cast<double>(errors.size()) : 0.0;
+}
+
+}  // namespace
+
+std::optional<double> parse_noise(const std::string& text) {
+  constexpr double kLeast = 1e-4, kMost = 1;
+  std::istringstream in(text);
+  double value = 0;
+  std::string unit;
+  if (in >> value) {
+    in >> unit;
+    if (unit == "%") value /= 100;
+    if ((unit.empty() || unit == "%") && value >= kLeast && value <= kMost) return value;
+  }
+  return std::nullopt;
+}
+
+std::filesystem::path preview_of(const std::filesystem::path& picture) {
+  std::filesystem::path preview = picture;
+  return preview.replace_extension(".preview.png");
+}
+
+bool is_kept(const RenderRequest& request, const SceneFile& scene) {
+  return request.keep_finished && is_finished(request, identity_of(request, scene));
+}
+
+RenderReport render_scene(const RenderRequest& request, std::vector<BuiltCloth> cloths) {
+  watch_interrupts();
+  check_destination(request);
+  const Clock::time_point start = Clock::now();
+  const SceneFile scene = read_scene(request.scene);
+  const RenderIdentity identity = identity_of(request, scene);
+  if (request.keep_finished && is_finished(request, identity)) return {.image = request.out.string(), .kept = true};
+  renderer::Film film = film_to_begin_with(request, identity, {scene.camera.width, scene.camera.height});
+  if (cloths.empty()) cloths = build_cloths(scene);
+  const renderer::PathTracer tracer(build_scene(scene, cloths));
+  RenderReport report{.image = request.out.string(),
+                      .width = scene.camera.width,
+                      .height = scene.camera.height,
+                      .samples_per_pixel = identity.samples_per_pixel,
+                      .build_s = seconds_since(start),
+                      .samples_before = renderer::samples_in(film)};
+  RenderProgress progress(request.task, request.progress);
+  const Rendering rendering{request, scene, cloths, identity};
+  const Clock::time_point render_start = Clock::now();
+  const renderer::RenderStatistics statistics = gather(rendering, tracer, progress, film);
+  report.render_s = seconds_since(render_start);
+  report.samples = statistics.samples;
+  report.rays = statistics.rays;
+  report_noise(film, request.noise, report);
+  write_picture(rendering, tracer, renderer::mean_radiance(film), report);
+  report.memory = memory_of(scene, cloths, tracer.memory(), film);
+  remove_what_was_left(request.out);
+  progress.display().finish("wrote " + report.image);
+  return report;
+}
+
+nlohmann::json to_json(const RenderReport& report) {
+  if (report.kept) return {{"image", report.image}, {"kept", true}};
+  nlohmann::json document{{"image", report.image},       {"width_px", report.width},
+                          {"height_px", report.height},  {"samples_per_pixel", report.samples_per_pixel},
+                          {"exposure", report.exposure}, {"build_s", report.build_s},
+                          {"render_s", report.render_s}, {"samples", report.samples},
+                          {"rays", report.rays},         {"samples_before", report.samples_before},
+                          {"noisy", report.noisy},       {"memory", to_json(report.memory)}};
+  if (std::isfinite(report.noise)) document["noise"] = report.noise;  // a single batch of samples tells nothing of it
+  return document;
+}
+
+std::string describe_times(const RenderReport& report) {
+  const double seconds = std::max(report.render_s, 1e-9);
+  return formatted("read and built in %.2f s\nrendered in %.2f s: %.4g samples/s, %.4g rays, %.4g rays/s\n",
+                   report.build_s, report.render_s, static_cast<double>(report.samples) / seconds,
+                   static_cast<double>(report.rays), static_cast<double>(report.rays) / seconds);
+}
+
+std::string describe_noise(const RenderReport& report) {
+  if (!std::isfinite(report.noise)) return "too few samples to tell the noise\n";
+  return formatted(
+      "noise %.2f %% of the brightness after %.1f samples per pixel, missed in %.1f %%\n", 100 * report.noise,
+      static_cast<double>(report.samples + report.samples_before) / report.width / report.height, 100 * report.noisy);
+}
+
+}  // namespace station

@@ -1,0 +1,53 @@
+#include "station/documents/disk/file_name.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+namespace station {
+namespace {
+
+constexpr std::size_t kLongestName = 100;
+
+bool allowed(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-';
+}
+
+bool is_device_of_windows(std::string_view name) {
+  std::string stem(name.substr(0, name.find('.')));
+  std::transform(stem.begin(), stem.end(), stem.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  constexpr std::array<std::string_view, 4> kDevices = {"CON", "PRN", "AUX", "NUL"};
+  const bool numbered =
+      stem.size() == 4 && (stem.starts_with("COM") || stem.starts_with("LPT")) && stem[3] >= '1' && stem[3] <= '9';
+  return numbered || std::find(kDevices.begin(), kDevices.end(), stem) != kDevices.end();
+}
+
+// Names come from files and may hold anything; an error line shows only what a terminal can bear.
+std::string shown(std::string_view name) {
+  std::string text;
+  for (const char c : name.substr(0, 40)) text += std::isprint(static_cast<unsigned char>(c)) != 0 ? c : '?';
+  return "'" + text + (name.size() > 40 ? "...'" : "'");
+}
+
+}  // namespace
+
+std::optional<std::string> problem_with_name(std::string_view name) {
+  if (name.empty()) return "a name is empty; give one of letters, digits and . _ -";
+  if (name.size() > kLongestName) {
+    return "the name " + shown(name) + " has " + std::to_string(name.size()) + " characters; use at most " +
+           std::to_string(kLongestName);
+  }
+  if (!std::all_of(name.begin(), name.end(), allowed)) {
+    return "the name " + shown(name) +
+           " has a character that file names here may not have; use letters, digits and . _ -";
+  }
+  if (name.front() == '.' || name.front() == '-' || name.back() == '.' || name.find("..") != std::string_view::npos) {
+    return "the name " + shown(name) +
+           " begins with a dot or dash, ends with a dot or has two dots together; rename it";
+  }
+  if (is_device_of_windows(name)) return "the name " + shown(name) + " means a device on Windows; rename it";
+  return std::nullopt;
+}
+
+}  // namespace station

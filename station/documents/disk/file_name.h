@@ -1,0 +1,16 @@
+// The rule for names that may become files of a session: a whitelist, so that no name leaves the session's folder,
+// hides there, or means something else on another system.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace station {
+
+// Returns one line that says why `name` may not be used, or nothing when it may. Allowed are 1 to 100 ASCII letters,
+// digits and the signs . _ - without "..", not beginning with a dot or dash, not ending with a dot, and none of the
+// names that Windows keeps for devices.
+std::optional<std::string> problem_with_name(std::string_view name);
+
+}  // namespace station

@@ -1,0 +1,57 @@
+#include "station/documents/disk/folder_lock.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <iomanip>
+#include <span>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+
+#include "station/documents/disk/stored_file.h"
+
+namespace station {
+namespace {
+
+constexpr int kWidth = 20;  // of any process number
+
+std::string holder_of(const std::filesystem::path& file) {
+  std::string process;
+  std::ifstream(file) >> process;
+  return process.empty() ? "another process" : "process " + process;
+}
+
+}  // namespace
+
+bool folder_in_use(const std::filesystem::path& folder) {
+  const OpenFile file(::open((folder / kLockFile).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+  return file.descriptor() >= 0 && ::flock(file.descriptor(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+}
+
+OpenFile lock_folder(const std::filesystem::path& folder, FileSystem& file_system) {
+  const std::filesystem::path path = folder / kLockFile;
+  try {
+    OpenFile file = file_system.open(path, O_RDWR | O_CREAT);
+    if (::flock(file.descriptor(), LOCK_EX | LOCK_NB) != 0) {
+      if (errno != EWOULDBLOCK) throw std::system_error(errno, std::generic_category());
+      throw std::runtime_error("the session '" + folder.string() + "' is in use by " + holder_of(path) +
+                               "; wait until it ends, or end it");
+    }
+    // The number always has the same length, so that it replaces the one before without a moment in which the file is
+    // empty.
+    std::ostringstream process;
+    process << std::setw(kWidth) << ::getpid() << '\n';
+    const std::string text = process.str();
+    file_system.write(file, std::as_bytes(std::span(text)));
+    return file;
+  } catch (const std::system_error& error) {
+    throw std::runtime_error(write_problem(path, error.code()));
+  }
+}
+
+}  // namespace station

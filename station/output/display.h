@@ -1,0 +1,25 @@
+// Linear pictures made ready for people: brightness scale, crop round the threads, mask outline.
+#pragma once
+
+#include <array>
+#include <opencv2/core.hpp>
+
+namespace station {
+
+// The scale that brings the 99th percentile of the masked pixels' brightest channel to just below white. Without a mask
+// all pixels count.
+double display_scale(const cv::Mat3f& linear, const cv::Mat1b& mask = {});
+
+// The mask's bounding box, grown by `margin_px` and then to the picture's own aspect ratio, inside the picture; the whole
+// picture when the mask is empty.
+cv::Rect threads_box(const cv::Mat1b& mask, int margin_px);
+
+// The picture as a screen shows it: sRGB, after multiplication by `scale`.
+cv::Mat3b display(const cv::Mat3f& linear, double scale, const std::array<double, 9>& linear_srgb_from_camera);
+// The same at the display_scale of all pixels.
+cv::Mat3b display(const cv::Mat3f& linear, const std::array<double, 9>& linear_srgb_from_camera);
+
+// Draws the mask's outline, one pixel wide.
+void draw_outline(cv::Mat3b& picture, const cv::Mat1b& mask);
+
+}  // namespace station

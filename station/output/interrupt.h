@@ -1,0 +1,30 @@
+// Ctrl-C and SIGTERM: long work asks between its steps whether they came, and a moving platform is stopped by them.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+namespace station {
+
+// From now on the first `watched` ctrl-C are only counted; the next one ends the program as usual.
+void watch_interrupts(int watched = 1);
+int interrupts();  // how many came since then
+bool interrupted();
+
+// While it lives, the first ctrl-C or SIGTERM calls `stop` at once from a thread of its own, whatever the rest of the
+// program is doing or waiting for, and the second one `stop_now`. The last of the two that is given is called again every
+// 50 ms: a move that was begun at the very moment is stopped as well. Needs watch_interrupts() before. What they throw
+// is dropped: they are called where nobody waits for it.
+class StopOnInterrupt {
+ public:
+  explicit StopOnInterrupt(std::function<void()> stop, std::function<void()> stop_now = {});
+  ~StopOnInterrupt();
+  StopOnInterrupt(const StopOnInterrupt&) = delete;
+  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
+
+ private:
+  struct Watch;
+  std::unique_ptr<Watch> watch_;
+};
+
+}  // namespace station

@@ -1,0 +1,44 @@
+#include "station/session/results.h"
+
+#include <array>
+
+#include "station/documents/reader.h"
+
+namespace station {
+namespace {
+
+constexpr std::array<const char*, 2> kClothPictures{"swatch", "cylinder"};
+
+}  // namespace
+
+std::filesystem::path thread_file_of(const std::filesystem::path& session) {
+  return session / "result" / "thread.json";
+}
+
+std::filesystem::path fitted_file_of(const std::filesystem::path& session, const std::string& view) {
+  return session / "result" / "fitted" / (view + ".exr");
+}
+
+std::filesystem::path cloth_folder(const std::filesystem::path& session) {
+  return session / "result" / "cloth";
+}
+
+std::filesystem::path cloth_made_of_file(const std::filesystem::path& session) {
+  return cloth_folder(session) / "made_of.json";
+}
+
+nlohmann::json cloth_made_of(const std::filesystem::path& session) {
+  const std::filesystem::path file = cloth_made_of_file(session);
+  return std::filesystem::exists(file) ? read_json_file(file) : nlohmann::json();
+}
+
+std::vector<std::filesystem::path> cloth_pictures(const std::filesystem::path& session) {
+  std::vector<std::filesystem::path> pictures;
+  for (const std::string name : kClothPictures) {
+    const std::filesystem::path file = cloth_folder(session) / (name + ".exr");
+    if (std::filesystem::exists(file)) pictures.push_back(file);
+  }
+  return pictures;
+}
+
+}  // namespace station

@@ -1,0 +1,26 @@
+// Where fits and pictures of cloth lie in a session's folder, for whoever makes them and for whoever shows them.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace station {
+
+// The fitted thread, and one view as the fitted thread gives it; neither needs to be there.
+std::filesystem::path thread_file_of(const std::filesystem::path& session);
+std::filesystem::path fitted_file_of(const std::filesystem::path& session, const std::string& view);
+
+// The folder of the cloth that the session's thread weaves into, and the file that says what it is made of.
+std::filesystem::path cloth_folder(const std::filesystem::path& session);
+std::filesystem::path cloth_made_of_file(const std::filesystem::path& session);
+
+// {"draft", "warp", "weft": {"srgb": [r, g, b], "delta_e_2000": how far the thread's gamut is from it}, or null for the
+// digitized thread's own colour}; null when there is no preview.
+nlohmann::json cloth_made_of(const std::filesystem::path& session);
+
+// The EXR pictures that are there, swatch first.
+std::vector<std::filesystem::path> cloth_pictures(const std::filesystem::path& session);
+
+}  // namespace station

@@ -1,0 +1,125 @@
+#include "station/session/spool_queue.h"
+
+#include <cstdio>
+#include <map>
+#include <stdexcept>
+
+#include "station/documents/disk/file_name.h"
+#include "station/documents/text_table.h"
+#include "station/session/capture_session.h"
+#include "station/session/record/session_folder.h"
+#include "station/session/record/verify.h"
+
+namespace station {
+namespace {
+
+bool plain(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+// The code point of a UTF-8 text that begins at `at`, which moves behind it.
+unsigned code_point(const std::string& text, std::size_t& at) {
+  const auto first = static_cast<unsigned char>(text[at++]);
+  int more = first >= 0xF0 ? 3 : first >= 0xE0 ? 2 : first >= 0xC0 ? 1 : 0;
+  unsigned code = more == 0 ? first : first & (0x3FU >> more);
+  for (; more > 0 && at < text.size(); --more) code = code << 6 | (static_cast<unsigned char>(text[at++]) & 0x3FU);
+  return code;
+}
+
+std::runtime_error bad_row(const std::filesystem::path& file, std::size_t line, const std::string& problem) {
+  return std::runtime_error(file.string() + " line " + std::to_string(line) + ": " + problem);
+}
+
+QueuedSpool queued(const std::filesystem::path& file, const TextRow& row, const std::filesystem::path& spool_above) {
+  QueuedSpool spool{.line = row.line,
+                    .sample = {.barcode = row["barcode"],
+                               .name = row["name"],
+                               .lot = row["lot"],
+                               .material = row["material"],
+                               .colour = row["colour"],
+                               .note = row["note"]},
+                    .spool = spool_above,
+                    .session = {}};
+  const std::string& called = spool.sample.barcode.empty() ? spool.sample.name : spool.sample.barcode;
+  if (called.empty()) throw bad_row(file, row.line, "neither barcode nor name is filled in; give one of them");
+  if (!row["spool"].empty()) spool.spool = file.parent_path() / row["spool"];
+  if (spool.spool.empty())
+    throw bad_row(file, row.line, "no spool file is named, and there is no row above to take it from; fill in spool");
+  spool.session = safe_name(called) + (spool.sample.lot.empty() ? "" : "-" + safe_name(spool.sample.lot));
+  if (const auto problem = problem_with_name(spool.session)) throw bad_row(file, row.line, *problem);
+  return spool;
+}
+
+}  // namespace
+
+std::string safe_name(const std::string& text) {
+  std::string name;
+  for (std::size_t at = 0; at < text.size();) {
+    const unsigned code = code_point(text, at);
+    if (code < 128 && plain(static_cast<char>(code))) {
+      name += static_cast<char>(code);
+    } else if (code >= 128) {
+      char written[16];
+      std::snprintf(written, sizeof written, "u%04x", code);
+      name += written;
+    } else if (!name.empty() && name.back() != '-') {
+      name += '-';
+    }
+  }
+  while (name.ends_with('-')) name.pop_back();
+  return name;
+}
+
+std::vector<QueuedSpool> read_queue(const std::filesystem::path& file) {
+  std::vector<QueuedSpool> queue;
+  std::map<std::string, std::size_t> lines;  // by session name
+  for (const TextRow& row :
+       read_text_table(file, {}, {"barcode", "name", "lot", "material", "colour", "note", "spool"})) {
+    queue.push_back(queued(file, row, queue.empty() ? std::filesystem::path() : queue.back().spool));
+    const auto [same, fresh] = lines.emplace(queue.back().session, row.line);
+    if (!fresh)
+      throw bad_row(file, row.line,
+                    "the spool \"" + queue.back().session + "\" stands in line " + std::to_string(same->second) +
+                        " already; remove one, or give them lots");
+  }
+  return queue;
+}
+
+std::vector<QueueResult> capture_queue(const std::filesystem::path& table, const CaptureRequest& request,
+                                       const std::function<bool(const QueuedSpool&)>& next) {
+  std::vector<QueueResult> results;
+  for (const QueuedSpool& spool : read_queue(table)) {
+    QueueResult result{.spool = spool, .outcome = QueueOutcome::captured, .problem = {}};
+    CaptureRequest capture = request;
+    capture.session /= spool.session;
+    try {
+      if (is_session(capture.session) && verify_session(capture.session).complete) {
+        result.outcome = QueueOutcome::kept;
+        results.push_back(result);
+        continue;
+      }
+      if (next && !next(spool)) break;
+      if (is_session(capture.session)) {
+        result.outcome = QueueOutcome::resumed;
+        capture.new_session.reset();
+      } else {
+        capture.new_session->spool = spool.spool;
+        capture.new_session->sample = spool.sample;
+      }
+      const RunState state = capture_session(capture);
+      if (state != RunState::complete) {
+        result.outcome = QueueOutcome::failed;
+        result.problem = "was " + state_name(state);
+        results.push_back(result);
+        break;
+      }
+    } catch (const std::exception& error) {
+      result.outcome = QueueOutcome::failed;
+      result.problem = error.what();
+    }
+    results.push_back(result);
+  }
+  return results;
+}
+
+}  // namespace station

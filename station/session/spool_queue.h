@@ -1,0 +1,45 @@
+// Many spools are captured one after the other: a table names them, and each has a session folder.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "station/documents/sample.h"
+#include "station/session/capture_request.h"
+
+namespace station {
+
+struct QueuedSpool {
+  std::size_t line = 0;  // of the table
+  Sample sample;
+  std::filesystem::path spool;  // spool file: its geometry
+  std::string session;          // name of its folder: safe on every system
+};
+
+// The table's columns: barcode, name (one of them filled in), lot, material, colour, note, spool. An empty spool cell
+// means the same settings as the row above; paths are relative to the table.
+// Errors: those of text_table.h; a row without a name, without a spool file, or of a spool (barcode or name, and lot)
+// that another row has already; two rows whose session names would be the same.
+std::vector<QueuedSpool> read_queue(const std::filesystem::path& file);
+
+// A text as the name of a folder: ASCII letters, digits and _ are kept, accents and other scripts are written as their
+// code ("u00e9"), and others between them become one -.
+std::string safe_name(const std::string& text);
+
+enum class QueueOutcome { captured, resumed, kept, failed };  // kept: it was complete already
+
+struct QueueResult {
+  QueuedSpool spool;
+  QueueOutcome outcome = QueueOutcome::captured;
+  std::string problem;  // why it failed; the next spool is taken all the same
+};
+
+// `request` is made for each spool of the table: it asks for a new session without spool and sample, and its `session`
+// is the folder that holds all sessions. `next` asks the person for the next spool and says whether to go on; empty:
+// nobody is asked. Ends early when a session is paused or aborted, or `next` says so. Errors: those of read_queue.
+std::vector<QueueResult> capture_queue(const std::filesystem::path& table, const CaptureRequest& request,
+                                       const std::function<bool(const QueuedSpool&)>& next);
+
+}  // namespace station

@@ -1,0 +1,125 @@
+#include "station/thread/invert/fit_document.h"
+
+#include <cmath>
+
+#include "inversion/fit/energy_bands.h"
+#include "station/documents/reader.h"
+
+namespace station {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kUndetermined = 0.2;  // standard deviation along a direction that is worth naming
+
+json rows_of(const Eigen::MatrixXd& matrix) {
+  json rows = json::array();
+  for (const auto& row : matrix.rowwise()) rows.push_back(std::vector<double>(row.begin(), row.end()));
+  return rows;
+}
+
+json certainty_json(const inversion::ViewFit& fit) {
+  const inversion::Certainty& certainty = fit.certainty;
+  json unknowns = json::array(), weakest = json::array();
+  for (std::size_t k = 0; k < fit.unknown_names.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    unknowns.push_back({{"name", fit.unknown_names[k]},
+                        {"value", fit.unknowns[i]},
+                        {"sigma", std::sqrt(certainty.covariance(i, i))},
+                        {"noise_sigma", std::sqrt(certainty.noise_covariance(i, i))},
+                        {"at_bound", static_cast<bool>(certainty.at_bound[k])}});
+  }
+  for (const auto& axis : certainty.weakest) {
+    if (axis.sigma < kUndetermined) break;
+    weakest.push_back(
+        {{"sigma", axis.sigma},
+         {"direction", std::vector<double>(axis.direction.data(), axis.direction.data() + axis.direction.size())}});
+  }
+  return {{"unknowns", unknowns},
+          {"covariance", rows_of(certainty.covariance)},
+          {"misfit_over_noise", certainty.misfit},
+          {"undetermined", weakest}};
+}
+
+json bands_json(const inversion::ViewFit& fit) {
+  json bands = json::array();
+  for (const inversion::EnergyBand& band : inversion::energy_bands(fit))
+    bands.push_back({{"cosine", band.cosine},
+                     {"lambda", band.lambda},
+                     {"sigma", band.sigma},
+                     {"sum", band.sum},
+                     {"sum_sigma", band.sum_sigma},
+                     {"albedo", band.albedo},
+                     {"albedo_sigma", band.albedo_sigma}});
+  return bands;
+}
+
+json rounds_json(const inversion::ViewFit& fit) {
+  json rounds = json::array();
+  for (const inversion::FitRound& round : fit.rounds)
+    rounds.push_back({{"paths_per_block", round.paths_per_block},
+                      {"steps", round.steps},
+                      {"loss_before", round.loss_before},
+                      {"loss_after", round.loss_after},
+                      {"losses", round.losses},
+                      {"prior_share", round.prior_share},
+                      {"bias_free", round.bias_free},
+                      {"converged", round.converged}});
+  return rounds;
+}
+
+}  // namespace
+
+std::map<std::string, inversion::ModelKind> names_of_models() {
+  return {{"thread", inversion::ModelKind::thread},
+          {"fiber", inversion::ModelKind::fiber},
+          {"yarn", inversion::ModelKind::yarn}};
+}
+
+std::string name_of(inversion::ModelKind model) {
+  for (const auto& [name, kind] : names_of_models())
+    if (kind == model) return name;
+  throw std::logic_error("a kind of model without a name");
+}
+
+std::string name_of(inversion::Solver solver) {
+  return solver == inversion::Solver::adam ? "adam" : "lm";
+}
+
+json fit_document(const inversion::ViewFit& fit, const inversion::FitOptions& options,
+                  const std::vector<FittedView>& fitted, int samples_per_pixel) {
+  json views = json::array(), held = json::array();
+  std::vector<inversion::ViewAgreement> all, reflection, transmission;
+  for (std::size_t i = 0; i < fitted.size(); ++i) {
+    const FittedView& view = fitted[i];
+    views.push_back({{"id", view.id},
+                     {"weight", fit.view_weights[i]},
+                     {"relative_rmse", view.agreement.relative_rmse()},
+                     {"relative_bias", view.agreement.relative_bias},
+                     {"mean_over_diffuser", view.agreement.mean_reference}});
+    all.push_back(view.agreement);
+    (view.transmission ? transmission : reflection).push_back(view.agreement);
+  }
+  for (inversion::ParameterGroup group : options.held) held.push_back(name_of(group));
+  json document{{"model", name_of(options.model)},
+                {"solver", name_of(options.solver)},
+                {"seed", options.seed},
+                {"prior_weight", options.model == inversion::ModelKind::thread ? options.prior_weight : 0.0},
+                {"held", held},
+                {"robust", options.robust},
+                {"block_px", fit.block_px},
+                {"blocks", fit.blocks},
+                {"start", fit.start},
+                {"rounds", rounds_json(fit)},
+                {"samples_per_pixel", samples_per_pixel},
+                {"views", views},
+                {"relative_rmse", inversion::overall_relative_rmse(all)},
+                {"certainty", certainty_json(fit)}};
+  if (!reflection.empty()) document["relative_rmse_reflection"] = inversion::overall_relative_rmse(reflection);
+  if (!transmission.empty()) document["relative_rmse_transmission"] = inversion::overall_relative_rmse(transmission);
+  if (options.model == inversion::ModelKind::thread) document["bands"] = bands_json(fit);
+  if (const auto* yarn = std::get_if<renderer::YarnParameters>(&fit.model)) document["fiber_count"] = yarn->fiber_count;
+  return document;
+}
+
+}  // namespace station

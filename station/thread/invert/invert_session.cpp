@@ -1,0 +1,206 @@
+#include "station/thread/invert/invert_session.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "inversion/fit/fit_doubts.h"
+#include "renderer/picture/image_file.h"
+#include "station/documents/disk/stored_file.h"
+#include "station/documents/fiber_file.h"
+#include "station/documents/number_text.h"
+#include "station/documents/reader.h"
+#include "station/documents/session_file.h"
+#include "station/documents/thread_file.h"
+#include "station/documents/views_file.h"
+#include "station/documents/yarn_file.h"
+#include "station/output/interrupt.h"
+
+namespace station {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uint64_t kViewSeed = 424242;  // of the fitted views: paths that the fit has not seen
+constexpr double kFitShare = 0.6;            // of the progress bar; the fitted views take the rest
+
+json provenance_json(const std::filesystem::path& session, const SessionFile& asked) {
+  const std::filesystem::path folder = std::filesystem::absolute(session).lexically_normal();
+  return {{"session", (folder.has_filename() ? folder : folder.parent_path()).filename().string()},
+          {"captured", asked.utc},
+          {"captured_by", asked.software},
+          {"fitted_by", software_version()},
+          {"rig", asked.rig.name},
+          {"spool", asked.spool.name},
+          {"material", asked.spool.material},
+          {"thread_diameter_mm", asked.spool.wrapping.thread_diameter_mm},
+          {"paper", "Xia et al. 2025, Predicting Fabric Appearance Through Thread Scattering and Inversion"}};
+}
+
+// The folder of the results: the session's own for the thread, one below it for each baseline.
+std::filesystem::path results_of(const InvertRequest& request) {
+  const std::filesystem::path results = request.session / "result";
+  return request.fit.model == inversion::ModelKind::thread ? results : results / name_of(request.fit.model);
+}
+
+std::filesystem::path model_file(const InvertRequest& request) {
+  return results_of(request) / (name_of(request.fit.model) + ".json");
+}
+
+json model_document(const inversion::ViewFit& fit, const SessionFile& asked, const DevelopedViews& developed,
+                    const json& fit_part, const json& provenance) {
+  if (const auto* fiber = std::get_if<renderer::FiberParameters>(&fit.model)) return to_json(*fiber);
+  if (const auto* yarn = std::get_if<renderer::YarnParameters>(&fit.model)) return to_json(*yarn);
+  return to_json(ThreadFile{.name = asked.spool.name,
+                            .diameter_mm = asked.spool.wrapping.thread_diameter_mm,
+                            .parameters = fit.thread(),
+                            .linear_srgb_from_camera = developed.linear_srgb_from_camera,
+                            .fit = fit_part,
+                            .provenance = provenance});
+}
+
+// Renders one view with the fitted thread, compares it, and writes both pictures.
+FittedView write_fitted_view(const InvertRequest& request, const inversion::WrappedSpool& spool,
+                             const inversion::View& view, const inversion::ViewFit& fit, std::uint64_t seed) {
+  const cv::Mat3f fitted = inversion::fitted_view(spool, view, fit.model, request.samples_per_pixel, seed,
+                                                  [](double) { return !interrupted(); });
+  cv::Mat3f residual(fitted.size(), cv::Vec3f(0, 0, 0));
+  cv::subtract(fitted, view.image, residual, view.mask);
+  renderer::ImageHeader header{{"threadstation/view", view.id},
+                               {"threadstation/samples_per_pixel", std::to_string(request.samples_per_pixel)}};
+  std::string& content = header["threadstation/content"];
+  content = "linear camera RGB, radiance unit; rendered with the fitted thread inside the mask";
+  renderer::write_exr(results_of(request) / "fitted" / (view.id + ".exr"), fitted, header);
+  content = "linear camera RGB, radiance unit; fitted minus photographed inside the mask";
+  renderer::write_exr(results_of(request) / "residual" / (view.id + ".exr"), residual, header);
+  return {
+      .id = view.id, .transmission = view.transmission, .agreement = inversion::agreement(view, fitted, fit.block_px)};
+}
+
+// Makes the folders of the results before the work, and finds out then what cannot be written.
+void prepare_results(const InvertRequest& request) {
+  FileSystem disk;
+  if (request.out) check_can_store(disk, *request.out);
+  for (const char* name : {"fitted", "residual"}) {
+    const std::filesystem::path folder = results_of(request) / name;
+    std::error_code code;
+    std::filesystem::create_directories(folder, code);
+    if (code)
+      throw std::runtime_error("cannot make " + folder.string() + ": " + code.message() +
+                               "; is the session's folder writable?");
+  }
+  check_can_store(disk, model_file(request));
+}
+
+}  // namespace
+
+InvertResult invert_session(const InvertRequest& request) {
+  watch_interrupts();
+  const SessionFile asked = read_session_file(request.session);
+  if (asked.spool.fabric)
+    throw std::runtime_error(request.session.string() + " shows a cloth on the cylinder (" + asked.spool.name +
+                             "), and threads are fitted to wrapped ones; use predict, or give a spool's session");
+  DevelopedViews developed = read_views(request.session);
+  read_view_pictures(request.session, developed);
+  std::vector<inversion::View> views;
+  for (const DevelopedView& view : developed.views) views.push_back(view.view);
+
+  prepare_results(request);
+  ProgressDisplay progress("invert", request.progress_style);
+  inversion::FitOptions options = request.fit;
+  int shown = -1;
+  options.progress = [&](const std::string& what, double share) {
+    const int percent = static_cast<int>(100 * kFitShare * share);
+    if (percent / 5 != shown / 5 || shown < 0) progress.show(shown = percent, 100, what);
+    return !interrupted();
+  };
+  const inversion::ViewFit fit = inversion::fit_views(asked.spool.wrapping, views, options);
+
+  InvertResult result{.model = fit.model, .file = model_file(request)};
+  std::filesystem::remove(result.file);  // it no longer belongs to the pictures beside it
+  for (const inversion::View& view : views) {
+    const double share = static_cast<double>(result.views.size()) / static_cast<double>(views.size());
+    progress.show(static_cast<int>(100 * (kFitShare + (1 - kFitShare) * share)), 100, "view " + view.id);
+    result.views.push_back(
+        write_fitted_view(request, asked.spool.wrapping, view, fit, kViewSeed + result.views.size()));
+  }
+  result.fit = fit_document(fit, request.fit, result.views, request.samples_per_pixel);
+  result.relative_rmse = result.fit.at("relative_rmse");
+  std::vector<inversion::ViewAgreement> agreements;
+  for (const FittedView& view : result.views) agreements.push_back(view.agreement);
+  result.doubts = inversion::fit_doubts(views, fit, agreements);
+  result.fit["doubts"] = result.doubts;
+  const json document = model_document(fit, asked, developed, result.fit, provenance_json(request.session, asked));
+  write_json_file(result.file, document);
+  if (request.fit.model != inversion::ModelKind::thread) write_json_file(results_of(request) / "fit.json", result.fit);
+  if (request.out) write_json_file(*request.out, document);
+  progress.finish("relative RMSE " + number_text(100 * result.relative_rmse, 1) + " %");
+  return result;
+}
+
+namespace {
+
+// The unknowns from `first` on with their deviations: "0.512 +- 0.013".
+std::string uncertain_text(const json& unknowns, std::size_t first, std::size_t count) {
+  std::string text;
+  for (std::size_t k = first; k < first + count; ++k) {
+    const json& unknown = unknowns.at(k);
+    text += (k > first ? ", " : "") + number_text(unknown.at("value"), 3) +
+            (unknown.at("at_bound").get<bool>() ? " (at its bound)" : " +- " + number_text(unknown.at("sigma"), 3));
+  }
+  return text;
+}
+
+std::string thread_text(const renderer::ThreadParameters& p, const json& fit) {
+  const json& unknowns = fit.at("certainty").at("unknowns");
+  std::string text = "sigma_a " + uncertain_text(unknowns, 0, 3) + " per thread radius (R G B)\n";
+  text += "alpha   " + uncertain_text(unknowns, 3, 3) + " (R TT TRT)\n";
+  text += "beta    " + uncertain_text(unknowns, 6, 3) + "\n";
+  text += "r0 " + numbers_text({p.r0a, p.r0b, p.r0c}, 3) + "   r1 " + number_text(p.r1a, 3) + "   r2 " +
+          numbers_text({p.r2a, p.r2b, p.r2c}, 3) + "\n";
+  for (const json& band : fit.at("bands"))
+    if (const double c = band.at("cosine"); c > 0.55 && std::lround(10 * c) % 2 == 0)
+      text += "energies at cos theta " + number_text(c, 1) + ": R " + number_text(band.at("lambda")[0], 3) + " +- " +
+              number_text(band.at("sigma")[0], 3) + ", TT " + number_text(band.at("lambda")[1], 3) + " +- " +
+              number_text(band.at("sigma")[1], 3) + ", TRT " + number_text(band.at("lambda")[2], 3) + " +- " +
+              number_text(band.at("sigma")[2], 3) + "\n";
+  return text;
+}
+
+std::string baseline_text(const json& fit) {
+  std::string text;
+  if (fit.contains("fiber_count")) text += "fibers  " + std::to_string(fit.at("fiber_count").get<int>()) + "\n";
+  const json& unknowns = fit.at("certainty").at("unknowns");
+  for (std::size_t k = 0; k < unknowns.size(); ++k)
+    text += unknowns.at(k).at("name").get<std::string>() + "  " + uncertain_text(unknowns, k, 1) + "\n";
+  return text;
+}
+
+}  // namespace
+
+std::string describe(const InvertResult& result) {
+  std::string text;
+  for (const FittedView& view : result.views)
+    text += view.id + ": relative RMSE " + number_text(100 * view.agreement.relative_rmse(), 1) + " %, bias " +
+            number_text(100 * view.agreement.relative_bias, 1) + " %\n";
+  text += "overall: relative RMSE " + number_text(100 * result.relative_rmse, 1) + " %";
+  for (const char* part : {"reflection", "transmission"})
+    if (const auto found = result.fit.find(std::string("relative_rmse_") + part); found != result.fit.end())
+      text += std::string(", ") + part + " " + number_text(100 * found->get<double>(), 1) + " %";
+  text += "\n";
+  if (const auto* thread = std::get_if<renderer::ThreadParameters>(&result.model))
+    text += thread_text(*thread, result.fit);
+  else
+    text += baseline_text(result.fit);
+  for (const std::string& doubt : result.doubts) text += "doubt: " + doubt + "\n";
+  return text + result.fit.at("model").get<std::string>() + "  " + result.file.string() + "\n";
+}
+
+json to_json(const InvertResult& result) {
+  json document{{"model", result.fit.at("model")}, {"relative_rmse", result.relative_rmse}, {"fit", result.fit}};
+  document[result.fit.at("model").get<std::string>()] = result.file;
+  document["parameters"] = read_json_file(result.file);
+  if (document["parameters"].contains("parameters")) document["parameters"] = document["parameters"]["parameters"];
+  return document;
+}
+
+}  // namespace station

@@ -1,0 +1,234 @@
+#include "station/thread/library.h"
+
+#include <sqlite3.h>
+
+#include <functional>
+#include <stdexcept>
+
+#include "station/documents/disk/new_folder.h"
+#include "station/documents/disk/sha256.h"
+#include "station/documents/disk/stored_file.h"
+#include "station/documents/disk/whole_file.h"
+#include "station/documents/manifest.h"
+#include "station/documents/session_file.h"
+#include "station/documents/thread_file.h"
+#include "station/session/record/session_folder.h"
+
+namespace station {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kVersion = 1;
+constexpr const char* kTables = R"(
+CREATE TABLE IF NOT EXISTS spools (id INTEGER PRIMARY KEY, barcode TEXT NOT NULL, name TEXT NOT NULL, lot TEXT NOT NULL,
+  material TEXT NOT NULL, colour TEXT NOT NULL, note TEXT NOT NULL, UNIQUE (barcode, name, lot));
+CREATE TABLE IF NOT EXISTS sessions (id INTEGER PRIMARY KEY, spool INTEGER NOT NULL REFERENCES spools (id),
+  folder TEXT NOT NULL, utc TEXT NOT NULL, UNIQUE (folder, utc));
+CREATE TABLE IF NOT EXISTS threads (id INTEGER PRIMARY KEY AUTOINCREMENT, spool INTEGER NOT NULL REFERENCES spools (id),
+  session INTEGER REFERENCES sessions (id), name TEXT NOT NULL, sha256 TEXT NOT NULL UNIQUE, added_utc TEXT NOT NULL,
+  diameter_mm REAL NOT NULL, relative_rmse REAL);
+)";
+constexpr const char* kSelect =
+    "SELECT threads.id, barcode, spools.name, lot, material, colour, note, threads.name, added_utc, sha256, "
+    "coalesce(sessions.folder, ''), coalesce(sessions.utc, ''), relative_rmse, diameter_mm "
+    "FROM threads JOIN spools ON spools.id = threads.spool LEFT JOIN sessions ON sessions.id = threads.session ";
+
+}  // namespace
+
+// The SQLite connection; each SQL statement is one call.
+class Library::Index {
+ public:
+  using Row = std::function<void(sqlite3_stmt*)>;
+
+  explicit Index(const fs::path& file) : file_(file) {
+    if (sqlite3_open_v2(file.c_str(), &db_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr) != SQLITE_OK) fail();
+    sqlite3_busy_timeout(db_, 5000);
+    int version = 0;
+    run("PRAGMA user_version", {}, [&](sqlite3_stmt* row) { version = sqlite3_column_int(row, 0); });
+    if (version > kVersion)
+      throw std::runtime_error("'" + file.string() + "' is of version " + std::to_string(version) +
+                               ", this program knows version " + std::to_string(kVersion) + "; use the newer program");
+    run("PRAGMA foreign_keys = ON", {});
+    run("PRAGMA synchronous = FULL", {});
+    execute(kTables);
+    execute("PRAGMA user_version = 1");
+  }
+  ~Index() { sqlite3_close(db_); }
+  Index(const Index&) = delete;
+  Index& operator=(const Index&) = delete;
+
+  void execute(const char* sql) {
+    if (sqlite3_exec(db_, sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail();
+  }
+
+  void run(const std::string& sql, const std::vector<std::string>& values, const Row& each = {}) {
+    sqlite3_stmt* statement = nullptr;
+    if (sqlite3_prepare_v2(db_, sql.c_str(), -1, &statement, nullptr) != SQLITE_OK) fail();
+    const std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)> owner(statement, sqlite3_finalize);
+    int at = 0;
+    for (const std::string& value : values)
+      sqlite3_bind_text(statement, ++at, value.c_str(), static_cast<int>(value.size()), SQLITE_TRANSIENT);
+    int result = SQLITE_ROW;
+    while ((result = sqlite3_step(statement)) == SQLITE_ROW)
+      if (each) each(statement);
+    if (result != SQLITE_DONE) fail();
+  }
+
+  // The id of a row that is made now unless it is there already.
+  std::string id_of(const std::string& insert, const std::string& select, const std::vector<std::string>& all,
+                    const std::vector<std::string>& key) {
+    run(insert, all);
+    std::string id;
+    run(select, key, [&](sqlite3_stmt* row) { id = text(row, 0); });
+    return id;
+  }
+
+  static std::string text(sqlite3_stmt* row, int column) {
+    const auto* value = reinterpret_cast<const char*>(sqlite3_column_text(row, column));
+    return value == nullptr ? "" : value;
+  }
+
+  [[noreturn]] void fail() const {
+    throw std::runtime_error("the library's index '" + file_.string() + "': " + sqlite3_errmsg(db_) +
+                             "; check the folder and its disk, or restore the file from a copy");
+  }
+
+ private:
+  fs::path file_;
+  sqlite3* db_ = nullptr;
+};
+
+namespace {
+
+LibraryThread thread_of(sqlite3_stmt* row, const std::function<std::string(sqlite3_stmt*, int)>& text) {
+  LibraryThread thread{.number = sqlite3_column_int(row, 0),
+                       .sample = {.barcode = text(row, 1),
+                                  .name = text(row, 2),
+                                  .lot = text(row, 3),
+                                  .material = text(row, 4),
+                                  .colour = text(row, 5),
+                                  .note = text(row, 6)},
+                       .thread_name = text(row, 7),
+                       .added_utc = text(row, 8),
+                       .sha256 = text(row, 9),
+                       .session = text(row, 10),
+                       .session_utc = text(row, 11),
+                       .relative_rmse = std::nullopt,
+                       .diameter_mm = sqlite3_column_double(row, 13)};
+  if (sqlite3_column_type(row, 12) != SQLITE_NULL) thread.relative_rmse = sqlite3_column_double(row, 12);
+  return thread;
+}
+
+}  // namespace
+
+Library::Library(const fs::path& folder, bool make) : folder_(folder) {
+  const fs::path file = folder / "index.sqlite";
+  if (!fs::exists(file)) {
+    if (!make)
+      throw std::runtime_error("'" + folder.string() +
+                               "' is no library (it has no index.sqlite); check --library, or add a thread first");
+    std::error_code code;
+    if (fs::exists(folder) && !fs::is_empty(folder, code))
+      throw std::runtime_error("'" + folder.string() + "' holds other files; choose a new or empty folder");
+    fs::create_directories(folder / "threads", code);
+    if (code) throw std::runtime_error(write_problem(folder, code));
+  }
+  index_ = std::make_unique<Index>(file);
+}
+
+Library::~Library() = default;
+
+fs::path Library::thread_file(int number) const {
+  return folder_ / "threads" / (std::to_string(number) + ".json");
+}
+
+LibraryThread Library::add(const fs::path& session_or_thread, const std::string& utc) {
+  const bool from_session = is_session(session_or_thread);
+  const fs::path file = from_session ? session_or_thread / "result" / "thread.json" : session_or_thread;
+  if (from_session && !fs::exists(file))
+    throw std::runtime_error("the session '" + session_or_thread.string() +
+                             "' has no result/thread.json; fit it with threadstation invert first");
+  const ThreadFile thread = read_thread(file);
+  const std::string content = text_of_file(file), sha256 = sha256_hex(content);
+  for (const LibraryThread& other : list())
+    if (other.sha256 == sha256)
+      throw std::runtime_error("'" + file.string() + "' is in the library already, as number " +
+                               std::to_string(other.number));
+  Sample sample{.barcode = {}, .name = thread.name, .lot = {}, .material = {}, .colour = {}, .note = {}};
+  std::string session_utc;
+  if (from_session) {
+    const SessionFile session = read_session_file(session_or_thread);
+    session_utc = session.utc;
+    if (session.sample) sample = *session.sample;
+    if (sample.name.empty()) sample.name = session.spool.name;
+    if (sample.material.empty()) sample.material = session.spool.material;
+  }
+  int number = 0;
+  index_->execute("BEGIN IMMEDIATE");
+  try {
+    const std::string spool = index_->id_of(
+        "INSERT OR IGNORE INTO spools (barcode, name, lot, material, colour, note) VALUES (?, ?, ?, ?, ?, ?)",
+        "SELECT id FROM spools WHERE barcode = ? AND name = ? AND lot = ?",
+        {sample.barcode, sample.name, sample.lot, sample.material, sample.colour, sample.note},
+        {sample.barcode, sample.name, sample.lot});
+    std::string session;
+    if (from_session) {
+      const std::string place = fs::absolute(session_or_thread).lexically_normal().string();
+      session = index_->id_of("INSERT OR IGNORE INTO sessions (spool, folder, utc) VALUES (?, ?, ?)",
+                              "SELECT id FROM sessions WHERE folder = ? AND utc = ?", {spool, place, session_utc},
+                              {place, session_utc});
+    }
+    const std::string rmse =
+        thread.fit.contains("relative_rmse") ? nlohmann::json(thread.fit.at("relative_rmse")).dump() : "";
+    index_->run(
+        "INSERT INTO threads (spool, session, name, sha256, added_utc, diameter_mm, relative_rmse) VALUES "
+        "(?, nullif(?, ''), ?, ?, ?, CAST(? AS REAL), CAST(nullif(?, '') AS REAL))",
+        {spool, session, thread.name, sha256, utc, nlohmann::json(thread.diameter_mm).dump(), rmse});
+    index_->run("SELECT id FROM threads WHERE sha256 = ?", {sha256},
+                [&](sqlite3_stmt* row) { number = sqlite3_column_int(row, 0); });
+    FileSystem disk;
+    store_file(disk, thread_file(number), std::as_bytes(std::span(content)));
+    index_->execute("COMMIT");
+  } catch (...) {
+    index_->run("ROLLBACK", {});
+    throw;
+  }
+  return show(number);
+}
+
+std::vector<LibraryThread> Library::list(const std::string& words) const {
+  std::vector<LibraryThread> threads;
+  index_->run(
+      std::string(kSelect) +
+          "WHERE instr(lower(barcode || ' ' || spools.name || ' ' || lot || ' ' || material || ' ' || colour || "
+          "' ' || note || ' ' || threads.name), lower(?)) > 0 ORDER BY threads.id",
+      {words}, [&](sqlite3_stmt* row) { threads.push_back(thread_of(row, Index::text)); });
+  return threads;
+}
+
+LibraryThread Library::show(int number) const {
+  std::optional<LibraryThread> thread;
+  index_->run(std::string(kSelect) + "WHERE threads.id = CAST(? AS INTEGER)", {std::to_string(number)},
+              [&](sqlite3_stmt* row) { thread = thread_of(row, Index::text); });
+  if (!thread)
+    throw std::runtime_error("the library '" + folder_.string() + "' has no thread number " + std::to_string(number) +
+                             "; see threadstation library list");
+  return *thread;
+}
+
+void Library::export_thread(int number, const fs::path& out) const {
+  const LibraryThread thread = show(number);
+  const std::string content = text_of_file(thread_file(number));
+  if (sha256_hex(content) != thread.sha256)
+    throw std::runtime_error("'" + thread_file(number).string() +
+                             "' is not the file that was added; restore it from a copy, or add its session again");
+  make_new_folder(out);
+  FileSystem disk;
+  store_file(disk, out / "thread.json", std::as_bytes(std::span(content)));
+  nlohmann::json sample = to_json(thread.sample);
+  sample["session_utc"] = thread.session_utc;
+  write_json_file(out / "sample.json", sample);
+  write_manifest(out, disk);
+}
+
+}  // namespace station

@@ -1,0 +1,54 @@
+// The lab's collection of digitized threads: a folder with an index of spools, sessions and threads (SQLite).
+//
+//   <library>/index.sqlite   tables spools, sessions, threads; can be made again from the sessions
+//   <library>/threads/<number>.json   thread files as they were added
+//
+// Errors: std::runtime_error, one line: the library, what was found and what to do.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/documents/sample.h"
+
+namespace station {
+
+struct LibraryThread {
+  int number = 0;  // in the library, from 1
+  Sample sample;
+  std::string thread_name, added_utc, sha256;  // the thread file's
+  std::string session, session_utc;            // where it was captured; empty for a lone thread file
+  std::optional<double> relative_rmse;         // the fit's
+  double diameter_mm = 0;
+};
+
+class Library {
+ public:
+  // Opens the library; makes the folder and the index when they are missing and `make` allows it.
+  Library(const std::filesystem::path& folder, bool make);
+  ~Library();
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+
+  // Adds a session with result/thread.json, or a thread file, and returns its entry. `utc` is the time now. Errors: as
+  // above, also for a thread file that the library has already.
+  LibraryThread add(const std::filesystem::path& session_or_thread, const std::string& utc);
+  // The threads in the order of their numbers; with `words`, only those that have this text in one of their texts, case
+  // ignored.
+  std::vector<LibraryThread> list(const std::string& words = {}) const;
+  LibraryThread show(int number) const;  // one entry
+  // Writes thread.json, sample.json and the hashes of both (manifest.json) into a new or empty folder. Errors: as
+  // above, also when the file in the library is not what was added.
+  void export_thread(int number, const std::filesystem::path& out) const;
+  std::filesystem::path thread_file(int number) const;  // path of a thread's file in the library
+
+ private:
+  class Index;
+  std::filesystem::path folder_;
+  std::unique_ptr<Index> index_;
+};
+
+}  // namespace station

@@ -1,0 +1,21 @@
+// The fit's part of a session report: parameters, lobe energies, photographs beside their fitted twins and residuals,
+// and the woven cloth.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "station/documents/views_file.h"
+
+namespace station {
+
+// The section on the thread as HTML; empty for a session without result/thread.json.
+std::string thread_section(const std::filesystem::path& session, const DevelopedViews& developed);
+// The section with the pictures of result/cloth as HTML; empty when there are none.
+std::string cloth_section(const std::filesystem::path& session, const DevelopedViews& developed);
+
+// The picture of the README: two photographs beside their fitted twins, and the cloth; empty without a thread and a
+// cloth.
+cv::Mat3b overview_picture(const std::filesystem::path& session, const DevelopedViews& developed);
+
+}  // namespace station

@@ -1,0 +1,214 @@
+#include "station/thread/validate/recover_thread.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <stdexcept>
+
+#include "inversion/fit/energy_bands.h"
+#include "inversion/fit/thread_unknowns.h"
+#include "inversion/view/agreement.h"
+#include "station/documents/rig_file.h"
+#include "station/documents/spool.h"
+#include "station/documents/thread_file.h"
+#include "station/output/interrupt.h"
+#include "station/thread/validate/seeds.h"
+#include "station/thread/validate/synthetic_views.h"
+
+namespace station {
+namespace {
+
+using inversion::View;
+
+constexpr double kLeastCosine = 0.65;  // inclinations that the 17 views show well
+constexpr int kLossPaths = 4096, kLossRepetitions = 4;
+constexpr const char* kStopped = "the recovery was interrupted; start it again";
+
+// One fit's value of every quantity, with its deviation under a covariance of the unknowns.
+struct Reading {
+  std::vector<double> values, sigmas;
+};
+
+Reading reading_of(const inversion::ViewFit& fit, const Eigen::MatrixXd& covariance) {
+  Reading reading;
+  for (int k = 0; k < inversion::kL0; ++k) {
+    reading.values.push_back(fit.unknowns[k]);
+    reading.sigmas.push_back(std::sqrt(covariance(k, k)));
+  }
+  for (const inversion::EnergyBand& band : inversion::energy_bands(fit, covariance))
+    if (band.cosine > kLeastCosine)
+      for (std::size_t p = 0; p < 3; ++p) {
+        reading.values.push_back(band.lambda[p]);
+        reading.sigmas.push_back(band.sigma[p]);
+      }
+  return reading;
+}
+
+std::vector<std::string> quantity_names() {
+  std::vector<std::string> names;
+  for (const char* group : {"sigma_a", "alpha", "beta"})
+    for (int i = 0; i < 3; ++i) names.push_back(std::string(group) + "[" + std::to_string(i) + "]");
+  for (int tenth = 1; tenth <= 10; ++tenth)
+    if (tenth / 10.0 > kLeastCosine)
+      for (int p = 0; p < 3; ++p) {
+        char name[32];
+        std::snprintf(name, sizeof name, "lambda_%d(%.1f)", p, tenth / 10.0);
+        names.emplace_back(name);
+      }
+  return names;
+}
+
+std::vector<View> with_noise(const std::vector<View>& exact, const rig::TrueSensor& sensor, std::uint64_t seed) {
+  std::vector<View> views = exact;
+  for (View& view : views) {
+    SensedPicture sensed = with_sensor_noise(view.image, view.mask, sensor, kPhotographLevel, ++seed);
+    view.image = sensed.radiance;
+    view.noise = sensed.noise;
+  }
+  return views;
+}
+
+nlohmann::json loss_json(const inversion::IndependentLoss& loss) {
+  return {{"mean", loss.mean}, {"standard_error", loss.standard_error}, {"without_noise", loss.without_noise}};
+}
+
+// The spool's views as the known thread gives them, without noise. `begun` is told the name of each.
+std::vector<View> photographs(const RecoverRequest& request, const RigFile& rig, const Spool& spool,
+                              const ThreadFile& thread, const std::function<void(const std::string&)>& begun) {
+  std::vector<View> exact = synthetic_views(rig, spool.wrapping, kPooledWidth_px, kPooledHeight_px);
+  for (View& view : exact) {
+    begun(view.id);
+    view.image =
+        inversion::fitted_view(spool.wrapping, view, thread.parameters, request.samples_per_pixel,
+                               request.fit.seed + kExactViewSeeds + static_cast<std::uint64_t>(&view - exact.data()),
+                               [](double) { return !interrupted(); });
+    if (interrupted()) throw std::runtime_error(kStopped);
+  }
+  return exact;
+}
+
+// The seen and the predicted deviation of each quantity over the draws of the noise, of which there are two or more.
+void add_spreads(const std::vector<Reading>& draws, std::vector<RecoveredQuantity>& quantities) {
+  const auto count = static_cast<double>(draws.size());
+  for (std::size_t i = 0; i < quantities.size(); ++i) {
+    RecoveredQuantity& of = quantities[i];
+    double spread2 = 0, predicted2 = 0;
+    for (const Reading& draw : draws) of.mean += draw.values[i] / count;
+    for (const Reading& draw : draws) {
+      spread2 += (draw.values[i] - of.mean) * (draw.values[i] - of.mean) / (count - 1);
+      predicted2 += draw.sigmas[i] * draw.sigmas[i] / count;
+    }
+    of.spread = std::sqrt(spread2);
+    of.predicted = std::sqrt(predicted2);
+  }
+}
+
+}  // namespace
+
+RecoveredThread recover_thread(const RecoverRequest& request) {
+  watch_interrupts();
+  const RigFile rig = read_rig(request.rig);
+  const Spool spool = read_spool(request.spool);
+  ThreadFile thread = read_thread(request.thread);
+  ProgressDisplay progress("recover", request.progress_style);
+  const int parts = 2 + request.draws;
+  const auto show = [&](int part, const std::string& what) { progress.show(part, parts, what); };
+  const std::vector<View> exact =
+      photographs(request, rig, spool, thread, [&](const std::string& view) { show(0, "photograph " + view); });
+  const rig::TrueSensor& sensor = rig.simulation->truth.sensor;
+  const auto draw_of = [&](std::uint64_t seed) { return with_noise(exact, sensor, 1000 * seed); };
+  const auto fit_draw = [&](int draw, inversion::FitOptions options, const std::vector<View>& views) {
+    options.progress = [&, draw](const std::string& what, double) {
+      show(1 + draw, (draw ? "draw " + std::to_string(draw) + ", " : "cold fit, ") + what);
+      return !interrupted();
+    };
+    return inversion::fit_views(spool.wrapping, views, options);
+  };
+
+  const auto started = std::chrono::steady_clock::now();
+  const std::vector<View> first_views = draw_of(request.fit.seed);
+  const inversion::ViewFit first = fit_draw(0, request.fit, first_views);
+  RecoveredThread result{.thread = thread.name,
+                         .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count(),
+                         .loss_of_truth = {},
+                         .loss_of_fit = {},
+                         .draws = request.draws,
+                         .quantities = {}};
+  inversion::ViewFit truth = first;
+  truth.unknowns = inversion::unknowns_of(thread.parameters);
+  const auto loss_of = [&](const inversion::ViewFit& fit) {
+    return inversion::independent_loss(spool.wrapping, first_views, fit, kLossPaths, kLossRepetitions,
+                                       request.fit.seed + kIndependentLossSeeds);
+  };
+  result.loss_of_truth = loss_of(truth);
+  result.loss_of_fit = loss_of(first);
+  const std::vector<std::string> names = quantity_names();
+  const Reading true_values = reading_of(truth, first.certainty.covariance),
+                found = reading_of(first, first.certainty.covariance);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    result.quantities.push_back(
+        {.name = names[i], .truth = true_values.values[i], .fitted = found.values[i], .sigma = found.sigmas[i]});
+
+  inversion::FitOptions again = request.fit;
+  again.start = first.thread();
+  again.other_starts.clear();
+  const std::vector<int>& paths = request.fit.paths_per_block;
+  again.paths_per_block.assign(paths.end() - static_cast<std::ptrdiff_t>(std::min<std::size_t>(2, paths.size())),
+                               paths.end());
+  std::vector<Reading> draws;
+  for (int draw = 1; draw <= request.draws; ++draw) {
+    again.seed = request.fit.seed + 100000 * static_cast<std::uint64_t>(draw);
+    const inversion::ViewFit fit = fit_draw(draw, again, draw_of(again.seed));
+    draws.push_back(reading_of(fit, fit.certainty.noise_covariance));
+  }
+  if (draws.size() > 1) add_spreads(draws, result.quantities);
+  progress.finish(std::to_string(1 + request.draws) + " fits");
+  return result;
+}
+
+std::string describe(const RecoveredThread& recovered) {
+  char line[160];
+  std::snprintf(line, sizeof line, "%s, 17 views, fitted from cold in %.1f s; then %d draws of the noise\n",
+                recovered.thread.c_str(), recovered.seconds, recovered.draws);
+  std::string text = line;
+  std::snprintf(
+      line, sizeof line, "loss on other paths: truth %.4g +- %.1g, fit %.4g +- %.1g; without their noise %.3g, %.3g\n",
+      recovered.loss_of_truth.mean, recovered.loss_of_truth.standard_error, recovered.loss_of_fit.mean,
+      recovered.loss_of_fit.standard_error, recovered.loss_of_truth.without_noise, recovered.loss_of_fit.without_noise);
+  text += line;
+  text += "quantity           truth   fitted     +-   error, %  in +-     mean   spread  predicted  predicted/spread\n";
+  for (const RecoveredQuantity& of : recovered.quantities) {
+    const double error = of.fitted - of.truth;
+    std::snprintf(line, sizeof line, "%-14s  %8.4f %8.4f %6.4f  %9.1f  %5.1f", of.name.c_str(), of.truth, of.fitted,
+                  of.sigma, 100 * error / of.truth, of.sigma > 0 ? error / of.sigma : 0.0);
+    text += line;
+    if (recovered.draws > 1) {
+      std::snprintf(line, sizeof line, " %8.4f  %7.5f    %7.5f  %16.2f", of.mean, of.spread, of.predicted,
+                    of.spread > 0 ? of.predicted / of.spread : 0.0);
+      text += line;
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+nlohmann::json to_json(const RecoveredThread& recovered) {
+  nlohmann::json quantities = nlohmann::json::array();
+  for (const RecoveredQuantity& of : recovered.quantities)
+    quantities.push_back({{"name", of.name},
+                          {"truth", of.truth},
+                          {"fitted", of.fitted},
+                          {"sigma", of.sigma},
+                          {"mean", of.mean},
+                          {"spread", of.spread},
+                          {"predicted", of.predicted}});
+  return {{"thread", recovered.thread},
+          {"seconds", recovered.seconds},
+          {"loss_of_truth", loss_json(recovered.loss_of_truth)},
+          {"loss_of_fit", loss_json(recovered.loss_of_fit)},
+          {"draws", recovered.draws},
+          {"quantities", quantities}};
+}
+
+}  // namespace station

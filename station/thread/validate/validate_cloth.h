@@ -1,0 +1,61 @@
+// Validation of cloth that is predicted from digitized threads [Xia 2025, section 6, figures 10 and 11], on synthetic
+// samples, where the truth is known.
+//
+//   spool     | simulated fibers, photographed in 17 views and fitted with the thread model and both baselines
+//   sample    | each weave in each warp colour, all with the same weft, on the black cylinder, lit from right and left
+//   reference | the same cloth, every yarn made of the fibers of its spool: a patch of fibers in two scales
+//   table     | CIEDE2000 of block averages, and place, width, height and hue of the highlight, all in one unit of
+//             | radiance: nothing is scaled to fit
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "inversion/fit/fit_views.h"
+#include "station/documents/spool.h"
+#include "station/output/compare/compare_pictures.h"
+#include "station/output/progress.h"
+
+namespace station {
+
+struct ValidateClothRequest {
+  std::filesystem::path rig, weft, out;  // weft and warps: spool files with simulated fibers
+  std::vector<std::filesystem::path> warps, drafts;
+  std::vector<inversion::ModelKind> models{inversion::ModelKind::thread, inversion::ModelKind::fiber,
+                                           inversion::ModelKind::yarn};
+  int samples_per_pixel = 64;   // in each of the two renderings of every picture
+  int photograph_samples = 96;  // in each of the two photographs of a spool's view
+  int width_px = 256, height_px = 192;
+  std::uint64_t seed = 1;
+  ProgressStyle progress_style = ProgressStyle::automatic;
+};
+
+struct PredictedSample {
+  std::string weave, warp, side;  // weave and warp: names of their files; side of the lamp: "right" or "left"
+  int block_px = 0;
+  double noise_delta_e = 0;  // difference of the reference's two renderings over the root of 2: its noise alone
+  struct OfModel {
+    inversion::ModelKind model;
+    Comparison comparison;
+  };
+  std::vector<OfModel> models;
+};
+
+// The patch with every yarn replaced by the fibers of its thread; `spools` is indexed by thread. Each yarn has a bundle
+// of its own, drawn as the spool's simulation draws bundles. Errors: std::runtime_error for a spool whose thread is not
+// as thick as the draft's yarns, and those of fiber_centres().
+renderer::YarnPatch with_fibers_of(const renderer::YarnPatch& patch, const std::vector<Spool>& spools);
+
+// Runs the validation. Pictures in OUT are used again when nothing that they depend on has changed, so that an
+// interrupted run goes on. Written are OUT/spools/<spool>/..., OUT/samples/<weave>-<warp>-<side>-<what>.exr, a sheet of
+// all samples (samples.png: a row each, reference and models beside each other) and validation.json. Errors:
+// std::runtime_error for files, for a rig without a simulation, and when a person has interrupted.
+std::vector<PredictedSample> validate_cloth(const ValidateClothRequest& request);
+
+std::string describe(const std::vector<PredictedSample>& samples);
+nlohmann::json to_json(const std::vector<PredictedSample>& samples);
+
+}  // namespace station

@@ -1,0 +1,88 @@
+#include "renderer/scene/garment.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/trace/cloth_shell.h"
+
+namespace renderer {
+namespace {
+
+using Eigen::Vector3d;
+
+// By how much the edges of the mesh are longer than in the pattern: mean of the square's root, and the largest.
+std::pair<double, double> stretch_of(const UvMesh& mesh) {
+  double sum2 = 0, most = 0;
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+      const double off = (mesh.vertices[a] - mesh.vertices[b]).norm() / (mesh.uv[a] - mesh.uv[b]).norm() - 1;
+      sum2 += off * off;
+      most = std::max(most, std::abs(off));
+    }
+  return {std::sqrt(sum2 / (3.0 * static_cast<double>(mesh.triangles.size()))), most};
+}
+
+const GarmentShape kReady[] = {SkirtShape{}, PleatedShape{}, DrapeShape{}};
+
+// Made once.
+const UvMesh& ready_mesh(const GarmentShape& shape) {
+  static const UvMesh meshes[] = {garment_mesh(kReady[0]), garment_mesh(kReady[1]), garment_mesh(kReady[2])};
+  return meshes[shape.index()];
+}
+
+TEST(GarmentTest, HangingClothHardlyStretches) {
+  for (const GarmentShape& shape : kReady) {
+    const auto [typical, most] = stretch_of(ready_mesh(shape));
+    std::printf("garment %zu: edges off by %.4f, at most %.3f\n", shape.index(), typical, most);
+    // Shear lets diagonals of the drape give way where cloth of a square lies on a ball.
+    EXPECT_LT(typical, 0.08) << shape.index();
+  }
+}
+
+TEST(GarmentTest, TheReadyOnesAreSurfacesForCloth) {
+  for (const GarmentShape& shape : kReady) {
+    const UvMesh& mesh = ready_mesh(shape);
+    const ClothSurface surface = cloth_surface(mesh, {.uv_mm = 1}, Eigen::Isometry3d::Identity(), "garment");
+    EXPECT_NO_THROW(make_shell(surface, {-0.8, 0.8})) << shape.index();
+    double lowest = mesh.vertices.front().z();
+    for (const Vector3d& vertex : mesh.vertices) lowest = std::min(lowest, vertex.z());
+    EXPECT_NEAR(lowest, 0, 1e-9) << shape.index();
+  }
+}
+
+TEST(GarmentTest, ASkirtShowsItsFaceOutside) {
+  const UvMesh& mesh = ready_mesh(SkirtShape{});
+  const ClothSurface surface = cloth_surface(mesh, {.uv_mm = 1}, Eigen::Isometry3d::Identity(), "skirt");
+  double outwards = 0;
+  for (std::size_t i = 0; i < surface.vertices.size(); ++i)
+    outwards += Vector3d(surface.vertices[i].x(), surface.vertices[i].y(), 0).normalized().dot(surface.normals[i]);
+  EXPECT_GT(outwards / static_cast<double>(surface.vertices.size()), 0.3);
+}
+
+TEST(GarmentTest, TheDrapeLiesOnTheBallAndHangsBelowIt) {
+  const DrapeShape shape;
+  const UvMesh& mesh = ready_mesh(shape);
+  double top = 0;
+  for (const Vector3d& vertex : mesh.vertices) top = std::max(top, vertex.z());
+  const Vector3d ball(0, 0, top - shape.ball_radius_mm);
+  double nearest = 1e9;
+  int lying = 0;
+  for (const Vector3d& vertex : mesh.vertices) {
+    const double distance = (vertex - ball).norm();
+    nearest = std::min(nearest, distance);
+    lying += distance < 1.02 * shape.ball_radius_mm;
+  }
+  EXPECT_GT(nearest, 0.98 * shape.ball_radius_mm);
+  EXPECT_GT(lying, 1000);
+  EXPECT_GT(top, 1.5 * shape.ball_radius_mm);
+}
+
+TEST(GarmentTest, TheSameShapeGivesTheSameMesh) {
+  for (const GarmentShape& shape : kReady) EXPECT_EQ(garment_mesh(shape).vertices, ready_mesh(shape).vertices);
+}
+
+}  // namespace
+}  // namespace renderer

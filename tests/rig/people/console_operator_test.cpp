@@ -1,0 +1,60 @@
+#include "rig/people/console_operator.h"
+
+#include <gtest/gtest.h>
+
+#include "rig/people/practice_operator.h"
+#include "rig/simulated/simulated_bench.h"
+#include "tests/rig/people/terminal.h"
+
+namespace {
+
+const rig::Arrangement kFront{.lamp = rig::Lamp::front};
+const rig::Arrangement kBack{.lamp = rig::Lamp::back};
+
+}  // namespace
+
+TEST(ConsoleOperator, SaysEverythingFirstAndThenTheDifferences) {
+  rig_test::Terminal terminal("\n\n");
+  const auto person = rig::make_console_operator(*terminal.person);
+  person->arrange(kFront);
+  EXPECT_TRUE(terminal.out.str().starts_with(rig::full_instruction(kFront)));
+  terminal.out.str("");
+  person->arrange(kBack);
+  EXPECT_TRUE(terminal.out.str().starts_with("Move the flashlight behind the platform.\n"));
+}
+
+TEST(ConsoleOperator, AsksNothingWhenNothingIsToBeDone) {
+  rig_test::Terminal terminal("\n");
+  const auto person = rig::make_console_operator(*terminal.person);
+  person->arrange(kFront);
+  terminal.out.str("");
+  EXPECT_NO_THROW(person->arrange(kFront));
+  EXPECT_EQ(terminal.out.str(), "");
+}
+
+TEST(ConsoleOperator, ThrowsWhenThePersonDeclinesAndSaysEverythingTheNextTime) {
+  rig_test::Terminal terminal("\nq\n\n");
+  const auto person = rig::make_console_operator(*terminal.person);
+  person->arrange(kFront);
+  EXPECT_THROW(person->arrange(kBack), std::runtime_error);
+  terminal.out.str("");
+  person->arrange(kBack);
+  EXPECT_TRUE(terminal.out.str().starts_with(rig::full_instruction(kBack)));
+}
+
+TEST(PracticeOperator, AsksAndThenTheSimulatedHandDoesIt) {
+  rig::SimulatedBench bench({}, [](const rig::BenchState&) { return cv::Mat3f(); });
+  rig_test::Terminal terminal("\nq\n");
+  const auto person =
+      rig::make_practice_operator(rig::make_console_operator(*terminal.person), rig::make_simulated_operator(bench));
+  person->arrange(kFront);
+  EXPECT_TRUE(terminal.out.str().starts_with(rig::full_instruction(kFront)));
+  EXPECT_EQ(bench.state().arrangement.lamp, rig::Lamp::front);
+  EXPECT_THROW(person->arrange(kBack), std::runtime_error);
+  EXPECT_EQ(bench.state().arrangement.lamp, rig::Lamp::front) << "who declines has changed nothing";
+}
+
+TEST(ConsoleOperator, ThrowsWhenNobodyIsThere) {
+  rig_test::Terminal terminal("");
+  EXPECT_THROW(rig::make_console_operator(*terminal.person)->arrange(kFront), std::runtime_error);
+}

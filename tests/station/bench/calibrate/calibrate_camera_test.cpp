@@ -1,0 +1,136 @@
+// Lens calibration from existing pictures, as a person types it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "station/documents/lens_file.h"
+#include "tests/calibration/geometry/synthetic_views.h"
+#include "tests/places.h"
+#include "tests/station/commands/program.h"
+
+namespace station_test {
+namespace {
+
+using calibration::synthetic::narrow_lens;
+constexpr const char* kPhotographs = "/usr/share/doc/opencv-doc/examples/data/";  // Debian's opencv-doc
+
+std::string board(const std::string& name) {
+  return std::string(FIXTURES_DIR) + "/boards/" + name + ".json";
+}
+
+ProgramResult calibrate(const std::filesystem::path& images, const std::string& board_file,
+                        const std::filesystem::path& out, std::vector<std::string> more = {}) {
+  std::vector<std::string> arguments{"calibrate", "camera", "--images", images, "--board", board_file, "--out", out};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return run_threadstation(arguments);
+}
+
+void expect_refused(const ProgramResult& result, const std::string& must_name) {
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.error.find(must_name), std::string::npos) << result.error;
+  EXPECT_EQ(result.error_lines(), 1) << result.error;
+}
+
+// Pictures of the fixture's tag board as a camera would store them: 8 bits with a display curve.
+class TagPictures : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder = std::make_unique<TemporaryFolder>();
+    std::filesystem::create_directory(*folder / "pictures");
+    std::filesystem::create_directory(*folder / "mirrored");
+    std::mt19937 random(31);
+    int number = 10;
+    for (const auto& pose : calibration::synthetic::handheld_poses(10, random)) {
+      const cv::Mat1f linear = calibration::synthetic::picture(narrow_lens(), calibration::synthetic::board(), pose, 3);
+      cv::Mat1b stored(linear.size());
+      std::transform(linear.begin(), linear.end(), stored.begin(), [](float v) {
+        const float display = v <= 0.0031308F ? 12.92F * v : 1.055F * std::pow(v, 1.F / 2.4F) - 0.055F;
+        return cv::saturate_cast<uchar>(255.F * display);
+      });
+      const std::string name = std::to_string(number++) + ".png";
+      cv::imwrite(*folder / ("pictures/" + name), stored);
+      cv::Mat1b mirrored;
+      cv::flip(stored, mirrored, 1);
+      cv::imwrite(*folder / ("mirrored/" + name), mirrored);
+    }
+  }
+  static void TearDownTestSuite() { folder.reset(); }
+
+  static std::unique_ptr<TemporaryFolder> folder;
+};
+std::unique_ptr<TemporaryFolder> TagPictures::folder;
+
+TEST_F(TagPictures, GiveTheLensThatTheyWereDrawnWith) {
+  const auto out = *folder / "lens.json";
+  const ProgramResult result =
+      calibrate(*folder / "pictures", board("apriltag_3x4"), out, {"--quiet", "--tape-mm", "600"});
+  ASSERT_EQ(result.status, 0) << result.error;
+  const station::LensFile lens = station::parse_lens_file(station::read_json_file(out), out);
+  EXPECT_EQ(lens.pictures.size(), 10U);
+  EXPECT_NEAR(lens.fit.lens.fx_px, narrow_lens().fx_px, 5.0 * std::sqrt(lens.fit.covariance(0, 0)));
+  EXPECT_LT(lens.fit.rms_px, 0.1);  // rendered without noise: what is left is 8 bits and 9 rays per pixel
+  EXPECT_TRUE(std::filesystem::exists(*folder / "lens.cameramodel"));
+}
+
+TEST_F(TagPictures, ALensFileKeepsEveryDigitOfCornersAndCovariance) {
+  const auto out = *folder / "again.json";
+  ASSERT_EQ(calibrate(*folder / "pictures", board("apriltag_3x4"), out, {"--quiet"}).status, 0);
+  const nlohmann::json document = station::read_json_file(out);
+  EXPECT_EQ(station::to_json(station::parse_lens_file(document, "lens")), document);
+}
+
+TEST_F(TagPictures, ThatAreMirroredAreRefusedAsSuch) {
+  expect_refused(calibrate(*folder / "mirrored", board("apriltag_3x4"), *folder / "m.json", {"--quiet"}), "mirrored");
+}
+
+TEST_F(TagPictures, AgainstATapeMeasureShowSizesThatAreWrongByTen) {
+  nlohmann::json ten = station::read_json_file(board("apriltag_3x4"));
+  ten["tag_mm"] = 200;
+  ten["pitch_mm"] = 300;
+  station::write_json_file(*folder / "ten.json", ten);
+  expect_refused(
+      calibrate(*folder / "pictures", *folder / "ten.json", *folder / "t.json", {"--quiet", "--tape-mm", "600"}),
+      "tape measure");
+}
+
+TEST_F(TagPictures, OfAnotherSizeAreNamed) {
+  std::filesystem::create_directory(*folder / "mixed");
+  cv::imwrite(*folder / "mixed/a.png", cv::Mat1b(40, 60, uchar{200}));
+  cv::imwrite(*folder / "mixed/b.png", cv::Mat1b(40, 64, uchar{200}));
+  expect_refused(calibrate(*folder / "mixed", board("apriltag_3x4"), *folder / "x.json", {"--quiet"}), "b.png");
+}
+
+TEST(CalibrateCamera, PhotographsOfDebiansOpencvDocGiveTheLensThatMrcalsOwnToolGives) {
+  ASSERT_TRUE(std::filesystem::exists(kPhotographs)) << "install opencv-doc, as station/packages.txt says";
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "left");
+  for (const auto& entry : std::filesystem::directory_iterator(kPhotographs))
+    if (const std::string name = entry.path().filename().string(); name.size() == 10 && name.starts_with("left"))
+      std::filesystem::copy(entry.path(), folder / "left");
+  const ProgramResult result = calibrate(folder / "left", board("chessboard_6x9"), folder / "lens.json", {"--json"});
+  ASSERT_EQ(result.status, 0) << result.error;
+  const auto lens = nlohmann::json::parse(result.out)["lens"];
+  EXPECT_NEAR(lens["focal_length_px"][0].get<double>(), 533.16, 0.2);
+  EXPECT_NEAR(lens["focal_length_px"][1].get<double>(), 533.34, 0.2);
+}
+
+TEST(CalibrateCamera, WhatCannotBeSolvedGetsOneLine) {
+  const TemporaryFolder folder;
+  const auto out = folder / "lens.json";
+  expect_refused(calibrate(folder / "nowhere", board("apriltag_3x4"), out, {"--quiet"}), "--images");
+  std::filesystem::create_directory(folder / "empty");
+  expect_refused(calibrate(folder / "empty", board("apriltag_3x4"), out, {"--quiet"}), "no pictures");
+  station::write_text_file(folder / "empty/broken.jpg", "not a picture");
+  expect_refused(calibrate(folder / "empty", board("apriltag_3x4"), out, {"--quiet"}), "broken.jpg");
+  std::filesystem::remove(folder / "empty/broken.jpg");
+  cv::imwrite(folder / "empty/grey.png", cv::Mat1b(200, 300, uchar{128}));
+  expect_refused(calibrate(folder / "empty", board("apriltag_3x4"), out, {"--quiet"}), "shows a tag");
+  expect_refused(calibrate(folder / "empty", board("chessboard_6x9"), out, {"--quiet"}), "6 x 9");
+  EXPECT_EQ(run_threadstation({"calibrate", "camera", "--images", folder / "empty"}).status, 2);
+  EXPECT_EQ(run_threadstation({"calibrate", "--rig", folder / "rig.json"}).status, 2);
+}
+
+}  // namespace
+}  // namespace station_test

@@ -1,0 +1,104 @@
+// The target command, as a person types it: what is printed is what the geometry says.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+
+#include "station/bench/print_targets.h"
+#include "station/documents/board_file.h"
+#include "tests/places.h"
+#include "tests/station/commands/program.h"
+
+namespace station_test {
+namespace {
+
+using nlohmann::json;
+
+std::string fixture_rig() {
+  return std::string(FIXTURES_DIR) + "/rigs/simulated.json";
+}
+
+// Every tag of the page is found where the sheet says, at 300 dots per inch.
+void expect_to_scale(const station::TargetSheet& sheet, station::Paper paper, const std::filesystem::path& file) {
+  const cv::Mat1b page = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
+  ASSERT_FALSE(page.empty()) << file;
+  constexpr double kPixelsPerMm = 300.0 / 25.4;
+  cv::Mat1f grey;
+  page.convertTo(grey, CV_32F, 1.0 / 255.0);
+  const calibration::TagObservation seen = calibration::detect_tags(grey);
+  const Eigen::Vector2d origin = station::origin_on_page_mm(sheet, paper);
+  ASSERT_EQ(seen.size(), sheet.tags.size()) << file;
+  for (const calibration::TagDetection& found : seen) {
+    const auto tag =
+        std::find_if(sheet.tags.begin(), sheet.tags.end(), [&](const auto& t) { return t.id == found.id; });
+    ASSERT_NE(tag, sheet.tags.end()) << found.id;
+    const auto corners = calibration::corners_in_object(*tag);
+    for (std::size_t c = 0; c < 4; ++c) {
+      const Eigen::Vector2d on_page(origin.x() + corners[c].x(), origin.y() - corners[c].y());
+      const Eigen::Vector2d pixel = on_page * kPixelsPerMm - Eigen::Vector2d::Constant(0.5);
+      // edges of the picture lie half a pixel before its first pixel's centre; 0.2 px are 0.02 mm
+      EXPECT_LT((found.corners_px[c] - pixel).norm(), 0.2) << file << " tag " << found.id;
+    }
+  }
+}
+
+TEST(Target, EveryTagIsDrawnToScaleOnBothPapers) {
+  const TemporaryFolder folder;
+  for (const auto& [paper, name] : {std::pair{station::Paper::a4, "a4"}, {station::Paper::letter, "letter"}}) {
+    const ProgramResult result = run_threadstation({"target", "--out", folder / name, "--paper", name});
+    ASSERT_EQ(result.status, 0) << result.error;
+    const std::vector<station::TargetSheet> sheets = station::target_sheets(station::read_rig(fixture_rig()));
+    EXPECT_EQ(sheets.size(), 6U);
+    for (const station::TargetSheet& sheet : sheets) {
+      expect_to_scale(sheet, paper, folder.path() / name / (sheet.file + ".png"));
+      std::ifstream pdf(folder.path() / name / (sheet.file + ".pdf"));
+      std::string start(5, ' ');
+      pdf.read(start.data(), 5);
+      EXPECT_EQ(start, "%PDF-");
+    }
+  }
+}
+
+TEST(Target, TheGeometryFileIsTheBoardFileOfTheRigsBoard) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run_threadstation({"target", "--out", folder.path(), "--rig", fixture_rig()}).status, 0);
+  const station::BoardFile board = station::read_board(folder / "board.json");
+  const auto& tags = std::get<calibration::TagLayout>(board.pattern).tags;
+  const auto expected = station::read_rig(fixture_rig()).board.tags;
+  ASSERT_EQ(tags.size(), expected.size());
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    EXPECT_EQ(tags[i].id, expected[i].id);
+    EXPECT_TRUE(tags[i].object_from_tag.isApprox(expected[i].object_from_tag));
+  }
+}
+
+// A rig whose prints came out two percent large is drawn as it was, not two percent larger once more.
+TEST(Target, AMeasuredControlBarDoesNotChangeWhatIsDrawn) {
+  json rig = station::read_json_file(fixture_rig());
+  rig["control_bar_mm"] = 102;
+  const auto measured = station::target_sheets(station::parse_rig(rig, "r"));
+  const auto drawn = station::target_sheets(station::read_rig(fixture_rig()));
+  for (std::size_t s = 0; s < drawn.size(); ++s)
+    for (std::size_t t = 0; t < drawn[s].tags.size(); ++t) {
+      EXPECT_NEAR(measured[s].tags[t].size_mm, drawn[s].tags[t].size_mm, 1e-9);
+      EXPECT_TRUE(measured[s].tags[t].object_from_tag.isApprox(drawn[s].tags[t].object_from_tag));
+    }
+  EXPECT_NEAR(station::parse_rig(rig, "r").board.tags[0].size_mm, 20.4, 1e-9);
+}
+
+TEST(Target, ATargetThatDoesNotFitOnThePaperIsRefusedInOneLineAndNothingIsWritten) {
+  const TemporaryFolder folder;
+  json rig = station::read_json_file(fixture_rig());
+  rig["board"]["tag_mm"] = 50;
+  rig["board"]["pitch_mm"] = 75;
+  station::write_json_file(folder / "rig.json", rig);
+  const ProgramResult result = run_threadstation({"target", "--out", folder / "targets", "--rig", folder / "rig.json"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(result.error_lines(), 1) << result.error;
+  EXPECT_NE(result.error.find("Board"), std::string::npos) << result.error;
+  EXPECT_FALSE(std::filesystem::exists(folder / "targets"));
+}
+
+}  // namespace
+}  // namespace station_test

@@ -1,0 +1,120 @@
+// Cloth on the black cylinder: photographed on the recorded session's bench, developed, predicted and compared.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "renderer/picture/image_file.h"
+#include "station/cloth/predict_fabric.h"
+#include "station/documents/reader.h"
+#include "station/documents/views_file.h"
+#include "station/output/compare/compare_pictures.h"
+#include "station/session/capture_session.h"
+#include "station/session/develop/develop_session.h"
+#include "station/session/record/verify.h"
+#include "station/thread/invert/invert_session.h"
+#include "tests/places.h"
+#include "tests/station/session/recorded_bench.h"
+
+namespace station {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+std::filesystem::path fabric_file() {
+  return std::filesystem::path(FIXTURES_DIR) / "fabrics" / "satin_blue_gold.json";
+}
+
+struct FabricSession : testing::Test {
+  static void SetUpTestSuite() {
+    folder = new TemporaryFolder;
+    json rig = read_json_file(recorded_session() / "session.json").at("rig");
+    rig["simulation"]["samples_per_pixel"] = 96;  // the mosaic has a quarter of them in red and in blue
+    // The same bench without its wires.
+    rig["camera"] = rig["turntable"] = "simulated";
+    for (const char* wire : {"camera_connection", "turntable_setup"}) rig.erase(wire);
+    write_json_file(*folder / "rig.json", rig);
+    capture_session({.session = session(),
+                     .new_session = NewSession{.rig = *folder / "rig.json",
+                                               .calibration = recorded_session() / "calibration",
+                                               .spool = fabric_file(),
+                                               .accept_calibration = true},
+                     .progress_style = ProgressStyle::quiet});
+    develop_session(session(), ProgressStyle::quiet);
+    predicted = predict_fabric({.session = session(), .samples_per_pixel = 64, .progress_style = ProgressStyle::quiet});
+  }
+  static void TearDownTestSuite() { delete folder; }
+  static std::filesystem::path session() { return *folder / "cloth"; }
+
+  static inline TemporaryFolder* folder = nullptr;
+  static inline std::vector<PredictedView> predicted;
+};
+
+TEST_F(FabricSession, IsASessionOfTwoViewsLitFromRightAndLeftAndHasAllThatPredictsIt) {
+  const VerifyReport report = verify_session(session());
+  EXPECT_TRUE(report.sound());
+  EXPECT_EQ(report.views, 2U);
+  const auto pictures = pictures_of(session());
+  EXPECT_EQ(pictures.at("fabric-right-1").lamp, rig::Lamp::front);
+  EXPECT_EQ(pictures.at("fabric-left-1").lamp, rig::Lamp::front_left);
+  const json spool = read_json_file(session() / "session.json").at("spool");
+  EXPECT_TRUE(spool.at("weave").at("draft").is_object()) << "no other file is needed";
+  EXPECT_TRUE(spool.at("weave").at("threads").at(1).is_object());
+}
+
+// Of 64 samples a pixel: what the photograph differs by beyond it is not the renderings' noise.
+TEST_F(FabricSession, TwoPredictionsDifferByLittle) {
+  DevelopedViews developed = read_views(session());
+  read_view_pictures(session(), developed);
+  std::vector<cv::Mat3f> first;
+  for (const PredictedView& view : predicted) first.push_back(renderer::read_exr(view.prediction));
+  const std::vector<PredictedView> again = predict_fabric(
+      {.session = session(), .samples_per_pixel = 64, .seed = 77, .progress_style = ProgressStyle::quiet});
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    const CompareOptions options{
+        .fit_scale = true, .block_px = again[i].block_px, .linear_srgb_from_camera = developed.linear_srgb_from_camera};
+    const Comparison noise =
+        compare_pictures(first[i], renderer::read_exr(again[i].prediction), developed.views[i].view.mask, options);
+    EXPECT_LT(noise.mean_delta_e, 1) << again[i].view;
+    EXPECT_NEAR(noise.scale, 1, 0.02) << again[i].view;
+  }
+}
+
+// Light, shape and highlight are the photograph's. The colour of blocks is 2.4 (right) and 2.9 (left) CIEDE2000 off, of
+// which 0.6 is the renderings' noise; what the rest is has not been found (yarns are near one pixel wide on this
+// sensor, the cylinder stands by hand, the lamp on the left by tape). Another cloth is several times as far off.
+TEST_F(FabricSession, LooksAsItsThreadsAndDraftPredictAndNotAsAnotherCloth) {
+  ASSERT_EQ(predicted.size(), 2U);
+  json other = read_spool_document(fabric_file());
+  std::swap(other["weave"]["threads"][0], other["weave"]["threads"][1]);
+  write_json_file(*folder / "other.json", other);
+  const std::vector<PredictedView> others = predict_fabric({.session = session(),
+                                                            .fabric = *folder / "other.json",
+                                                            .samples_per_pixel = 16,
+                                                            .progress_style = ProgressStyle::quiet});
+  for (std::size_t i = 0; i < predicted.size(); ++i) {
+    const PredictedView& view = predicted[i];
+    std::printf("%s: CIEDE2000 %.2f, scale %.3f; of another cloth %.2f\n", view.view.c_str(),
+                view.comparison.mean_delta_e, view.comparison.scale, others[i].comparison.mean_delta_e);
+    EXPECT_LT(view.comparison.mean_delta_e, others[i].comparison.mean_delta_e / 3) << view.view;
+    EXPECT_GT(view.comparison.profile_correlation, 0.99) << view.view;
+    EXPECT_NEAR(view.comparison.scale, 1, 0.1) << view.view << ": the lamp on the left is placed by tape";
+  }
+  // The lamp's side is where the light is; the picture's left is the bench's -y.
+  EXPECT_GT(predicted[0].comparison.photograph.peak_px, predicted[1].comparison.photograph.peak_px + 20);
+}
+
+TEST_F(FabricSession, WhatCannotBePredictedOrInvertedIsOneLine) {
+  json bare = read_spool_document(fabric_file());
+  bare.erase("weave");
+  write_json_file(*folder / "bare.json", bare);
+  EXPECT_THAT(message_of([&] { predict_fabric({.session = session(), .fabric = *folder / "bare.json"}); }),
+              HasSubstr("woven of"));
+  EXPECT_THAT(message_of([&] { predict_fabric({.session = recorded_session()}); }), HasSubstr("wrapped thread"));
+  EXPECT_THAT(message_of([&] { invert_session({.session = session()}); }), HasSubstr("cloth on the cylinder"));
+  json few = read_spool_document(fabric_file());
+  few["weave"]["threads"].erase(1);
+  EXPECT_THAT(message_of([&] { parse_spool(few, "few.json"); }), HasSubstr("yarn of thread 1"));
+}
+
+}  // namespace
+}  // namespace station

@@ -1,0 +1,291 @@
+// The render command, as a person types it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "renderer/picture/image_file.h"
+#include "station/cloth/render/render_scene.h"
+#include "station/documents/disk/sha256.h"
+#include "station/documents/reader.h"
+#include "tests/places.h"
+#include "tests/station/commands/program.h"
+
+namespace station_test {
+namespace {
+
+using nlohmann::json;
+
+// A ready scene in few pixels, with its files named absolutely.
+json small_scene(const std::string& name) {
+  json scene = station::read_json_file(std::string(FIXTURES_DIR) + "/scenes/" + name + ".json");
+  for (json& thread : scene["threads"]) thread = std::string(FIXTURES_DIR) + "/scenes/" + thread.get<std::string>();
+  for (json& cloth : scene["cloths"])
+    cloth["draft"] = std::string(FIXTURES_DIR) + "/scenes/" + cloth["draft"].get<std::string>();
+  const int divisor = 12;
+  scene["camera"]["width_px"] = scene["camera"]["width_px"].get<int>() / divisor;
+  scene["camera"]["height_px"] = scene["camera"]["height_px"].get<int>() / divisor;
+  scene["camera"]["focal_length_px"] = scene["camera"]["focal_length_px"].get<double>() / divisor;
+  scene["samples_per_pixel"] = 2;
+  return scene;
+}
+
+class Render : public ::testing::Test {
+ protected:
+  std::string written(const std::string& name, const json& scene) {
+    station::write_json_file(folder_ / name, scene);
+    return folder_ / name;
+  }
+  ProgramResult render(const std::string& scene, const std::string& out, std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments{"render", scene, "--out", folder_ / out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_threadstation(arguments);
+  }
+  void expect_one_line(const ProgramResult& result, const std::string& must_name) {
+    EXPECT_EQ(result.status, 1) << result.error;
+    EXPECT_EQ(result.error_lines(), 1) << result.error;
+    EXPECT_NE(result.error.find(must_name), std::string::npos) << result.error;
+  }
+  // Interrupted as soon as the first line of progress is there; `out` then is what it said from then on.
+  ProgramResult interrupted_render(const std::string& scene, const std::string& out, const std::string& more = {}) {
+    const std::string pipe = folder_ / "pipe";
+    const std::string command =
+        std::string(THREADSTATION_PROGRAM) + " render " + scene + " --out " + (folder_ / out).string() + more;
+    return run_shell("mkfifo " + pipe + "; " + command + " 2> " + pipe +
+                     " & program=$!; { read first; kill -INT $program; cat; } < " + pipe +
+                     "; wait $program; status=$?; rm " + pipe + "; exit $status");
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(Render, WritesLinearAndDisplayPictures) {
+  const std::string scene = written("scene.json", small_scene("plain_swatch"));
+  const ProgramResult exr = render(scene, "a.exr", {"--json"});
+  ASSERT_EQ(exr.status, 0) << exr.error;
+  const json report = json::parse(exr.out);
+  EXPECT_EQ(report.at("samples"), 40 * 40 * 2);
+  EXPECT_GT(report.at("rays"), report.at("samples"));
+  renderer::ImageHeader header;
+  const cv::Mat3f linear = renderer::read_exr(folder_ / "a.exr", &header);
+  EXPECT_EQ(linear.size(), cv::Size(40, 40));
+  EXPECT_GT(cv::mean(linear)[0], 1.5 * cv::mean(linear)[2]) << "red and gold threads";
+  EXPECT_EQ(header.at("threadstation/scene"), "plain cloth, light from the front");
+  const ProgramResult png = render(scene, "a.png", {"--time", "--quiet", "--exposure", "3"});
+  ASSERT_EQ(png.status, 0) << png.error;
+  EXPECT_NE(png.out.find("samples/s"), std::string::npos) << png.out;
+  EXPECT_EQ(png.error, "");
+  EXPECT_GT(std::filesystem::file_size(folder_ / "a.png"), 100u);
+}
+
+TEST_F(Render, TheSameSeedGivesTheSamePictureOnAnyNumberOfThreads) {
+  const std::string scene = written("scene.json", small_scene("satin_cylinder"));
+  ASSERT_EQ(render(scene, "a.exr", {"--seed", "5", "--threads", "1"}).status, 0);
+  ASSERT_EQ(render(scene, "b.exr", {"--seed", "5", "--threads", "2"}).status, 0);
+  ASSERT_EQ(render(scene, "c.exr", {"--seed", "6"}).status, 0);
+  const cv::Mat3f a = renderer::read_exr(folder_ / "a.exr");
+  EXPECT_EQ(cv::norm(a, renderer::read_exr(folder_ / "b.exr"), cv::NORM_INF), 0);
+  EXPECT_GT(cv::norm(a, renderer::read_exr(folder_ / "c.exr"), cv::NORM_INF), 0);
+}
+
+TEST_F(Render, BadFilesGiveOneClearLine) {
+  const json good = small_scene("plain_swatch");
+  expect_one_line(render(folder_ / "none.json", "a.exr"), "no such file");
+  expect_one_line(render(written("scene.json", good), "a.jpg"), "expected .exr");
+  expect_one_line(render(written("scene.json", good), "no/such/a.exr"), "there is no folder");
+  json bad = good;
+  bad["cloths"][0]["weft_threads"] = {7};
+  expect_one_line(render(written("scene.json", bad), "a.exr"), "has a yarn of thread 7");
+  bad = good;
+  bad["threads"][1] = "thread.json";
+  written("thread.json", {{"format", "threadstation/thread"}, {"version", 1}, {"name", "empty"}});
+  expect_one_line(render(written("scene.json", bad), "a.exr"), "thread.json: key \"diameter_mm\": is missing");
+  bad = good;
+  bad["cloths"][0]["shape"] = {{"kind", "cylinder"}, {"radius_mm", 0.1}, {"height_mm", 5}};
+  expect_one_line(render(written("scene.json", bad), "a.exr"), "cannot hold one repeat");
+  bad["cloths"][0]["shape"]["radius_mm"] = 0.35;
+  expect_one_line(render(written("scene.json", bad), "a.exr"), "bends more sharply");
+  bad = good;
+  bad["cloths"][0]["shape"]["width_mm"] = bad["cloths"][0]["shape"]["height_mm"] = 1e4;
+  bad["cloths"][0]["method"] = "brute_force";
+  expect_one_line(render(written("scene.json", bad), "a.exr"), "use two_scale");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.exr"));
+  const ProgramResult wrong_use = render(written("scene.json", good), "a.exr", {"--spp", "0"});
+  EXPECT_EQ(wrong_use.status, 2) << wrong_use.error;
+}
+
+TEST_F(Render, CtrlCLeavesACheckpointFromWhichTheSameCommandEndsWithTheSamePicture) {
+  json scene = small_scene("plain_swatch");
+  scene["samples_per_pixel"] = 400;
+  const std::string file = written("scene.json", scene);
+  ASSERT_EQ(render(file, "whole.exr").status, 0);
+  const ProgramResult stopped = interrupted_render(file, "a.exr");
+  EXPECT_EQ(stopped.status, 1) << stopped.out << stopped.error;
+  EXPECT_NE(stopped.out.find("threadstation: rendering was stopped on request"), std::string::npos) << stopped.out;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.exr"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "a.exr.checkpoint"));
+  EXPECT_GT(std::filesystem::file_size(folder_ / "a.preview.png"), 100u);
+  const ProgramResult finished = render(file, "a.exr", {"--json"});
+  ASSERT_EQ(finished.status, 0) << finished.error;
+  const json report = json::parse(finished.out);
+  EXPECT_GT(report.at("samples_before"), 0);
+  EXPECT_EQ(report.at("samples").get<int>() + report.at("samples_before").get<int>(), 40 * 40 * 400);
+  EXPECT_EQ(station::sha256_of_file(folder_ / "a.exr"), station::sha256_of_file(folder_ / "whole.exr"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.exr.checkpoint"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.preview.png"));
+}
+
+TEST_F(Render, AnotherRenderingsCheckpointIsRefusedInOneLineUntilItIsThrownAway) {
+  json scene = small_scene("plain_swatch");
+  const json as_it_was = station::read_json_file(scene["threads"][0].get<std::string>());
+  written("thread.json", as_it_was);
+  scene["threads"][0] = "thread.json";
+  const std::string file = written("scene.json", scene);
+  ASSERT_EQ(interrupted_render(file, "a.exr", " --spp 4000").status, 1);
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& must_name) {
+    const ProgramResult result = render(file, "a.exr", more);
+    expect_one_line(result, must_name);
+    EXPECT_NE(result.error.find("a.exr.checkpoint"), std::string::npos) << result.error;
+    EXPECT_NE(result.error.find("--fresh"), std::string::npos) << result.error;
+  };
+  refused({}, "samples per pixel 4000, not 2");
+  refused({"--spp", "4000", "--seed", "9"}, "seed 1, not 9");
+  json thread = as_it_was;
+  thread["diameter_mm"] = 0.7;
+  written("thread.json", thread);
+  refused({"--spp", "4000"}, "another scene");
+  written("thread.json", as_it_was);
+  const std::filesystem::path checkpoint = folder_ / "a.exr.checkpoint";
+  const auto spoil = [&](std::streamoff at) {
+    std::fstream bytes(checkpoint, std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(at, std::ios::end);
+    bytes.put('?');
+  };
+  spoil(-5000);
+  refused({"--spp", "4000"}, "damaged");
+  std::filesystem::resize_file(checkpoint, 3000);
+  refused({"--spp", "4000"}, "cut short");
+  ASSERT_EQ(render(file, "a.exr", {"--fresh"}).status, 0);
+  ASSERT_EQ(render(file, "b.exr").status, 0);
+  EXPECT_EQ(station::sha256_of_file(folder_ / "a.exr"), station::sha256_of_file(folder_ / "b.exr"));
+  EXPECT_FALSE(std::filesystem::exists(checkpoint));
+}
+
+TEST_F(Render, CheckpointsNowAndThenDoNotChangeThePicture) {
+  json scene = small_scene("plain_swatch");
+  scene["samples_per_pixel"] = 32;
+  const std::string file = written("scene.json", scene);
+  ASSERT_EQ(render(file, "a.exr").status, 0);
+  station::render_scene(
+      {.scene = file, .out = folder_ / "b.exr", .checkpoint_every_s = 0.1, .progress = station::ProgressStyle::quiet});
+  EXPECT_EQ(station::sha256_of_file(folder_ / "a.exr"), station::sha256_of_file(folder_ / "b.exr"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "b.exr.checkpoint"));
+}
+
+TEST_F(Render, LayersAreNamedChannelsBesideTheSameColours) {
+  json scene = small_scene("satin_cylinder");
+  scene["samples_per_pixel"] = 4;
+  const std::string file = written("scene.json", scene);
+  ASSERT_EQ(render(file, "a.exr").status, 0);
+  ASSERT_EQ(render(file, "layers.exr", {"--layers"}).status, 0);
+  ASSERT_EQ(render(file, "half.exr", {"--layers", "--half"}).status, 0);
+  const cv::Mat3f colours = renderer::read_exr(folder_ / "a.exr");
+  EXPECT_EQ(cv::norm(colours, renderer::read_exr(folder_ / "layers.exr"), cv::NORM_INF), 0);
+  EXPECT_LT(cv::norm(colours, renderer::read_exr(folder_ / "half.exr")), 1e-3 * cv::norm(colours));
+  EXPECT_LT(std::filesystem::file_size(folder_ / "half.exr"), std::filesystem::file_size(folder_ / "layers.exr"));
+  std::map<std::string, renderer::ExrChannel> channels, halves;
+  for (const auto& channel : renderer::read_exr_channels(folder_ / "layers.exr")) channels[channel.name] = channel;
+  for (const auto& channel : renderer::read_exr_channels(folder_ / "half.exr")) halves[channel.name] = channel;
+  EXPECT_EQ(channels.size(), 13u);
+  // The cylinder's middle, 41 mm before its axis and 700 mm minus that from the eye, faces the camera.
+  const auto middle = [&](const std::string& name) { return channels.at(name).plane.at<float>(25, 16); };
+  EXPECT_NEAR(middle("depth.Z"), 665, 10);
+  EXPECT_GT(middle("normal.X"), 0.5f);
+  EXPECT_EQ(middle("cover.A"), 1);
+  EXPECT_GT(middle("albedo.B"), middle("albedo.R")) << "blue warp";
+  EXPECT_TRUE(halves.at("albedo.B").half && !halves.at("depth.Z").half);
+  EXPECT_EQ(cv::norm(halves.at("yarn.id").plane, channels.at("yarn.id").plane, cv::NORM_INF), 0);
+  std::set<int> threads, yarns;
+  for (const int id : cv::Mat1i(channels.at("thread.id").plane)) threads.insert(id);
+  for (const int id : cv::Mat1i(channels.at("yarn.id").plane)) yarns.insert(id);
+  EXPECT_EQ(threads, (std::set<int>{0, 1, 2})) << "the table, warp, weft";
+  EXPECT_GT(yarns.size(), 50u);
+  expect_one_line(render(file, "a.png", {"--layers"}), "--layers and --half are for EXR files");
+}
+
+TEST_F(Render, SeveralScenesGoIntoOneFolderAndWhatIsThereIsKept) {
+  json slow = small_scene("satin_swatch");
+  slow["samples_per_pixel"] = 400;
+  const std::string first = written("first.json", small_scene("plain_swatch")), second = written("second.json", slow),
+                    third = written("third.json", small_scene("twill_swatch"));
+  ASSERT_EQ(render(second, "alone.exr").status, 0);
+  ASSERT_EQ(render(first, "pictures", {"--quiet"}).status, 0) << "a name without an ending is a folder";
+  ASSERT_TRUE(std::filesystem::exists(folder_ / "pictures" / "first.png"));
+  const auto written_at = std::filesystem::last_write_time(folder_ / "pictures" / "first.exr");
+  const ProgramResult stopped = interrupted_render(first + " " + second + " " + third, "pictures");
+  EXPECT_EQ(stopped.status, 1);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "pictures" / "second.exr.checkpoint"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "pictures" / "third.exr"));
+  const ProgramResult finished = render(first, "pictures", {second, third, "--json"});
+  ASSERT_EQ(finished.status, 0) << finished.error;
+  const json reports = json::parse(finished.out);
+  ASSERT_EQ(reports.size(), 3u);
+  EXPECT_EQ(reports[0].at("kept"), true);
+  EXPECT_EQ(std::filesystem::last_write_time(folder_ / "pictures" / "first.exr"), written_at);
+  EXPECT_GT(reports[1].at("samples_before"), 0);
+  EXPECT_EQ(reports[2].at("samples_before"), 0);
+  EXPECT_EQ(station::sha256_of_file(folder_ / "pictures" / "second.exr"),
+            station::sha256_of_file(folder_ / "alone.exr"));
+  EXPECT_GT(std::filesystem::file_size(folder_ / "pictures" / "third.png"), 100u);
+  const ProgramResult other_seed = render(first, "pictures", {"--seed", "2", "--json"});
+  EXPECT_FALSE(json::parse(other_seed.out).contains("kept"));
+  expect_one_line(render(first, "pictures", {(folder_ / "pictures" / ".." / "first.json").string()}), "rename one");
+  expect_one_line(render(first, "pictures", {folder_ / "none.json"}), "no such file");
+  expect_one_line(render(first, "a.exr", {third}), "a.exr");
+}
+
+TEST_F(Render, ADraftThatCannotBeWovenIsRefusedBeforeTheFirstSceneIsRendered) {
+  json scene = small_scene("plain_swatch"), draft = station::read_json_file(scene["cloths"][0]["draft"]);
+  draft["plies"] = {{"count", 2}, {"radius_mm", 5}};
+  const std::string good = written("good.json", scene);
+  scene["cloths"][0]["draft"] = written("draft.json", draft);
+  expect_one_line(render(good, "pictures", {written("bad.json", scene)}), "thicker than its yarn");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "pictures"));
+}
+
+TEST_F(Render, ASquareMetreOfSilkTakesLittleMemory) {
+  json scene = small_scene("square_metre/scene");
+  for (json& thread : scene["threads"])
+    thread = std::string(FIXTURES_DIR) + "/scenes/square_metre/../../threads/" +
+             std::filesystem::path(thread.get<std::string>()).filename().string();
+  scene["cloths"][0]["draft"] = std::string(FIXTURES_DIR) + "/scenes/square_metre/draft.json";
+  const ProgramResult result = render(written("scene.json", scene), "a.exr", {"--json"});
+  ASSERT_EQ(result.status, 0) << result.error;
+  const json memory = json::parse(result.out).at("memory");
+  EXPECT_LE(memory.at("control_points_bytes"), 10000);
+  EXPECT_LE(memory.at("scene_bytes"), 50e6);
+  EXPECT_GT(memory.at("trees_bytes"), 1e5);
+  EXPECT_GT(memory.at("surfaces_bytes"), 1e6);
+  // As many repeats as square millimetres.
+  EXPECT_NEAR(memory.at("explicit_yarns_bytes").get<double>() / memory.at("control_points_bytes").get<double>(), 1e6,
+              0.02e6);
+}
+
+TEST_F(Render, ANoiseToReachPutsSamplesWhereTheyAreNeeded) {
+  const std::string file = written("scene.json", small_scene("satin_cylinder"));
+  const ProgramResult result = render(file, "a.exr", {"--noise", "20%", "--spp", "2000", "--json"});
+  ASSERT_EQ(result.status, 0) << result.error;
+  const json report = json::parse(result.out);
+  EXPECT_LT(report.at("noise"), 0.2);
+  EXPECT_EQ(report.at("noisy"), 0);
+  const double samples = report.at("samples").get<double>() / (33 * 50);
+  EXPECT_GE(samples, 64);
+  EXPECT_LT(samples, 1000);
+  for (const char* wrong : {"0", "1 mm", "200%", "noise"})
+    EXPECT_EQ(render(file, "b.exr", {"--noise", wrong}).status, 2) << wrong;
+}
+
+}  // namespace
+}  // namespace station_test

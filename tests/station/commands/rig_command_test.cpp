@@ -1,0 +1,112 @@
+// The commands about a rig's devices, run as a person runs them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "station/documents/reader.h"
+#include "tests/places.h"
+#include "tests/station/commands/program.h"
+
+namespace {
+
+using nlohmann::json;
+using station_test::ProgramResult;
+using station_test::run_threadstation;
+using testing::HasSubstr;
+
+std::string fixture(const std::string& name) {
+  return std::string(FIXTURES_DIR) + "/rigs/" + name + ".json";
+}
+
+void expect_refused(const ProgramResult& result, const std::string& words) {
+  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(result.error_lines(), 1) << result.error;
+  EXPECT_THAT(result.error, HasSubstr(words));
+}
+
+struct RigCommands : testing::Test {
+  std::string rig_file(const json& document) const {
+    station::write_json_file(folder / "rig.json", document);
+    return folder / "rig.json";
+  }
+  station_test::TemporaryFolder folder;
+};
+
+}  // namespace
+
+TEST_F(RigCommands, CheckEndsInATableForEverySimulatedRig) {
+  for (const char* name : {"simulated", "simulated_wire_grbl", "simulated_wire_zaber"}) {
+    const ProgramResult result = run_threadstation({"check", "--rig", fixture(name)});
+    EXPECT_EQ(result.status, 0) << result.error << result.out;
+    EXPECT_THAT(result.out, HasSubstr("  ok    moves are reached and read back"));
+    EXPECT_THAT(result.out, HasSubstr("  ok    each picture is a new one"));
+    EXPECT_THAT(result.out, testing::Not(HasSubstr("FAIL")));
+  }
+}
+
+TEST_F(RigCommands, CheckWithACalibrationLooksAtATestPicture) {
+  json rig = station::read_json_file(fixture("simulated"));
+  rig["simulation"]["target_samples_per_pixel"] = 4;
+  const std::string calibration = std::string(FIXTURES_DIR) + "/calibrations/simulated.json";
+  const ProgramResult sound = run_threadstation({"check", "--rig", rig_file(rig), "--calibration", calibration});
+  EXPECT_EQ(sound.status, 0) << sound.error << sound.out;
+  for (const char* row : {"an exposure is found", "the picture is in focus", "tags on the platform are seen",
+                          "tags on the table are seen", "the bench stands as it was calibrated"})
+    EXPECT_THAT(sound.out, HasSubstr(std::string("  ok    ") + row));
+  rig["simulation"]["lens"]["blur_px"] = 2.5;
+  const ProgramResult blurred = run_threadstation({"check", "--rig", rig_file(rig), "--calibration", calibration});
+  expect_refused(blurred, "the test picture failed \"the picture is in focus\": edges of tags are");
+}
+
+TEST_F(RigCommands, CheckSaysInOneLineWhatIsMissing) {
+  json rig = station::read_json_file(fixture("grbl_sony_network"));
+  rig["turntable_setup"]["port"] = "/dev/ttyNONE7";
+  rig["camera_connection"]["port"] = "ptpip:127.0.0.1:9:9";
+  const ProgramResult result = run_threadstation({"check", "--rig", rig_file(rig)});
+  expect_refused(result, "there is no port /dev/ttyNONE7; plug the turntable in");
+  EXPECT_THAT(result.out, HasSubstr("camera (gphoto2 at ptpip:127.0.0.1:9:9)"));
+  EXPECT_THAT(result.out, HasSubstr("check its cable and battery"));
+}
+
+TEST_F(RigCommands, CheckAsJsonIsForMachines) {
+  const ProgramResult result = run_threadstation({"check", "--json", "--rig", fixture("simulated")});
+  const json checks = json::parse(result.out);
+  ASSERT_EQ(checks.size(), 2u);
+  EXPECT_EQ(checks[0]["device"], "turntable (simulated)");
+  EXPECT_EQ(checks[0]["passed"], true);
+}
+
+TEST_F(RigCommands, AFaultThatThereIsNotIsNamedWithThoseThatThereAre) {
+  json faults = station::read_json_file(std::string(FIXTURES_DIR) + "/faults/example.json");
+  faults["camera"][0]["fault"] = "hiccup";
+  station::write_json_file(folder / "faults.json", faults);
+  expect_refused(run_threadstation({"simulate-hardware", "--rig", fixture("simulated_wire_grbl"), "--faults",
+                                    folder / "faults.json"}),
+                 "\"hiccup\" is none; it is one of silence, lost_answer, cut");
+}
+
+TEST_F(RigCommands, SimulateHardwareNeedsSomethingOnAWire) {
+  expect_refused(run_threadstation({"simulate-hardware", "--rig", fixture("simulated")}),
+                 "names nothing that is simulated on a wire");
+}
+
+// Two programs: one is the hardware with faults, the other one finds it at the ports that the first one printed.
+TEST_F(RigCommands, SimulatedHardwareServesAnotherProgramAndEndsWithCtrlC) {
+  json wire = station::read_json_file(fixture("simulated_wire_grbl"));
+  wire["simulation"]["turntable"]["speed_deg_s"] = 300;  // in real time
+  const std::string faults = std::string(FIXTURES_DIR) + "/faults/example.json";
+  const std::string ports = folder / "ports", program = THREADSTATION_PROGRAM;
+  const ProgramResult started = station_test::run_shell(
+      program + " simulate-hardware --json --rig " + rig_file(wire) + " --faults " + faults + " > " + ports +
+      " & echo $!; while [ ! -s " + ports + " ]; do kill -0 $! || exit 1; sleep 0.05; done");
+  ASSERT_EQ(started.status, 0) << started.error;
+  const json found = station::read_json_file(ports);
+  json rig = station::read_json_file(fixture("grbl_sony_network"));
+  rig["turntable_setup"]["line"] = "pty";
+  rig["turntable_setup"]["home"] = "switch";
+  rig["turntable_setup"].erase("baud");
+  rig["turntable_setup"]["port"] = found["turntable"]["port"];
+  rig["camera_connection"]["port"] = found["camera"]["port"];
+  const ProgramResult result = run_threadstation({"check", "--rig", rig_file(rig)});
+  EXPECT_EQ(result.status, 0) << result.error << result.out;
+  EXPECT_EQ(station_test::run_shell("kill -INT " + started.out).status, 0);
+}

@@ -1,0 +1,107 @@
+// The keys of a rig file that say how its devices are reached.
+#include "station/documents/rig_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "station/bench/rig_devices.h"
+#include "station/documents/degree.h"
+#include "station/documents/reader.h"
+#include "tests/places.h"
+#include "tests/station/documents/refusal.h"
+
+namespace station {
+namespace {
+
+using nlohmann::json;
+using station_test::refusal;
+using testing::HasSubstr;
+
+json rig_document(const std::string& name) {
+  return read_json_file(std::string(FIXTURES_DIR) + "/rigs/" + name + ".json");
+}
+
+std::string said(json document, const std::string& pointer, const json& value) {
+  document[json::json_pointer(pointer)] = value;
+  return refusal([&] { parse_rig(document, "rig.json"); });
+}
+
+std::string said_without(json document, const std::string& object, const std::string& key) {
+  document[object].erase(key);
+  return refusal([&] { parse_rig(document, "rig.json"); });
+}
+
+}  // namespace
+
+TEST(OpenRig, OnASimulatedBenchAPersonMayPractise) {
+  json document = rig_document("simulated");
+  document["operator"] = "console";
+  document["turntable"] = "manual";
+  std::istringstream in("\n\n\n");
+  std::ostringstream out;
+  const auto asked = rig::make_person_at_terminal(in, out);
+  const RigDevices devices = open_rig(parse_rig(document, "rig.json"), {}, asked.get());
+  devices.person->arrange({.lamp = rig::Lamp::back});
+  devices.turntable->home();
+  devices.turntable->move_to(1);
+  EXPECT_THAT(out.str(), HasSubstr("Put the flashlight behind the platform and switch it on."));
+  EXPECT_THAT(out.str(), HasSubstr("Turn the platform to 57.3 deg"));
+  EXPECT_EQ(devices.bench->state().arrangement.lamp, rig::Lamp::back);
+  EXPECT_NEAR(devices.bench->state().platform_angle_rad, 1, 0.01);
+  EXPECT_THAT(refusal([&] { open_rig(parse_rig(document, "rig.json"), {}, nullptr); }), HasSubstr("needs a person"));
+}
+
+TEST(RigFileDevices, AreReadWithTheirUnits) {
+  const RigFile rig = parse_rig(rig_document("grbl_sony_usb"), "rig.json");
+  ASSERT_TRUE(rig.turntable_wire);
+  EXPECT_EQ(rig.turntable_wire->port.usb_serial, "A50285BI");
+  EXPECT_EQ(rig.turntable_wire->port.baud, 115200);
+  EXPECT_EQ(rig.turntable_wire->controller.steps_per_deg, 40);
+  EXPECT_EQ(rig.turntable_wire->controller.home_by, rig::HomeBy::home_switch);
+  EXPECT_NEAR(rig.turntable_wire->stepper.backlash_rad, 1 * kDegree, 1e-12);
+  EXPECT_NEAR(rig.turntable_wire->stepper.limit_rad, 2 * std::numbers::pi, 1e-12);
+  ASSERT_TRUE(rig.camera_wire);
+  EXPECT_EQ(rig.camera_wire->setup.port, "usb:");
+  EXPECT_EQ(rig.camera_wire->setup.width_px, 6024);
+}
+
+TEST(RigFileDevices, AreRefusedWithTheKeyWhenTheyCannotBeMeant) {
+  const json grbl = rig_document("grbl_sony_usb"), zaber = rig_document("zaber_sony_usb");
+  EXPECT_THAT(said(grbl, "/turntable", "stepper"), HasSubstr("turntable"));
+  EXPECT_THAT(said(grbl, "/turntable_setup/port", "/dev/ttyUSB0"), HasSubstr("keep one of the two"));
+  EXPECT_THAT(said_without(grbl, "turntable_setup", "usb_serial"), HasSubstr("turntable_setup.port"));
+  EXPECT_THAT(said(rig_document("grbl_sony_network"), "/turntable_setup/port", "COM3"),
+              HasSubstr("expected a device such as /dev/ttyUSB0"));
+  EXPECT_THAT(said(grbl, "/turntable_setup/steps_per_deg", 0), HasSubstr("turntable_setup.steps_per_deg"));
+  EXPECT_THAT(said(grbl, "/turntable_setup/limit_deg", 6.28), HasSubstr("turntable_setup.limit_deg"));  // radians
+  EXPECT_THAT(said(grbl, "/turntable_setup/reply_timeout_s", 2000), HasSubstr("reply_timeout_s"));      // ms
+  EXPECT_THAT(said(grbl, "/turntable_setup/axis", 1), HasSubstr("axis"));                               // a Zaber's key
+  EXPECT_THAT(said(zaber, "/turntable_setup/home", "here"), HasSubstr("expected \"switch\""));
+  EXPECT_THAT(said(grbl, "/camera_connection/port", "/dev/video0"), HasSubstr("\"usb:\" (the only camera)"));
+  EXPECT_THAT(said_without(grbl, "camera_connection", "width_px"), HasSubstr("camera_connection.width_px"));
+  json wire = rig_document("simulated_wire_grbl");
+  wire.erase("simulation");
+  EXPECT_THAT(refusal([&] { parse_rig(wire, "rig.json"); }), HasSubstr("needs it"));
+}
+
+TEST(RigDevices, OfTwoWorldsAreRefused) {
+  std::istringstream in;
+  std::ostringstream out;
+  const auto asked = rig::make_person_at_terminal(in, out);
+  json mixed = rig_document("grbl_sony_usb");
+  mixed["turntable"] = "simulated";
+  mixed["simulation"] = rig_document("simulated").at("simulation");
+  mixed.erase("turntable_setup");
+  EXPECT_THAT(refusal([&] { open_rig(parse_rig(mixed, "rig.json"), std::nullopt, asked.get()); }),
+              HasSubstr("the pictures would not turn with it"));
+  EXPECT_THAT(refusal([&] { open_rig(parse_rig(mixed, "rig.json"), std::nullopt, nullptr); }),
+              HasSubstr("run without --unattended"));
+  json real = rig_document("grbl_sony_usb");
+  real["operator"] = "simulated";
+  EXPECT_THAT(refusal([&] { open_rig(parse_rig(real, "rig.json"), std::nullopt, asked.get()); }),
+              HasSubstr("write \"operator\": \"console\""));
+}
+
+}  // namespace station

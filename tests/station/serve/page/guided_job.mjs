@@ -1,0 +1,258 @@
+// node guided_job.mjs PROGRAM FIXTURES FOLDER
+// The whole guided job through the technician's page, clicked as a person clicks it, with the real drivers on the simulated
+// wires: check, live view, calibration, spool form, 17 views, development, fit, cloth, library, export. FOLDER is made anew;
+// its screenshots are for looking at.
+import assert from "node:assert/strict";
+import {execFileSync} from "node:child_process";
+import {existsSync, mkdirSync, readFileSync, rmSync, writeFileSync} from "node:fs";
+import path from "node:path";
+import {disturb} from "./disturb.mjs";
+import {startServer} from "./station_server.mjs";
+import {WatchedPage} from "./watched_page.mjs";
+
+const [program, fixtures, folder] = process.argv.slice(2);
+const workspace = path.join(folder, "bench");
+const session = "4006381333948-B-3";
+const inWorkspace = (...parts) => path.join(workspace, ...parts);
+
+const began = Date.now();
+const note = text => console.log(`${((Date.now() - began) / 1000).toFixed(1).padStart(6)} s  ${text}`);
+
+// The documented rig with a person at it, drawn with few samples a pixel.
+function writeRig() {
+  const rig = JSON.parse(readFileSync(path.join(fixtures, "rigs/simulated_wire_grbl.json"), "utf8"));
+  rig.operator = "console";
+  rig.simulation.samples_per_pixel = 2;
+  rig.simulation.target_samples_per_pixel = 6;
+  const file = path.join(folder, "rig.json");
+  writeFileSync(file, JSON.stringify(rig));
+  return file;
+}
+
+const pause = count => new Promise(resolve => setTimeout(resolve, 1000 * count));
+
+let jobs = 0;
+
+// Until the job on the bench has ended well; each question is answered by the big button. Returns how many there were.
+async function attend(station, what, seconds, outcome = /ended well$/) {
+  let questions = 0;
+  const ended = `${++jobs} ended`;
+  for (;;) {
+    await station.until(`${what} to ask or end`, end => {
+      const asks = !document.getElementById("question").hidden && !document.querySelector("#choices .primary").disabled;
+      return asks || document.body.dataset.job === end;
+    }, seconds, ended);
+    if (await station.page.$eval("body", body => body.dataset.job) === ended) break;
+    assert.ok(await station.page.$("#step svg"), "each step has its picture");
+    if (questions === 0) await station.look(`question-${what}`);
+    const number = await station.page.$eval("#question", question => question.dataset.number);
+    await station.click("#choices .primary");
+    questions++;
+    await station.until("the answer to be taken", answered => {
+      const question = document.getElementById("question");
+      return question.hidden || question.dataset.number !== answered;
+    }, 30, number);
+  }
+  assert.match(await station.text("#job-title"), outcome, await station.text("#lines"));
+  note(`${what}: ${questions} questions`);
+  return questions;
+}
+
+async function check(station) {
+  await station.click("#control");
+  await station.look("bench-idle");
+  await station.click("#check-form button");
+  await attend(station, "check", 60);
+  assert.equal((await station.page.$$("#devices .well")).length, 2, "turntable and camera are sound");
+  await station.click("#preview");
+  await station.until("a live picture", () => {
+    const image = document.getElementById("frame-picture");
+    return image.offsetParent !== null && image.complete && image.naturalWidth > 0;
+  }, 30);
+  await station.until("tags in it", () => /platform [1-9]/.test(document.getElementById("measures").textContent), 30);
+  await station.look("bench-live-view");
+  await station.click("#pause");
+  await attend(station, "preview", 30);
+}
+
+async function calibrate(station) {
+  await station.click('[data-screen="calibrate"]');
+  await station.look("calibrate");
+  await station.type('#calibrate-form [name="name"]', "monday");
+  await station.click("#calibrate-form .primary");
+  assert.ok(await attend(station, "calibrate", 300) >= 3);
+  await station.look("bench-calibrated");
+}
+
+// Stopped by the key, at once, by a browser that only watches.
+async function stopByKey(station) {
+  await station.click('[data-screen="calibrate"]');
+  await station.type('#calibrate-form [name="name"]', "stopped");
+  await station.click("#calibrate-form .primary");
+  await station.until("a question", () => !document.getElementById("question").hidden, 60);
+  const watching = await station.another();
+  await watching.until("the question", () => !document.getElementById("question").hidden, 30);
+  assert.equal(await watching.page.$eval("#choices .primary", button => button.disabled), true, "who watches cannot answer");
+  await watching.page.keyboard.press("Escape");
+  await watching.until("the stop", () => /ended with a problem$/.test(document.getElementById("job-title").textContent), 10);
+  await watching.closePage();
+  jobs++;
+  note("emergency stop by a watcher's key");
+}
+
+async function fillSpool(station) {
+  await station.click('[data-screen="capture"]');
+  await station.type('#spool-form [name="barcode"]', "4006381333948\n");  // a scanner ends with Enter
+  assert.match(await station.text("#spool-said"), /new/);
+  for (const [field, words] of Object.entries({name: "silk, blue", lot: "B 3", material: "silk", colour: "blue", turns: "0"}))
+    await station.type(`#spool-form [name="${field}"]`, words);
+  await station.page.select('#spool-form [name="simulated"]', "silk_blue");
+  await station.page.$eval('#spool-form', form => { form.noValidate = true; });
+  station.expected.push(/^400 for .*\/api\/spool$/, /status of 400/);
+  await station.click("#spool-form > button");
+  await station.until("the refusal of 0 turns", () => /turns/.test(document.getElementById("spool-said").textContent), 10);
+  await station.type('#spool-form [name="turns"]', "50");
+  station.expected.length = 0;
+  await station.look("capture-form");
+  await station.click("#spool-form > button");
+  await station.until("the spool to be chosen", name =>
+    document.getElementById("capture-form").spool.value === name, 10, session);
+}
+
+// Paused, gone on with after the page was closed, and one view taken again.
+async function capture(station) {
+  await fillSpool(station);
+  await station.type('#capture-form [name="person"]', "Ada");
+  await station.click("#capture-form .primary");
+  await station.until("a question", () => !document.getElementById("question").hidden, 60);
+  await station.click("#choices .primary");
+  await station.until("a picture of this session", name =>
+    document.getElementById("frame-source").textContent.startsWith(name), 60, session);
+  await station.click("#pause");
+  await attend(station, "pause", 60, /ended with a problem$/);
+  assert.match(await station.text("#lines"), /paused/);
+  await station.click('[data-screen="session"]');
+  await station.look("session-paused");
+  await station.click('[data-kind="resume"]');
+  await station.until("the run", () => document.body.dataset.job.endsWith("running"), 30);
+  const later = await station.another();
+  await station.closePage();
+  await later.click("#control");
+  await undisturbed(later);
+  assert.ok(await attend(later, "capture", 300) >= 3);
+  await later.look("bench-captured");
+  await later.click('[data-screen="session"]');
+  await verdicts(later);
+  await later.click("#tiles .tile:nth-child(7) button");
+  await attend(later, "reshoot", 120);
+  await later.click('[data-screen="session"]');
+  await verdicts(later);
+  await later.look("session");
+  return later;
+}
+
+// A thousand connections of no use while the run is under way: the page comes back by itself, the run has not noticed.
+async function undisturbed(station) {
+  station.expected.push(/net::ERR_/);
+  const end = await disturb(station.address);
+  end();
+  const jobIsThere = () => fetch("/api/state").then(answer => answer.json()).then(state => state.job.running, () => false);
+  for (let i = 0; i < 30 && !await station.page.evaluate(jobIsThere); i++) await pause(1);
+  await pause(4);  // a dropped event stream is opened again by then
+  station.expected.length = 0;
+  assert.equal(await station.page.evaluate(jobIsThere), true);
+}
+
+async function verdicts(station) {
+  await station.until("17 tiles with pictures and verdicts", () => {
+    const tiles = [...document.querySelectorAll("#tiles .good, #tiles .doubtful")];
+    for (const tile of tiles) tile.querySelector("img").loading = "eager";
+    return tiles.length === 17 && tiles.every(tile => tile.querySelector("img").naturalWidth > 0);
+  }, 60);
+}
+
+async function fit(station) {
+  for (const kind of ["develop", "invert", "report", "add"]) {
+    await station.click('[data-screen="session"]');
+    if (kind === "invert") await station.click("#quick");
+    await station.click(`[data-kind="${kind}"]`);
+    await attend(station, kind, 200);
+  }
+  await station.click('[data-screen="result"]');
+  await station.until("both pictures of a view", () => ["photographed", "fitted"].every(id =>
+    document.getElementById(id).complete && document.getElementById(id).naturalWidth > 0), 30);
+  assert.equal((await station.page.$$("#curves .band")).length, 3);
+  assert.equal((await station.page.$$("#unknowns tr")).length, 16);
+  await station.page.focus("#wipe");
+  for (let i = 0; i < 20; i++) await station.page.keyboard.press("ArrowRight");
+  assert.equal(await station.page.$eval("#fitted", image => image.style.clipPath), "inset(0px 0px 0px 70%)");
+  await station.look("result");
+  await station.page.select("#compare-with", "residual");
+  await station.until("the residual", () => document.getElementById("fitted").src.includes("residual") &&
+    document.getElementById("fitted").complete, 30);
+  await station.look("result-residual");
+}
+
+async function weave(station) {
+  await station.page.select('#cloth-form [name="draft"]', "satin_5");
+  await station.page.select('#cloth-form [name="own"]', "chosen");
+  await station.click('#cloth-form [name="quick"]');
+  await station.click("#cloth-form .primary");
+  await attend(station, "cloth", 200);
+  await station.click('[data-screen="result"]');
+  await station.until("swatch and cylinder", () => {
+    const pictures = [...document.querySelectorAll("#cloth-pictures img")];
+    return pictures.length === 2 && pictures.every(image => image.naturalWidth > 0);
+  }, 30);
+  assert.match(await station.text("#cloth-made-of"), /satin 5.*#1d3f8f.*#c9a227/);
+  await station.page.$eval("#cloth-form", form => form.scrollIntoView());
+  await station.look("result-cloth");
+}
+
+async function library(station) {
+  await station.click('[data-screen="library"]');
+  await station.type("#search", "b 3 silk");
+  await station.until("one thread", () => document.getElementById("found").textContent === "1 / 2", 10);
+  await station.click('[data-export="2"]');
+  await attend(station, "export", 30);
+  await station.click('[data-screen="library"]');
+  await station.page.select("#export-format", "materials");
+  await station.click('[data-export="2"]');
+  await attend(station, "export", 300);
+  await station.click('[data-screen="library"]');
+  await station.type("#search", " ");
+  for (const number of [1, 2]) await station.click(`[aria-label="Compare ${number}"]`);
+  await station.until("two threads side by side", () => document.querySelectorAll("#compared .thread").length === 2, 10);
+  await station.look("library");
+}
+
+mkdirSync(folder, {recursive: true});
+rmSync(folder, {recursive: true});
+mkdirSync(inWorkspace("queues"), {recursive: true});
+execFileSync(program, ["library", "add", path.join(fixtures, "threads/silk_red.json"), "--library", inWorkspace("library")]);
+writeFileSync(inWorkspace("queues/week.csv"), "barcode,name,lot,material,colour,note,spool\n" +
+  `4006381333931,"silk, red",A 12,silk,red,,${path.join(fixtures, "spools/silk_red.json")}\n`);
+const server = await startServer(program, writeRig(), workspace);
+let station = await WatchedPage.open(server.address, path.join(folder, "browser"));
+try {
+  await check(station);
+  await calibrate(station);
+  await stopByKey(station);
+  station = await capture(station);
+  await fit(station);
+  await weave(station);
+  await library(station);
+} catch (error) {
+  console.log(await station.report());
+  throw error;
+} finally {
+  await station.close();
+  server.stop();
+}
+for (const file of [`sessions/${session}/report.html`, "exports/thread-2-folder/thread.json", "exports/thread-2-folder/manifest.json",
+  "exports/thread-2-materials/export.json"])
+  assert.ok(existsSync(inWorkspace(file)), file);
+assert.match(execFileSync(program, ["verify", inWorkspace("sessions", session)]).toString(), /17/);
+note(`${station.shared.pictures} screenshots in ${station.folder}`);
+assert.deepEqual(station.shared.problems, []);
+note("no console error, no failed request, no serious accessibility violation");

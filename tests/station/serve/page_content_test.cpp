@@ -1,0 +1,239 @@
+// What the technician's page shows, and what its forms write: sessions, pictures, queues, devices, threads, spools.
+#include "rig/devices/clock.h"
+#include "station/documents/sample.h"
+#include "station/documents/spool.h"
+#include "station/session/record/journal.h"
+#include "station/thread/library.h"
+#include "tests/station/serve/technician_page_fixture.h"
+
+namespace station_test {
+namespace {
+
+TEST_F(TechnicianPage, ASessionIsShownAsItsJournalHasItNow) {
+  const std::filesystem::path folder = folder_ / "bench/sessions/silk_red";
+  copy_session();
+  const json shown = get("/api/session", "silk_red");
+  EXPECT_EQ(shown.at("state"), "complete");
+  ASSERT_EQ(shown.at("views").size(), 17U);
+  for (const json& view : shown["views"]) EXPECT_EQ(view.at("grade"), "good") << view;
+  std::ifstream stream(folder / "journal.jsonl");
+  std::string journal{std::istreambuf_iterator<char>(stream), {}};
+  journal.resize(journal.rfind('\n', journal.size() - 2) + 1);  // without its stop
+  std::ofstream(folder / "journal.jsonl") << journal;
+  EXPECT_EQ(get("/api/state").at("sessions")[0].at("state"), "interrupted");
+}
+
+TEST_F(TechnicianPage, ThePageAndItsPartsAreThere) {
+  for (const char* path :
+       {"/", "/app.js", "/bench.js", "/capture.js", "/curves.js", "/document.js", "/library.js", "/result.js",
+        "/session.js", "/station.js", "/step_picture.js", "/style.css", "/texts.json"}) {
+    const HttpResponse answer = page_->handle({.method = "GET", .path = path});
+    EXPECT_EQ(answer.status, 200) << path;
+    EXPECT_GT(answer.body.size(), 500U) << path;
+  }
+  EXPECT_EQ(page_->handle({.method = "GET", .path = "/../rig.json"}).status, 404);
+  EXPECT_EQ(page_->handle({.method = "GET", .path = "/\xff\xfe"}).status, 404);
+  // Every text that the page asks for is in the one file.
+  const json texts = json::parse(page_->handle({.method = "GET", .path = "/texts.json"}).body);
+  const std::string page = page_->handle({.method = "GET", .path = "/"}).body;
+  for (std::size_t at = 0; (at = page.find("data-text=\"", at)) != std::string::npos;) {
+    at += 11;
+    EXPECT_TRUE(texts.contains(page.substr(at, page.find('"', at) - at))) << page.substr(at, 30);
+  }
+}
+
+TEST_F(TechnicianPage, EveryTextThatTheScriptsAskForIsInTheOneFile) {
+  const json texts = json::parse(asked("/texts.json").body);
+  int found = 0;
+  for (const char* file : {"/app.js", "/bench.js", "/capture.js", "/curves.js", "/library.js", "/result.js",
+                           "/session.js", "/station.js", "/step_picture.js"}) {
+    const std::string script = asked(file).body;
+    for (std::size_t at = 0; (at = script.find("text(\"", at)) != std::string::npos; ++found) {
+      at += 6;
+      const std::string key = script.substr(at, script.find('"', at) - at);
+      if (key.ends_with("_")) continue;  // goes on with a kind
+      EXPECT_TRUE(texts.contains(key)) << file << ": " << key;
+    }
+  }
+  EXPECT_GT(found, 40);
+}
+
+TEST_F(TechnicianPage, WhatIsNotThereIsSaidInOneLine) {
+  copy_session();
+  for (const auto& [path, query] : std::vector<std::pair<std::string, std::map<std::string, std::string>>>{
+           {"/api/result", {{"name", "silk_red"}}},
+           {"/api/thread", {{"number", "7"}}},
+           {"/picture", {{"of", "raw"}, {"session", "silk_red"}, {"step", "nothing"}}},
+           {"/picture", {{"of", "fitted"}, {"session", "silk_red"}, {"view", "reflection-horizontal-1"}}},
+           {"/picture", {{"of", "cloth"}, {"session", "silk_red"}, {"view", "swatch"}}},
+           {"/picture", {{"of", "draft"}, {"name", "none"}}},
+           {"/picture", {{"of", "anything"}}},
+           {"/picture", {}}}) {
+    const HttpResponse answer = asked(path, query);
+    EXPECT_EQ(answer.status, 404) << path;
+    EXPECT_TRUE(json::parse(answer.body).contains("message")) << answer.body;
+  }
+}
+
+json silk_form() {
+  return {{"client", "me"},
+          {"barcode", "4006381333948"},
+          {"name", "silk, blue"},
+          {"lot", "B 3"},
+          {"material", "silk"},
+          {"colour", "blue"},
+          {"note", ""},
+          {"turns", 50},
+          {"diameter_mm", 0.5},
+          {"sheets", "front"},
+          {"simulated", "silk_blue"}};
+}
+
+TEST_F(TechnicianPage, TheSpoolFormWritesWhatCaptureReads) {
+  post("/api/control", {{"client", "me"}});
+  const HttpResponse written = post("/api/spool", silk_form());
+  ASSERT_EQ(written.status, 200) << written.body;
+  EXPECT_EQ(json::parse(written.body).at("name"), "4006381333948-B-3");
+  const station::Spool spool = station::read_spool(folder_ / "bench/spools/4006381333948-B-3.json");
+  EXPECT_EQ(spool.name, "silk, blue");
+  EXPECT_EQ(spool.wrapping.turns, 50);
+  EXPECT_TRUE(spool.simulation.has_value());
+  const station::Sample sample = station::read_sample_file(folder_ / "bench/samples/4006381333948-B-3.json");
+  EXPECT_EQ(sample.lot, "B 3");
+  EXPECT_EQ(sample.colour, "blue");
+  const json line = get("/api/state").at("spools").at(0);
+  EXPECT_EQ(line.at("sample").at("barcode"), "4006381333948");
+  EXPECT_EQ(line.at("diameter_mm"), 0.5);
+}
+
+TEST(SampleFile, TheDocumentedOneIsReadAndWrittenAgain) {
+  const station::Sample sample = station::read_sample_file(std::string(FIXTURES_DIR) + "/samples/silk_blue.json");
+  EXPECT_EQ(sample.lot, "B 3");
+  const TemporaryFolder folder;
+  station::write_sample_file(folder / "sample.json", sample);
+  EXPECT_EQ(station::read_sample_file(folder / "sample.json"), sample);
+}
+
+TEST_F(TechnicianPage, ASpoolThatNoFileMayDescribeIsRefusedByTheLineOfTheFilesReader) {
+  post("/api/control", {{"client", "me"}});
+  const auto refused = [&](const char* key, const json& value, const std::string& named) {
+    json form = silk_form();
+    form[key] = value;
+    const HttpResponse answer = post("/api/spool", form);
+    EXPECT_EQ(answer.status, 400) << key << answer.body;
+    EXPECT_NE(answer.body.find(named), std::string::npos) << answer.body;
+  };
+  refused("turns", 0, "turns");
+  refused("turns", "many", "turns");
+  refused("turns", 50.5, "turns");
+  refused("diameter_mm", -1, "thread_diameter_mm");
+  refused("diameter_mm", 0.05, "fiber");  // the simulated fibers do not fit into it
+  refused("sheets", "both", "sheets");
+  refused("lot", std::string(300, 'x'), "200");
+  json nameless = silk_form();
+  nameless.erase("name");
+  nameless["barcode"] = "";
+  EXPECT_EQ(refused_with("/api/spool", nameless), 400);
+  EXPECT_TRUE(get("/api/state").at("spools").empty());
+}
+
+TEST_F(TechnicianPage, APictureOfEachViewIsShownAndTheLastFrameIsMeasured) {
+  EXPECT_TRUE(get("/api/bench").at("frame").is_null());
+  EXPECT_EQ(asked("/picture", {{"of", "frame"}}).status, 404);
+  copy_session();
+  const HttpResponse tile = asked("/picture", {{"of", "raw"}, {"session", "silk_red"}, {"step", "transmission-2"}});
+  EXPECT_EQ(tile.status, 200);
+  EXPECT_EQ(tile.content_type, "image/png");
+  EXPECT_TRUE(tile.body.starts_with("\x89PNG"));
+  const json frame = get("/api/bench").at("frame");
+  EXPECT_TRUE(frame.at("source").get<std::string>().starts_with("silk_red: ")) << frame;
+  double parts = 0;
+  for (const json& part : frame.at("histogram").at("g")) parts += part.get<double>();
+  EXPECT_NEAR(parts, 1, 1e-9);
+  EXPECT_GE(frame.at("exposure").at("level"), 0);
+  EXPECT_LE(frame.at("exposure").at("level"), 1.05);
+  EXPECT_EQ(frame.at("tags").size(), 4U);
+  EXPECT_EQ(asked("/picture", {{"of", "frame"}}).status, 200);
+}
+
+TEST_F(TechnicianPage, AJournalThatNamesAFileElsewhereShowsNoPicture) {
+  copy_session();
+  const std::filesystem::path file = folder_ / "bench/sessions/silk_red/journal.jsonl";
+  const auto records = station::read_journal(file).records;
+  const std::map<std::string, std::string> query{{"of", "raw"}, {"session", "silk_red"}, {"step", "transmission-2"}};
+  const auto write_naming = [&](const std::string& picture) {
+    std::filesystem::remove(file);
+    rig::SystemClock clock;
+    station::FileSystem disk;
+    station::Journal journal(file, clock, disk);
+    for (const station::JournalRecord& record : records) {
+      json data = record.data;
+      if (record.event == "picture" && data.at("step") == "transmission-2") data["file"] = picture;
+      journal.append(record.event, data);
+    }
+  };
+  write_naming("raw/transmission-2.arw");
+  EXPECT_EQ(asked("/picture", query).status, 200);
+  std::filesystem::copy(folder_ / "bench/sessions/silk_red/raw/transmission-2.arw", folder_ / "other.arw");
+  for (const char* elsewhere : {"../../../other.arw", "raw/../../../../other.arw", "/etc/passwd"}) {
+    write_naming(elsewhere);
+    EXPECT_EQ(asked("/picture", query).status, 404) << elsewhere;
+  }
+}
+
+TEST_F(TechnicianPage, AThreadOfTheLibraryIsShownWithItsCurves) {
+  station::Library(folder_ / "bench/library", true)
+      .add(std::string(FIXTURES_DIR) + "/threads/silk_red.json", "2026-01-01T00:00:00Z");
+  const json thread = json::parse(asked("/api/thread", {{"number", "1"}}).body);
+  ASSERT_EQ(thread.at("curves").size(), 41U);
+  EXPECT_EQ(thread["curves"][0].at("cosine"), 0);
+  EXPECT_EQ(thread["curves"][0].at("lambda")[1], 0);    // r1 c
+  EXPECT_FALSE(thread["curves"][0].contains("sigma"));  // it was never fitted
+  const std::string colour = thread.at("colour");
+  EXPECT_GT(colour.substr(1, 2), colour.substr(3, 2));  // red silk
+  EXPECT_EQ(get("/api/state").at("threads")[0].at("number"), 1);
+}
+
+TEST_F(TechnicianPage, AQueueIsShownRowByRowAndABadOneSaysWhy) {
+  post("/api/control", {{"client", "me"}});
+  std::filesystem::copy(std::string(FIXTURES_DIR) + "/sessions/silk_red", folder_ / "bench/sessions/4006381333931-A-12",
+                        std::filesystem::copy_options::recursive);
+  const std::string spool = std::string(FIXTURES_DIR) + "/spools/silk_red.json";
+  std::ofstream(folder_ / "bench/queues/week.csv")
+      << "barcode,name,lot,material,colour,note,spool\n4006381333931,red,A 12,silk,,," << spool
+      << "\n4006381333948,blue,B 3,silk,,,\n";
+  std::ofstream(folder_ / "bench/queues/bad.csv") << "barcode,name,lot,material,colour,note,spool\n,,,,,,x.json\n";
+  const json queues = get("/api/state").at("queues");
+  ASSERT_EQ(queues.size(), 2U);
+  EXPECT_NE(queues[0].at("problem").get<std::string>().find("neither barcode nor name"), std::string::npos);
+  ASSERT_EQ(queues[1].at("spools").size(), 2U);
+  EXPECT_EQ(queues[1]["spools"][0].at("state"), "complete");
+  EXPECT_EQ(queues[1]["spools"][1].at("sample").at("name"), "blue");
+  EXPECT_TRUE(queues[1]["spools"][1].at("state").is_null());
+  const HttpResponse started = post(
+      "/api/job", {{"client", "me"}, {"kind", "queue"}, {"name", "week"}, {"calibration", "none"}, {"person", "-x"}});
+  EXPECT_EQ(started.status, 200) << started.body;
+  // The first is complete already.
+  ASSERT_TRUE(eventually([&] { return !job().at("question").is_null(); })) << job().dump(1);
+  EXPECT_NE(job().at("question").dump().find("4006381333948-B-3"), std::string::npos) << job().dump(1);
+  EXPECT_FALSE(job().at("question").contains("arrangement"));
+  EXPECT_EQ(answer(job().at("question"), "decline").status, 200);
+  ASSERT_TRUE(eventually([&] { return job().at("running") == false; }));
+  EXPECT_NE(job().at("lines").dump().find("4006381333931-A-12: was complete already"), std::string::npos)
+      << job().dump(1);
+}
+
+TEST_F(TechnicianPage, DevicesAreAsTheLastCheckFoundThem) {
+  post("/api/control", {{"client", "me"}});
+  for (const json& device : get("/api/bench").at("devices")) EXPECT_TRUE(device.at("passed").is_null());
+  ASSERT_EQ(post("/api/job", {{"client", "me"}, {"kind", "check"}}).status, 200);
+  ASSERT_TRUE(eventually([&] { return job().at("running") == false; }));
+  const json bench = get("/api/bench");
+  ASSERT_EQ(bench.at("devices").size(), 2U);
+  for (const json& device : bench["devices"]) EXPECT_EQ(device.at("passed"), true) << device.dump(1);
+  EXPECT_FALSE(bench.at("checked_ms").is_null());
+  EXPECT_EQ(job().at("lines").dump().find("passed"), std::string::npos) << "JSON is not for people";
+}
+
+}  // namespace
+}  // namespace station_test

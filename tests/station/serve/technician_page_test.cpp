@@ -1,0 +1,220 @@
+// The technician's page and who may have it do what: one browser in control, names that stay in the workspace, and a
+// run that does not depend on the network (rows 14, 37).
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "tests/station/serve/technician_page_fixture.h"
+
+namespace station_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST_F(TechnicianPage, OneBrowserIsInControlAndAnotherMayTakeOver) {
+  const json start{{"client", "me"}, {"kind", "report"}, {"name", "none"}};
+  EXPECT_EQ(post("/api/job", start).status, 409);
+  EXPECT_EQ(post("/api/control", {{"client", "me"}}).status, 200);
+  EXPECT_EQ(post("/api/job", start).status, 404);  // there is no such session
+  EXPECT_EQ(post("/api/control", {{"client", "you"}}).status, 409);
+  EXPECT_EQ(post("/api/control", {{"client", "you"}, {"take", true}}).status, 200);
+  EXPECT_EQ(post("/api/job", start).status, 409);
+  EXPECT_EQ(get("/api/state").at("control"), "you");
+  EXPECT_GE(changes_, 2);
+}
+
+TEST_F(TechnicianPage, NamesThatLeaveTheWorkspaceAreRefused) {
+  post("/api/control", {{"client", "me"}});
+  for (const char* name : {"../x", "/etc", "", "a/b", "-x", ".hidden", "CON"}) {
+    EXPECT_EQ(post("/api/job", {{"client", "me"}, {"kind", "develop"}, {"name", name}}).status, 400) << name;
+    HttpRequest request{.method = "GET", .path = "/report", .query = {{"name", name}}};
+    EXPECT_EQ(page_->handle(request).status, 400) << name;
+  }
+  EXPECT_EQ(post("/api/job", {{"client", "me"}, {"kind", "rm"}, {"name", "x"}}).status, 400);
+  EXPECT_EQ(post("/api/job", json::array()).status, 400);
+  EXPECT_EQ(answer({{"id", 1}}, "done").status, 409);  // nothing is running
+}
+
+TEST_F(TechnicianPage, AQuestionIsShownAndItsAnswerReachesTheRun) {
+  start_calibration();
+  const json question = job().at("question");
+  EXPECT_FALSE(question.at("text").get<std::string>().empty());
+  EXPECT_EQ(question.at("choices").size(), 2U);
+  EXPECT_EQ(question.at("step"), 1);
+  EXPECT_GT(question.at("of"), 10);
+  EXPECT_TRUE(question.at("arrangement").contains("lamp")) << question.dump(1);
+  EXPECT_EQ(job().at("lines"), json{question.at("text")});
+  EXPECT_EQ(post("/api/job", {{"client", "me"}, {"kind", "calibrate"}, {"name", "two"}}).status, 409);
+  EXPECT_EQ(answer(question, "decline").status, 200);
+  ASSERT_TRUE(eventually([&] { return job().at("running") == false; }));
+  EXPECT_EQ(job().at("status"), 1);
+  EXPECT_NE(job().at("lines").dump().find("the person declined"), std::string::npos) << job().dump(1);
+}
+
+TEST_F(TechnicianPage, ASecondClickDoesNotAnswerTheNextQuestion) {
+  start_calibration();
+  const json first = job().at("question");
+  EXPECT_EQ(answer(first, "perhaps").status, 409) << "no choice of this question";
+  EXPECT_EQ(answer(first, "done").status, 200);
+  EXPECT_EQ(answer(first, "done").status, 409);
+  ASSERT_TRUE(eventually([&] { return !job().at("question").is_null(); })) << job().dump(1);
+  const json second = job().at("question");
+  EXPECT_NE(second.at("id"), first.at("id"));
+  EXPECT_EQ(answer(first, "done").status, 409);
+  EXPECT_EQ(refused_with("/api/answer", {{"client", "me"}, {"answer", "done"}}), 400);
+  EXPECT_EQ(refused_with("/api/answer", {{"client", "me"}, {"answer", true}, {"question", second.at("id")}}), 400);
+  EXPECT_EQ(job().at("question"), second);
+}
+
+// A rig whose platform a person turns, while the simulated hand does all else.
+class TurnedByHand : public TechnicianPage {
+ protected:
+  TurnedByHand()
+      : TechnicianPage({{"turntable", "manual"},
+                        {"capture", {{"reflection_angles_deg", {0}}, {"transmission_angles_deg", {0}}}},
+                        {"simulation", {{"samples_per_pixel", 2}, {"target_samples_per_pixel", 6}}}}) {
+    post("/api/control", {{"client", "me"}});
+  }
+
+  // Does all that the job asks until it ends; the texts of its questions.
+  std::vector<std::string> attend(const json& fields) {
+    std::vector<std::string> texts;
+    const HttpResponse started = post("/api/job", fields);
+    EXPECT_EQ(started.status, 200) << started.body;
+    for (json state; eventually([&] { return !(state = job()).at("question").is_null() || !state.at("running"); });) {
+      if (!state.at("running")) break;
+      texts.push_back(state.at("question").at("text"));
+      EXPECT_EQ(answer(state.at("question"), "done").status, 200);
+    }
+    EXPECT_EQ(job().at("status"), 0) << job().dump(1);
+    return texts;
+  }
+};
+
+TEST_F(TurnedByHand, IsCheckedFromThePage) {
+  const std::vector<std::string> asked = attend({{"client", "me"}, {"kind", "check"}});
+  ASSERT_GT(asked.size(), 10U);
+  EXPECT_NE(asked[1].find("Turn the platform to 30.0 deg"), std::string::npos) << asked[1];
+  EXPECT_EQ(get("/api/bench").at("devices")[0].at("passed"), true);
+}
+
+TEST_F(TurnedByHand, AnAngleThatIsTypedIsReadAndAWrongOneAskedForAgain) {
+  ASSERT_EQ(post("/api/job", {{"client", "me"}, {"kind", "check"}}).status, 200);
+  const auto asked_to = [&](const std::string& text) {
+    return eventually([&] {
+      const json question = job().at("question");
+      return !question.is_null() && question.at("text").get<std::string>().find(text) != std::string::npos;
+    });
+  };
+  ASSERT_TRUE(asked_to("its mark is in front"));
+  EXPECT_EQ(answer(job().at("question"), "0.2").status, 200);
+  ASSERT_TRUE(asked_to("to 30.0 deg"));
+  const json first = job().at("question");
+  EXPECT_TRUE(first.contains("typed") && !first.contains("remark")) << first.dump(1);
+  EXPECT_EQ(answer(first, "20").status, 200);
+  ASSERT_TRUE(eventually([&] { return !job().at("question").is_null(); }));
+  EXPECT_EQ(job().at("question").at("remark"), "That is not 30.0 deg; turn it on.");
+  EXPECT_EQ(job().at("question").at("text"), first.at("text"));
+}
+
+TEST_F(TurnedByHand, IsCalibratedAndASpoolCapturedFromThePage) {
+  EXPECT_GT(attend({{"client", "me"}, {"kind", "calibrate"}, {"name", "monday"}}).size(), 5U);
+  ASSERT_EQ(post("/api/spool", {{"client", "me"},
+                                {"name", "silk"},
+                                {"turns", 50},
+                                {"diameter_mm", 0.5},
+                                {"sheets", "front"},
+                                {"simulated", "silk_red"}})
+                .status,
+            200);
+  const auto asked =
+      attend({{"client", "me"}, {"kind", "capture"}, {"name", "silk"}, {"calibration", "monday"}, {"spool", "silk"}});
+  EXPECT_GT(asked.size(), 1U);
+  EXPECT_EQ(get("/api/session", "silk").at("state"), "complete");
+}
+
+TEST_F(TechnicianPage, TheEmergencyStopIsAnybodysAndEndsTheRun) {
+  start_calibration();
+  const auto began = std::chrono::steady_clock::now();
+  EXPECT_EQ(post("/api/stop", {{"client", "a watcher"}}).status, 200);
+  EXPECT_LT(std::chrono::steady_clock::now() - began, 1s);
+  ASSERT_TRUE(eventually([&] { return job().at("running") == false; }));
+  EXPECT_NE(job().at("status"), 0);
+}
+
+TEST_F(TechnicianPage, WhoeverIsNotInControlChangesNothing) {
+  post("/api/control", {{"client", "me"}});
+  const json spool{{"client", "you"}, {"name", "silk"}, {"turns", 50}, {"diameter_mm", 0.5}};
+  EXPECT_EQ(refused_with("/api/spool", spool), 409);
+  for (const char* kind : {"check", "preview", "calibrate", "queue", "cloth", "add", "export"})
+    EXPECT_EQ(refused_with("/api/job", {{"client", "you"}, {"kind", kind}, {"name", "x"}}), 409) << kind;
+  EXPECT_EQ(refused_with("/api/pause", {{"client", "you"}}), 409);
+  EXPECT_TRUE(get("/api/state").at("spools").empty());
+  EXPECT_TRUE(get("/api/state").at("job").is_null());
+}
+
+TEST_F(TechnicianPage, NoNameOfARequestLeavesItsFolder) {
+  post("/api/control", {{"client", "me"}});
+  copy_session();
+  for (const char* name : {"../x", "/etc/passwd", "a/b", ".hidden", "..", "x\ny"}) {
+    for (const char* part : {"calibration", "spool"}) {
+      json fields{{"client", "me"}, {"kind", "capture"}, {"name", "a"}, {"calibration", "a"}, {"spool", "a"}};
+      fields[part] = name;
+      EXPECT_EQ(refused_with("/api/job", fields), 400) << part << " " << name;
+    }
+    EXPECT_EQ(refused_with("/api/job", {{"client", "me"}, {"kind", "check"}, {"calibration", name}}), 400) << name;
+    EXPECT_EQ(refused_with("/api/job", {{"client", "me"}, {"kind", "cloth"}, {"name", "silk_red"}, {"draft", name}}),
+              400)
+        << name;
+    EXPECT_EQ(refused_with("/api/job",
+                           {{"client", "me"}, {"kind", "export"}, {"number", 1}, {"format", "folder"}, {"name", name}}),
+              400)
+        << name;
+    EXPECT_EQ(
+        refused_with("/api/spool",
+                     {{"client", "me"}, {"name", "silk"}, {"turns", 50}, {"diameter_mm", 0.5}, {"simulated", name}}),
+        400)
+        << name;
+    for (const char* of : {"raw", "photographed", "cloth"})
+      EXPECT_EQ(asked("/picture", {{"of", of}, {"session", name}, {"step", "a"}, {"view", "a"}}).status, 400)
+          << of << name;
+    EXPECT_EQ(asked("/picture", {{"of", "raw"}, {"session", "silk_red"}, {"step", name}}).status, 400) << name;
+    EXPECT_EQ(asked("/picture", {{"of", "cloth"}, {"session", "silk_red"}, {"view", name}}).status, 400) << name;
+    EXPECT_EQ(asked("/picture", {{"of", "draft"}, {"name", name}}).status, 400) << name;
+    EXPECT_EQ(asked("/api/result", {{"name", name}}).status, 400) << name;
+    EXPECT_EQ(asked("/api/thread", {{"number", name}}).status, 400) << name;
+  }
+  EXPECT_TRUE(get("/api/state").at("job").is_null());
+}
+
+// A journal of another machine may say anything, with the right checksums.
+
+// The browsers' connections are among them: one that a job keeps open is never closed.
+
+TEST_F(TechnicianPage, AJobKeepsNoneOfTheServersFilesOpen) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  start_calibration();
+  close(ends[1]);
+  ASSERT_EQ(fcntl(ends[0], F_SETFL, O_NONBLOCK), 0);
+  char byte = 0;
+  EXPECT_EQ(read(ends[0], &byte, 1), 0) << "the job holds the other end";
+  close(ends[0]);
+}
+
+TEST_F(TechnicianPage, ALiveViewEndsForTheNextJob) {
+  post("/api/control", {{"client", "me"}});
+  ASSERT_EQ(post("/api/job", {{"client", "me"}, {"kind", "preview"}}).status, 200);
+  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(folder_ / "bench/preview.jpg"); })) << job().dump(1);
+  ASSERT_TRUE(eventually([&] { return get("/api/bench").at("frame").at("kind") == "preview"; }));
+  EXPECT_GT(get("/api/bench").at("frame").at("tags")[0].at("seen"), 3);  // the platform stands in the room's light
+  const HttpResponse next = post("/api/job", {{"client", "me"}, {"kind", "calibrate"}, {"name", "monday"}});
+  EXPECT_EQ(next.status, 200) << next.body;
+  EXPECT_EQ(job().at("kind"), "calibrate");
+}
+
+}  // namespace
+}  // namespace station_test

@@ -1,0 +1,85 @@
+// Tables of spools and the names of their sessions.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "station/documents/disk/file_name.h"
+#include "station/documents/text_table.h"
+#include "station/session/spool_queue.h"
+#include "tests/places.h"
+#include "tests/station/session/capture/fakes.h"
+
+namespace station {
+namespace {
+
+using testing::HasSubstr;
+
+struct Queue : testing::Test {
+  std::vector<QueuedSpool> read(const std::string& text) {
+    write_text(folder / "spools.csv", text);
+    return read_queue(folder / "spools.csv");
+  }
+  std::string refusal(const std::string& text) {
+    return message_of([&] { read(text); });
+  }
+  TemporaryFolder folder;
+};
+
+TEST_F(Queue, ARowIsASpoolWithItsNamesAndTheSettingsOfTheRowAboveWhereItHasNone) {
+  const auto queue = read(
+      "barcode,name,lot,material,colour,note,spool\n4711,blue silk,A 12,silk,blue,\"dry, cool\",silk.json\n"
+      "4712,,,,,,\n,red silk,,silk,red,,other.json\n");
+  ASSERT_EQ(queue.size(), 3U);
+  EXPECT_EQ(queue[0].session, "4711-A-12");
+  EXPECT_EQ(queue[0].sample.note, "dry, cool");
+  EXPECT_EQ(queue[1].session, "4712");
+  EXPECT_EQ(queue[1].spool.filename(), "silk.json") << "same settings as last";
+  EXPECT_EQ(queue[2].session, "red-silk");
+  EXPECT_EQ(queue[2].spool.filename(), "other.json");
+}
+
+TEST_F(Queue, TheDocumentedTableIsRead) {
+  const auto queue = read_queue(std::filesystem::path(FIXTURES_DIR) / "queues/two_silks.csv");
+  ASSERT_EQ(queue.size(), 2U);
+  EXPECT_EQ(queue[0].session, "4006381333931-A-12");
+  for (const QueuedSpool& spool : queue) EXPECT_TRUE(std::filesystem::exists(spool.spool)) << spool.spool;
+}
+
+// Rows 32 and 45 of the station's faults.
+TEST_F(Queue, WhatSpreadsheetsWriteIsReadOrRefusedAndNeverMisread) {
+  EXPECT_EQ(read("\xEF\xBB\xBF"
+                 "barcode,spool\r\n1,a.json\r\n2,\r\n")
+                .size(),
+            2U)
+      << "a mark and CR LF";
+  EXPECT_THAT(refusal("barcode;spool\n1;a.json\n"), HasSubstr("semicolons"));
+  EXPECT_THAT(refusal("barcode,spool\n1,a.json,7\n"), HasSubstr("3 cells"));
+  EXPECT_THAT(refusal("barcode,spool\n\"1,a.json\n"), HasSubstr("quote"));
+  EXPECT_THAT(refusal("barcode,spool\n\xFF,a.json\n"), HasSubstr("UTF-8"));
+  EXPECT_THAT(refusal("barcode,colours,spool\n"), HasSubstr("\"colours\" is not known"));
+  EXPECT_THAT(refusal("barcode,spool,spool\n"), HasSubstr("twice"));
+  EXPECT_THAT(refusal("barcode,spool\n"), HasSubstr("no rows"));
+  EXPECT_THAT(refusal("barcode,spool\n1,\n"), HasSubstr("no row above"));
+  EXPECT_THAT(refusal("barcode,name,spool\n,,a.json\n"), HasSubstr("neither barcode nor name"));
+  for (const std::string& bad : {refusal("barcode,spool\n1,\n"), refusal("barcode;spool\n")})
+    EXPECT_EQ(bad.find('\n'), std::string::npos);
+}
+
+TEST_F(Queue, ASpoolThatStandsThereTwiceIsNoticed) {
+  EXPECT_THAT(refusal("barcode,spool\n7,a.json\n8,\n7,\n"), HasSubstr("line 4: the spool \"7\" stands in line 2"));
+  EXPECT_THAT(refusal("name,spool\na b,a.json\na/b,\n"), HasSubstr("stands in line 2")) << "one folder for both";
+  EXPECT_EQ(read("barcode,lot,spool\n7,1,a.json\n7,2,\n").size(), 2U) << "two lots of one thread";
+}
+
+TEST_F(Queue, EveryNameThatPeopleWriteBecomesASafeFileNameOrIsRefused) {
+  EXPECT_EQ(safe_name("Seide, rot/2"), "Seide-rot-2");
+  EXPECT_EQ(safe_name("s\xC3\xA9 ie"), "su00e9-ie");
+  EXPECT_EQ(safe_name("../../etc"), "etc");
+  for (const char* name : {"a", "Blau 7", "\xE7\xB5\xB2", "x..y", "-rf"})
+    EXPECT_FALSE(problem_with_name(safe_name(name))) << safe_name(name);
+  EXPECT_THAT(refusal("name,spool\nCON,a.json\n"), HasSubstr("Windows"));
+  EXPECT_THAT(refusal("name,spool\n...,a.json\n"), HasSubstr("empty"));
+  EXPECT_THAT(refusal("name,spool\n" + std::string(300, 'x') + ",a.json\n"), HasSubstr("300 characters"));
+}
+
+}  // namespace
+}  // namespace station
