@@ -195,6 +195,109 @@ int bytes(const std::vector<double>& buffer) {
   return static_cast<int>(buffer.size() * sizeof(double));
 }
 
+// mrcal's residuals and the transpose of their derivatives by its state, both as compressed columns: column m of the
+// transpose has values[k] in row indices[k] for k from starts[m] to starts[m + 1].
+struct LinearFit {
+  std::vector<double> residuals, values;
+  std::vector<int> starts, indices;
+};
+
+// The transpose as mrcal gets it, which fills the fit's arrays.
+cholmod_sparse transpose_to_fill(LinearFit& fit, std::size_t states) {
+  cholmod_sparse transposed{};
+  transposed.nrow = states;
+  transposed.ncol = fit.residuals.size();
+  transposed.nzmax = fit.values.size();
+  transposed.p = fit.starts.data();
+  transposed.i = fit.indices.data();
+  transposed.x = fit.values.data();
+  transposed.itype = CHOLMOD_INT;
+  transposed.xtype = CHOLMOD_REAL;
+  transposed.dtype = CHOLMOD_DOUBLE;
+  transposed.sorted = 1;
+  transposed.packed = 1;
+  return transposed;
+}
+
+LinearFit linear_fit(Arrays& arrays) {
+  const auto states = static_cast<std::size_t>(arrays.states),
+             measurements = static_cast<std::size_t>(arrays.measurements);
+  const auto nonzero = static_cast<std::size_t>(
+      _mrcal_num_j_nonzero(arrays.views(), 0, arrays.columns, arrays.rows, 1, 0, arrays.views(), 0, 0,
+                           arrays.observations.data(), nullptr, arrays.selections, &arrays.model));
+  LinearFit fit{.residuals = std::vector<double>(measurements),
+                .values = std::vector<double>(nonzero),
+                .starts = std::vector<int>(measurements + 1),
+                .indices = std::vector<int>(nonzero)};
+  std::vector<double> state(states);
+  cholmod_sparse transposed = transpose_to_fill(fit, states);
+  std::string messages;
+  {
+    const CaughtStandardError caught(messages);
+    if (!mrcal_optimizer_callback(state.data(), bytes(state), fit.residuals.data(), bytes(fit.residuals), &transposed,
+                                  arrays.intrinsics.data(), nullptr, arrays.frames.data(), nullptr, &arrays.warp, 1, 0,
+                                  arrays.views(), 0, 0, arrays.observations.data(), nullptr, arrays.views(), 0,
+                                  arrays.pool.data(), &arrays.model, arrays.image_size.data(), arrays.selections,
+                                  &arrays.constants, arrays.spacing, arrays.columns, arrays.rows, false))
+      throw std::runtime_error("lens calibration: mrcal could not linearise the fit: " + messages);
+  }
+  return fit;
+}
+
+// The corners' errors, their mean and the noise that they tell.
+void add_errors(const LensBundle& bundle, const Arrays& arrays, const std::vector<double>& residuals,
+                BundleUncertainty& result) {
+  double squares = 0.0;
+  int used = 0;
+  for (std::size_t v = 0; v < bundle.views.size(); ++v) {
+    const BundlePicture& view = bundle.views[v];
+    result.errors_px.emplace_back(view.corners.size(), Eigen::Vector2d::Zero());
+    for (std::size_t c = 0; c < view.corners.size(); ++c) {
+      if (!view.used[c]) continue;
+      const std::size_t row = 2 * (v * arrays.nodes() + arrays.node(view.corners[c]));
+      result.errors_px[v][c] = {residuals[row], residuals[row + 1]};
+      squares += result.errors_px[v][c].squaredNorm();
+      ++used;
+    }
+  }
+  const double freedoms = 2.0 * used - static_cast<double>(arrays.states);
+  result.rms_px = std::sqrt(squares / std::max(1.0, 2.0 * used));
+  result.sigma_px = freedoms > 0.0 ? std::sqrt(squares / freedoms) : std::numeric_limits<double>::infinity();
+}
+
+// What a step of 1 in each number of mrcal's state is in our units; the state begins with that many intrinsics.
+Eigen::VectorXd unit_steps(int intrinsics, const Arrays& arrays) {
+  Eigen::VectorXd steps = Eigen::VectorXd::Ones(arrays.states);
+  mrcal_unpack_solver_state_vector(steps.data(), 1, 0, arrays.views(), 0, 0, arrays.selections, &arrays.model);
+  for (Eigen::Index i = intrinsics; i < arrays.states; ++i) {
+    const bool rotation = i < intrinsics + 6 * arrays.views() && (i - intrinsics) % 6 < 3;
+    if (!rotation) steps[i] /= kM_per_mm;
+  }
+  return steps;
+}
+
+// The covariance, for the noise in `result`, and the next step.
+void add_covariance(int intrinsics, const Arrays& arrays, const LinearFit& fit, BundleUncertainty& result) {
+  // Regularisation terms hold the solution back but carry no noise, so they are in `curvature` and not in
+  // `information`.
+  using Sparse = Eigen::SparseMatrix<double>;
+  const Eigen::Map<const Sparse> jt(arrays.states, arrays.measurements, static_cast<Eigen::Index>(fit.values.size()),
+                                    fit.starts.data(), fit.indices.data(), fit.values.data());
+  const Sparse seen = jt.leftCols(mrcal_num_measurements_boards(arrays.views(), arrays.columns, arrays.rows));
+  const Eigen::MatrixXd information = Sparse(seen * Sparse(seen.transpose()));
+  const Eigen::MatrixXd curvature = Sparse(jt * Sparse(jt.transpose()));
+  const Eigen::LLT<Eigen::MatrixXd> factor(curvature);
+  result.covariance = Eigen::MatrixXd::Constant(arrays.states, arrays.states, std::numeric_limits<double>::infinity());
+  if (factor.info() != Eigen::Success || !std::isfinite(result.sigma_px)) return;
+  const Eigen::VectorXd gradient = jt * Eigen::Map<const Eigen::VectorXd>(fit.residuals.data(), arrays.measurements);
+  result.step_px = std::sqrt(gradient.dot(factor.solve(gradient)));
+  const Eigen::MatrixXd half = factor.solve(information);
+  Eigen::MatrixXd covariance = factor.solve(half.transpose()) * (result.sigma_px * result.sigma_px);
+  const Eigen::VectorXd scale = unit_steps(intrinsics, arrays);
+  covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
+  if (covariance.allFinite()) result.covariance = 0.5 * (covariance + covariance.transpose());
+}
+
 }  // namespace
 
 int number_of_intrinsics(LensModel model) {
@@ -263,77 +366,9 @@ BundleUncertainty linearise(const LensBundle& bundle, const BundleFreedom& freed
   BundleUncertainty result;
   run_with_large_stack([&] {
     Arrays arrays(bundle, freedom);
-    const auto states = static_cast<std::size_t>(arrays.states),
-               measurements = static_cast<std::size_t>(arrays.measurements);
-    const auto nonzero = static_cast<std::size_t>(
-        _mrcal_num_j_nonzero(arrays.views(), 0, arrays.columns, arrays.rows, 1, 0, arrays.views(), 0, 0,
-                             arrays.observations.data(), nullptr, arrays.selections, &arrays.model));
-    std::vector<double> state(states), residuals(measurements), values(nonzero);
-    std::vector<int> starts(measurements + 1), indices(nonzero);
-    cholmod_sparse transposed{};
-    transposed.nrow = states;
-    transposed.ncol = measurements;
-    transposed.nzmax = nonzero;
-    transposed.p = starts.data();
-    transposed.i = indices.data();
-    transposed.x = values.data();
-    transposed.itype = CHOLMOD_INT;
-    transposed.xtype = CHOLMOD_REAL;
-    transposed.dtype = CHOLMOD_DOUBLE;
-    transposed.sorted = 1;
-    transposed.packed = 1;
-    std::string messages;
-    {
-      const CaughtStandardError caught(messages);
-      if (!mrcal_optimizer_callback(state.data(), bytes(state), residuals.data(), bytes(residuals), &transposed,
-                                    arrays.intrinsics.data(), nullptr, arrays.frames.data(), nullptr, &arrays.warp, 1,
-                                    0, arrays.views(), 0, 0, arrays.observations.data(), nullptr, arrays.views(), 0,
-                                    arrays.pool.data(), &arrays.model, arrays.image_size.data(), arrays.selections,
-                                    &arrays.constants, arrays.spacing, arrays.columns, arrays.rows, false))
-        throw std::runtime_error("lens calibration: mrcal could not linearise the fit: " + messages);
-    }
-    double squares = 0.0;
-    int used = 0;
-    for (std::size_t v = 0; v < bundle.views.size(); ++v) {
-      const BundlePicture& view = bundle.views[v];
-      result.errors_px.emplace_back(view.corners.size(), Eigen::Vector2d::Zero());
-      for (std::size_t c = 0; c < view.corners.size(); ++c) {
-        if (!view.used[c]) continue;
-        const std::size_t row = 2 * (v * arrays.nodes() + arrays.node(view.corners[c]));
-        result.errors_px[v][c] = {residuals[row], residuals[row + 1]};
-        squares += result.errors_px[v][c].squaredNorm();
-        ++used;
-      }
-    }
-    const double freedoms = 2.0 * used - static_cast<double>(states);
-    result.rms_px = std::sqrt(squares / std::max(1.0, 2.0 * used));
-    result.sigma_px = freedoms > 0.0 ? std::sqrt(squares / freedoms) : std::numeric_limits<double>::infinity();
-
-    // Regularisation terms hold the solution back but carry no noise, so they are in `curvature` and not in
-    // `information`.
-    using Sparse = Eigen::SparseMatrix<double>;
-    const Eigen::Map<const Sparse> jt(arrays.states, arrays.measurements, static_cast<Eigen::Index>(nonzero),
-                                      starts.data(), indices.data(), values.data());
-    const Sparse seen = jt.leftCols(mrcal_num_measurements_boards(arrays.views(), arrays.columns, arrays.rows));
-    const Eigen::MatrixXd information = Sparse(seen * Sparse(seen.transpose()));
-    const Eigen::MatrixXd curvature = Sparse(jt * Sparse(jt.transpose()));
-    const Eigen::LLT<Eigen::MatrixXd> factor(curvature);
-    result.covariance =
-        Eigen::MatrixXd::Constant(arrays.states, arrays.states, std::numeric_limits<double>::infinity());
-    if (factor.info() != Eigen::Success || !std::isfinite(result.sigma_px)) return;
-    const Eigen::VectorXd gradient = jt * Eigen::Map<const Eigen::VectorXd>(residuals.data(), arrays.measurements);
-    result.step_px = std::sqrt(gradient.dot(factor.solve(gradient)));
-    const Eigen::MatrixXd half = factor.solve(information);
-    Eigen::MatrixXd covariance = factor.solve(half.transpose()) * (result.sigma_px * result.sigma_px);
-    Eigen::VectorXd scale = Eigen::VectorXd::Ones(arrays.states);
-    mrcal_unpack_solver_state_vector(scale.data(), 1, 0, arrays.views(), 0, 0, arrays.selections, &arrays.model);
-    const int lens = number_of_intrinsics(bundle.lens.model);
-    for (Eigen::Index i = lens; i < arrays.states; ++i) {
-      const bool rotation = i < lens + 6 * arrays.views() && (i - lens) % 6 < 3;
-      if (!rotation) scale[i] /= kM_per_mm;
-    }
-    covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
-    if (covariance.allFinite()) result.covariance = 0.5 * (covariance + covariance.transpose());
+    const LinearFit fit = linear_fit(arrays);
+    add_errors(bundle, arrays, fit.residuals, result);
+    add_covariance(number_of_intrinsics(bundle.lens.model), arrays, fit, result);
   });
   return result;
 }

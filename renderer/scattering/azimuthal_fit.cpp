@@ -96,6 +96,41 @@ VectorXd start_of(const std::array<double, 3>& beta, const std::vector<double>& 
   return start;
 }
 
+using YarnJet = ceres::Jet<double, 3>;  // eta, gamma_tt, the distribution's sigma_a
+
+// The yarn's density and its derivatives; unknowns 0 and 1 are eta and gamma_tt, `sigma` the absorption's (-1: none).
+void add_yarn(const AzimuthalData& data, const BasicYarnParameters<YarnJet>& parameters, Eigen::Index sigma,
+              ArrayXd& density, MatrixXd* by_unknown) {
+  const YarnModel<YarnJet> yarn(parameters);
+  const auto bins = static_cast<int>(data.density.size());
+  const Vec3<double> wo(std::sin(data.theta_rad), std::cos(data.theta_rad), 0);
+  const auto add = [&](const YarnJet& energy, const ArrayXd& shape, const ArrayXd& by_scale, const YarnJet& scale) {
+    density += energy.a * shape;
+    if (!by_unknown) return;
+    const std::array<Eigen::Index, 3> columns{0, 1, sigma};
+    for (int i = 0; i < 3; ++i)
+      if (columns[static_cast<std::size_t>(i)] >= 0)
+        by_unknown->col(columns[static_cast<std::size_t>(i)]) +=
+            (energy.v[i] * shape + energy.a * scale.v[i] * by_scale).matrix();
+  };
+  // The lobes change with h only through the number of fibers on the chord: one profile for each number.
+  constexpr int kOffsets = 1000;
+  const ArrayXd uniform = ArrayXd::Constant(bins, 1 / (2 * std::numbers::pi)), none = ArrayXd::Zero(bins);
+  const auto offset = [](int index) { return (index + 0.5) / kOffsets; };
+  const auto on_chord = [&](int index) {
+    return fibers_on_chord(parameters.fiber_count, parameters.radius_ratio, offset(index));
+  };
+  for (int i = 0; i < kOffsets;) {
+    const int from = i, n = on_chord(from);
+    while (i < kOffsets && on_chord(i) == n) ++i;
+    const CurveLobes<YarnJet> lobes = yarn.lobes_at(offset(from), wo);
+    const YarnJet share(static_cast<double>(i - from) / kOffsets), scale = lobes.widths->s[1];
+    const AzimuthalProfile forward = logistic_profile(std::numbers::pi, scale.a, bins);
+    add(share * (lobes.attenuation(0, 0) + lobes.attenuation(2, 0)), uniform, none, YarnJet(0.0));
+    add(share * lobes.attenuation(1, 0), forward.density, forward.by_scale, scale);
+  }
+}
+
 }  // namespace
 
 SeparateThreadFit fit_thread_separately(const AzimuthalData& data) {
@@ -161,55 +196,27 @@ JointThreadFit fit_thread_jointly(const std::vector<AzimuthalData>& data) {
 }
 
 YarnFit fit_yarn(const std::vector<AzimuthalData>& data, double radius_ratio) {
-  using Jet = ceres::Jet<double, 3>;  // eta, gamma_tt, the distribution's sigma_a
   constexpr Eigen::Index kSigma = 2;
   const std::vector<double> absorptions = distinct_absorptions(data);
   DensityModel model;
   model.unknowns = {{"eta", 1.01, 3}, {"gamma_TT", kLeastRoughness, 1}};
   for (const FitUnknown& sigma : sigma_unknowns(absorptions)) model.unknowns.push_back(sigma);
-  const auto count = static_cast<Eigen::Index>(model.unknowns.size());
+  std::vector<VectorXd> starts;
+  for (double gamma : {0.3, 0.7}) {
+    VectorXd start = VectorXd::Constant(static_cast<Eigen::Index>(model.unknowns.size()), 0.5);
+    start[0] = 1.5, start[1] = gamma;
+    starts.push_back(start);
+  }
   YarnFit best;
   best.error = std::numeric_limits<double>::infinity();
   for (int fibers : kSweptFiberCounts) {
     model.evaluate = [&](std::size_t k, const VectorXd& u, ArrayXd& density, MatrixXd* by_unknown) {
-      const AzimuthalData& d = data[k];
-      const Eigen::Index sigma = sigma_index(absorptions, d.absorption, kSigma);
-      const Jet eta(u[0], 0), gamma(u[1], 1), absorption = sigma < 0 ? Jet(0.0) : Jet(u[sigma], 2);
-      BasicYarnParameters<Jet> parameters{.fiber_count = fibers, .radius_ratio = radius_ratio};
-      parameters.eta = eta, parameters.gamma_tt = gamma, parameters.sigma_a.setConstant(absorption);
-      const YarnModel<Jet> yarn(parameters);
-      const auto bins = static_cast<int>(d.density.size());
-      const Vec3<double> wo(std::sin(d.theta_rad), std::cos(d.theta_rad), 0);
-      const auto add = [&](const Jet& energy, const ArrayXd& shape, const ArrayXd& by_scale, const Jet& scale) {
-        density += energy.a * shape;
-        if (!by_unknown) return;
-        const std::array<Eigen::Index, 3> columns{0, 1, sigma};
-        for (int i = 0; i < 3; ++i)
-          if (columns[static_cast<std::size_t>(i)] >= 0)
-            by_unknown->col(columns[static_cast<std::size_t>(i)]) +=
-                (energy.v[i] * shape + energy.a * scale.v[i] * by_scale).matrix();
-      };
-      // The lobes change with h only through the number of fibers on the chord: one profile for each number.
-      constexpr int kOffsets = 1000;
-      const ArrayXd uniform = ArrayXd::Constant(bins, 1 / (2 * std::numbers::pi)), none = ArrayXd::Zero(bins);
-      for (int i = 0; i < kOffsets;) {
-        const auto offset = [&](int index) { return (index + 0.5) / kOffsets; };
-        const int n = fibers_on_chord(fibers, radius_ratio, offset(i));
-        const int from = i;
-        while (i < kOffsets && fibers_on_chord(fibers, radius_ratio, offset(i)) == n) ++i;
-        const CurveLobes<Jet> lobes = yarn.lobes_at(offset(from), wo);
-        const Jet share(static_cast<double>(i - from) / kOffsets), scale = lobes.widths->s[1];
-        const AzimuthalProfile forward = logistic_profile(std::numbers::pi, scale.a, bins);
-        add(share * (lobes.attenuation(0, 0) + lobes.attenuation(2, 0)), uniform, none, Jet(0.0));
-        add(share * lobes.attenuation(1, 0), forward.density, forward.by_scale, scale);
-      }
+      const Eigen::Index sigma = sigma_index(absorptions, data[k].absorption, kSigma);
+      BasicYarnParameters<YarnJet> parameters{.fiber_count = fibers, .radius_ratio = radius_ratio};
+      parameters.eta = YarnJet(u[0], 0), parameters.gamma_tt = YarnJet(u[1], 1);
+      parameters.sigma_a.setConstant(sigma < 0 ? YarnJet(0.0) : YarnJet(u[sigma], 2));
+      add_yarn(data[k], parameters, sigma, density, by_unknown);
     };
-    std::vector<VectorXd> starts;
-    for (double gamma : {0.3, 0.7}) {
-      VectorXd start = VectorXd::Constant(count, 0.5);
-      start[0] = 1.5, start[1] = gamma;
-      starts.push_back(start);
-    }
     YarnFit fit;
     const VectorXd u = fit_densities(data, model, starts, fit);
     if (fit.error >= best.error) continue;

@@ -8,23 +8,13 @@
 namespace renderer {
 namespace {
 
+using Block12 = Eigen::Matrix<double, 12, 12>;
+
 constexpr double kSkin = 0.08;  // of the smallest contact distance
 
 int floor_divide(int a, int b) {
   return a >= 0 ? a / b : -((b - 1 - a) / b);
 }
-
-// Squares over the cell, each at least `reach` wide, so that neighbouring squares hold all that is near. Where squares
-// are few, their neighbours are periodic images of themselves.
-struct Grid {
-  Eigen::Vector2i squares;
-  std::vector<std::vector<int>> members;
-
-  Grid(const Eigen::Vector2d& period, double reach)
-      : squares((period / reach).array().floor().min(512.0).max(1.0).cast<int>()),
-        members(static_cast<std::size_t>(squares.prod())) {}
-  std::vector<int>& at(int column, int row) { return members[static_cast<std::size_t>(row * squares.x() + column)]; }
-};
 
 double half_width(const ModelYarn& yarn) {
   return yarn.radius_mm * std::sqrt(yarn.flatness);
@@ -61,6 +51,62 @@ struct ContactList::Touch {
   Eigen::Vector3d scale;
   double distance, contact;
   double factor;  // energy = factor f(distance / contact)
+};
+
+// The samples of one segment of a yarn, and the sphere round them.
+struct ContactList::Segment {
+  int yarn, first, last;  // samples
+  Eigen::Vector3d center;
+  double radius = 0;
+  Eigen::Vector2i square = Eigen::Vector2i::Zero();
+  Eigen::Vector2i home = Eigen::Vector2i::Zero();  // periods that bring it into the cell
+};
+
+struct ContactList::Neighbour {
+  int segment;
+  Eigen::Vector2i cell;
+};
+
+// Squares over the cell, each at least `reach` wide, so that neighbouring squares hold all that is near. Where squares
+// are few, their neighbours are periodic images of themselves.
+struct ContactList::Grid {
+  Eigen::Vector2d period;
+  Eigen::Vector2i squares;
+  std::vector<std::vector<int>> members;
+
+  Grid(const Eigen::Vector2d& period_mm, double reach)
+      : period(period_mm),
+        squares((period_mm / reach).array().floor().min(512.0).max(1.0).cast<int>()),
+        members(static_cast<std::size_t>(squares.prod())) {}
+  std::vector<int>& at(int column, int row) { return members[static_cast<std::size_t>(row * squares.x() + column)]; }
+
+  void put(int index, Segment& segment) {
+    for (int axis = 0; axis < 2; ++axis) {
+      const int square = static_cast<int>(std::floor(segment.center[axis] / period[axis] * squares[axis]));
+      segment.home[axis] = -floor_divide(square, squares[axis]);
+      segment.square[axis] = square + segment.home[axis] * squares[axis];
+    }
+    at(segment.square.x(), segment.square.y()).push_back(index);
+  }
+
+  // The segments of later yarns in the squares round that of `a`, in order.
+  void find_neighbours(const Segment& a, const std::vector<Segment>& segments, std::vector<Neighbour>& neighbours) {
+    neighbours.clear();
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const Eigen::Vector2i square = a.square + Eigen::Vector2i(dx, dy);
+        const Eigen::Vector2i turn(floor_divide(square.x(), squares.x()), floor_divide(square.y(), squares.y()));
+        const Eigen::Vector2i inside = square - turn.cwiseProduct(squares);
+        for (const int k : at(inside.x(), inside.y())) {
+          const Segment& b = segments[static_cast<std::size_t>(k)];
+          if (a.yarn < b.yarn) neighbours.push_back({k, b.home + turn - a.home});
+        }
+      }
+    }
+    std::sort(neighbours.begin(), neighbours.end(), [](const Neighbour& p, const Neighbour& q) {
+      return std::tuple(p.segment, p.cell.x(), p.cell.y()) < std::tuple(q.segment, q.cell.x(), q.cell.y());
+    });
+  }
 };
 
 void ContactList::make_samples(const WeaveModel& model) {
@@ -107,46 +153,31 @@ void ContactList::update(const WeaveModel& model, const Eigen::Matrix3Xd& points
   if (!same) search(model, points);
 }
 
+std::vector<ContactList::Segment> ContactList::segments_of(const Eigen::Matrix3Xd& at) const {
+  std::vector<Segment> segments;
+  const auto samples = static_cast<int>(samples_.size());
+  for (int first = 0, last = 0; first < samples; first = last) {
+    const Sample& sample = samples_[static_cast<std::size_t>(first)];
+    while (last < samples && samples_[static_cast<std::size_t>(last)].same_segment(sample)) ++last;
+    Segment segment{sample.yarn, first, last, at.middleCols(first, last - first).rowwise().mean()};
+    for (int s = first; s < last; ++s) segment.radius = std::max(segment.radius, (at.col(s) - segment.center).norm());
+    segments.push_back(segment);
+  }
+  return segments;
+}
+
 // Finds the pairs: first segments that are near each other, by the spheres round their samples, then their samples.
 void ContactList::search(const WeaveModel& model, const Eigen::Matrix3Xd& points) {
   searched_at_ = points;
   searched_period_mm_ = model.period_mm;
   pairs_.clear();
   const Eigen::Matrix3Xd at = positions(model, points);
-  struct Segment {
-    int yarn, first, last;  // samples
-    Eigen::Vector3d center;
-    double radius = 0;
-    Eigen::Vector2i home = Eigen::Vector2i::Zero();  // periods that bring it into the cell
-  };
-  std::vector<Segment> segments;
-  const auto samples = static_cast<int>(samples_.size());
+  std::vector<Segment> segments = segments_of(at);
   double largest = 0, widest = 0;
-  for (int first = 0, last = 0; first < samples; first = last) {
-    const Sample& sample = samples_[static_cast<std::size_t>(first)];
-    const auto together = [&](const Sample& other) {
-      return other.yarn == sample.yarn && other.segment == sample.segment;
-    };
-    while (last < samples && together(samples_[static_cast<std::size_t>(last)])) ++last;
-    Segment segment{sample.yarn, first, last, at.middleCols(first, last - first).rowwise().mean()};
-    for (int s = first; s < last; ++s) segment.radius = std::max(segment.radius, (at.col(s) - segment.center).norm());
-    largest = std::max(largest, segment.radius);
-    segments.push_back(segment);
-  }
+  for (const Segment& segment : segments) largest = std::max(largest, segment.radius);
   for (const Sample& sample : samples_) widest = std::max(widest, 2 * sample.section.half_width);
   Grid grid(model.period_mm, widest + skin_mm_ + 2 * largest);
-  std::vector<Eigen::Vector2i> squares;
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    Eigen::Vector2i inside;
-    for (int axis = 0; axis < 2; ++axis) {
-      const int square =
-          static_cast<int>(std::floor(segments[i].center[axis] / model.period_mm[axis] * grid.squares[axis]));
-      segments[i].home[axis] = -floor_divide(square, grid.squares[axis]);
-      inside[axis] = square + segments[i].home[axis] * grid.squares[axis];
-    }
-    grid.at(inside.x(), inside.y()).push_back(static_cast<int>(i));
-    squares.push_back(inside);
-  }
+  for (std::size_t i = 0; i < segments.size(); ++i) grid.put(static_cast<int>(i), segments[i]);
   const auto add_pairs = [&](const Segment& a, const Segment& b, const Eigen::Vector2i& cell) {
     Eigen::Vector3d image = Eigen::Vector3d::Zero();
     image.head<2>() = model.period_mm.cwiseProduct(cell.cast<double>());
@@ -161,29 +192,9 @@ void ContactList::search(const WeaveModel& model, const Eigen::Matrix3Xd& points
       }
     }
   };
-  struct Neighbour {
-    int segment;
-    Eigen::Vector2i cell;
-  };
   std::vector<Neighbour> neighbours;
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    const Segment& a = segments[i];
-    neighbours.clear();
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
-        const Eigen::Vector2i square = squares[i] + Eigen::Vector2i(dx, dy);
-        const Eigen::Vector2i turn(floor_divide(square.x(), grid.squares.x()),
-                                   floor_divide(square.y(), grid.squares.y()));
-        const Eigen::Vector2i inside = square - turn.cwiseProduct(grid.squares);
-        for (const int k : grid.at(inside.x(), inside.y())) {
-          const Segment& b = segments[static_cast<std::size_t>(k)];
-          if (a.yarn < b.yarn) neighbours.push_back({k, b.home + turn - a.home});
-        }
-      }
-    }
-    std::sort(neighbours.begin(), neighbours.end(), [](const Neighbour& p, const Neighbour& q) {
-      return std::tuple(p.segment, p.cell.x(), p.cell.y()) < std::tuple(q.segment, q.cell.x(), q.cell.y());
-    });
+  for (const Segment& a : segments) {
+    grid.find_neighbours(a, segments, neighbours);
     for (const Neighbour& n : neighbours) add_pairs(a, segments[static_cast<std::size_t>(n.segment)], n.cell);
   }
 }
@@ -206,29 +217,28 @@ void ContactList::for_each_touch(const WeaveModel& model, const Eigen::Matrix3Xd
   }
 }
 
+std::array<PointRef, 4> ContactList::refs_of(const WeaveModel& model, int sample, const Eigen::Vector2i& cell) const {
+  const Sample& of = samples_[static_cast<std::size_t>(sample)];
+  std::array<PointRef, 4> refs;
+  for (int i = 0; i < 4; ++i)
+    refs[static_cast<std::size_t>(i)] =
+        point_ref(model.yarns[static_cast<std::size_t>(of.yarn)], of.segment - 1 + i, cell);
+  return refs;
+}
+
 void ContactList::add(const WeaveModel& model, const Eigen::Matrix3Xd& points, WeaveDerivatives& sum) const {
   Eigen::Matrix3Xd pull = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(samples_.size()));  // dE / d sample
-  using Block12 = Eigen::Matrix<double, 12, 12>;
   const bool curved = sum.curvature != Curvature::none;
   std::vector<Eigen::Matrix3d> own(curved ? samples_.size() : 0, Eigen::Matrix3d::Zero());
   Block12 across = Block12::Zero();  // of the segments of a and b, while pairs of the same segments follow each other
   const Pair* group = nullptr;
   const auto sample = [&](int index) -> const Sample& { return samples_[static_cast<std::size_t>(index)]; };
-  const auto refs_of = [&](int index, const Eigen::Vector2i& cell) {
-    std::array<PointRef, 4> refs;
-    for (int i = 0; i < 4; ++i)
-      refs[static_cast<std::size_t>(i)] =
-          point_ref(model.yarns[static_cast<std::size_t>(sample(index).yarn)], sample(index).segment - 1 + i, cell);
-    return refs;
-  };
   const auto close_group = [&] {
-    if (group)
-      sum.add_cross_curvature<4>(refs_of(group->a, Eigen::Vector2i::Zero()), refs_of(group->b, group->cell), across);
+    if (group) sum.add_cross_curvature<4>(refs_of(model, group->a), refs_of(model, group->b, group->cell), across);
     across.setZero();
   };
   const auto same_group = [&](const Pair& p, const Pair& q) {
-    return sample(p.a).yarn == sample(q.a).yarn && sample(p.a).segment == sample(q.a).segment &&
-           sample(p.b).yarn == sample(q.b).yarn && sample(p.b).segment == sample(q.b).segment && p.cell == q.cell;
+    return sample(p.a).same_segment(sample(q.a)) && sample(p.b).same_segment(sample(q.b)) && p.cell == q.cell;
   };
   for_each_touch(model, points, [&](const Touch& touch) {
     const Pair& pair = pairs_[touch.pair];
@@ -256,20 +266,24 @@ void ContactList::add(const WeaveModel& model, const Eigen::Matrix3Xd& points, W
         across.block<3, 3>(3 * p, 3 * r) -= sample(pair.a).weights[p] * sample(pair.b).weights[r] * second;
   });
   close_group();
-  // What was summed at samples is handed on to control points, segment by segment.
+  hand_to_controls(model, pull, own, sum);
+}
+
+// What was summed at samples is handed on to control points, segment by segment.
+void ContactList::hand_to_controls(const WeaveModel& model, const Eigen::Matrix3Xd& pull,
+                                   const std::vector<Eigen::Matrix3d>& own, WeaveDerivatives& sum) const {
+  const bool curved = sum.curvature != Curvature::none;
   for (std::size_t first = 0, last = 0; first < samples_.size(); first = last) {
     Eigen::Matrix<double, 3, 4> slope = Eigen::Matrix<double, 3, 4>::Zero();
     Block12 second = Block12::Zero();
-    for (; last < samples_.size() && samples_[last].yarn == samples_[first].yarn &&
-           samples_[last].segment == samples_[first].segment;
-         ++last) {
+    for (; last < samples_.size() && samples_[last].same_segment(samples_[first]); ++last) {
       const Eigen::Vector4d& w = samples_[last].weights;
       slope += pull.col(static_cast<Eigen::Index>(last)) * w.transpose();
       if (!curved) continue;
       for (int p = 0; p < 4; ++p)
         for (int r = 0; r < 4; ++r) second.block<3, 3>(3 * p, 3 * r) += w[p] * w[r] * own[last];
     }
-    const auto refs = refs_of(static_cast<int>(first), Eigen::Vector2i::Zero());
+    const auto refs = refs_of(model, static_cast<int>(first));
     sum.add<4>(refs, slope);
     if (curved) sum.add_curvature<4>(refs, second);
   }

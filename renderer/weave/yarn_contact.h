@@ -43,6 +43,8 @@ class ContactList {
     Eigen::Vector4d weights;  // of the segment's control points
     double length_mm = 0;
     Section section;
+
+    bool same_segment(const Sample& other) const { return yarn == other.yarn && segment == other.segment; }
   };
   struct Pair {
     int a = 0, b = 0;                                // samples; the yarn of a comes before that of b
@@ -50,12 +52,20 @@ class ContactList {
   };
   struct Metric;
   struct Touch;
+  struct Segment;
+  struct Neighbour;
+  struct Grid;
 
   void make_samples(const WeaveModel& model);
   Eigen::Matrix3Xd positions(const WeaveModel& model, const Eigen::Matrix3Xd& points) const;
+  std::vector<Segment> segments_of(const Eigen::Matrix3Xd& at) const;
   void search(const WeaveModel& model, const Eigen::Matrix3Xd& points);
   template <typename Visit>
   void for_each_touch(const WeaveModel& model, const Eigen::Matrix3Xd& points, Visit&& visit) const;
+  std::array<PointRef, 4> refs_of(const WeaveModel& model, int sample,
+                                  const Eigen::Vector2i& cell = Eigen::Vector2i::Zero()) const;
+  void hand_to_controls(const WeaveModel& model, const Eigen::Matrix3Xd& pull, const std::vector<Eigen::Matrix3d>& own,
+                        WeaveDerivatives& sum) const;
 
   double spacing_, skin_mm_ = 0;
   std::vector<Sample> samples_;

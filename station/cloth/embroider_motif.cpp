@@ -174,6 +174,41 @@ void render_on_scene(const EmbroiderRequest& request, const Embroidery& embroide
                std::move(ready.cloths));
 }
 
+std::vector<EmbroideredThread> embroidered_threads(const renderer::Motif& motif,
+                                                   const renderer::MotifMeasures& measures, const ThreadFile& digitized,
+                                                   const AbsorptionCurves& curves, const EmbroiderRequest& request) {
+  std::vector<EmbroideredThread> threads;
+  for (std::size_t i = 0; i < motif.threads.size(); ++i) {
+    EmbroideredThread made = dyed_thread(wanted_colour(motif, i, request), digitized, curves);
+    made.name = motif.threads[i].name;
+    made.stitches = measures.stitches_of_threads[i];
+    made.length_mm = measures.lengths_mm[i];
+    threads.push_back(made);
+  }
+  return threads;
+}
+
+std::vector<renderer::ThreadParameters> scattering_of(const std::vector<EmbroideredThread>& threads,
+                                                      const ThreadFile& digitized) {
+  std::vector<renderer::ThreadParameters> scattering;
+  for (const EmbroideredThread& thread : threads) {
+    scattering.push_back(digitized.parameters);
+    for (int c = 0; c < 3; ++c) scattering.back().sigma_a[c] = thread.sigma_a[static_cast<std::size_t>(c)];
+  }
+  return scattering;
+}
+
+void write_reflectance(const std::filesystem::path& file, const cv::Mat3f& image, const std::string& motif,
+                       const ThreadFile& digitized) {
+  if (file.extension() == ".exr")
+    renderer::write_exr(file, image,
+                        {{"threadstation/content", "linear camera RGB, reflectance under even light"},
+                         {"threadstation/motif", motif},
+                         {"threadstation/software", software_version()}});
+  else
+    renderer::write_png(file, display(image, 1, digitized.linear_srgb_from_camera));
+}
+
 }  // namespace
 
 Embroidery embroider(const EmbroiderRequest& request) {
@@ -199,37 +234,22 @@ Embroidery embroider(const EmbroiderRequest& request) {
   Embroidery embroidery{.name = motif.name,
                         .width_mm = measures.high.x() - measures.low.x(),
                         .height_mm = measures.high.y() - measures.low.y(),
-                        .threads = {},
+                        .threads = embroidered_threads(motif, measures, digitized, curves, request),
                         .image = request.out.string()};
-  std::vector<renderer::ThreadParameters> threads;
-  for (std::size_t i = 0; i < motif.threads.size(); ++i) {
-    EmbroideredThread made = dyed_thread(wanted_colour(motif, i, request), digitized, curves);
-    made.name = motif.threads[i].name;
-    made.stitches = measures.stitches_of_threads[i];
-    made.length_mm = measures.lengths_mm[i];
-    threads.push_back(digitized.parameters);
-    for (int c = 0; c < 3; ++c) threads.back().sigma_a[c] = made.sigma_a[static_cast<std::size_t>(c)];
-    embroidery.threads.push_back(made);
-  }
   if (!request.scene.empty()) {
     progress.finish("sewing on " + request.scene.string());
     render_on_scene(request, embroidery, std::move(scene));
     return embroidery;
   }
-  const renderer::PathTracer tracer(scene_of(motif, threads, request.diameter_mm, ground));
+  const renderer::PathTracer tracer(
+      scene_of(motif, scattering_of(embroidery.threads, digitized), request.diameter_mm, ground));
   const cv::Mat3f image = tracer.render(camera, {.samples_per_pixel = request.samples_per_pixel.value_or(kSamples),
                                                  .seed = request.seed,
                                                  .progress = [&](double share) {
                                                    show(kCurveShare + (100 - kCurveShare) * share, "rendering");
                                                    return !interrupted();
                                                  }});
-  if (request.out.extension() == ".exr")
-    renderer::write_exr(request.out, image,
-                        {{"threadstation/content", "linear camera RGB, reflectance under even light"},
-                         {"threadstation/motif", motif.name},
-                         {"threadstation/software", software_version()}});
-  else
-    renderer::write_png(request.out, display(image, 1, digitized.linear_srgb_from_camera));
+  write_reflectance(request.out, image, motif.name, digitized);
   progress.finish(request.out.string());
   return embroidery;
 }

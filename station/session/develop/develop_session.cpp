@@ -265,6 +265,23 @@ void for_each_view(std::size_t count, double bytes_per_view, const std::function
     if (error) std::rethrow_exception(error);
 }
 
+// The holder's place in each mounting by the session's pose pictures; without any of them it is the nominal one.
+std::map<rig::Mounting, MountedHolder> mounted_holders(const std::filesystem::path& session, const SessionFile& asked,
+                                                       const Pictures& pictures, const RigCalibration& calibration) {
+  std::map<rig::Mounting, MountedHolder> mounted;
+  std::map<rig::Mounting, std::vector<PosePicture>> posed;
+  for (const PlanStep& step : asked.plan.steps) {
+    if (step.kind != StepKind::pose) continue;
+    const PictureRecord& picture = picture_of(pictures, step.id);
+    posed[step.mounting].push_back({step.id, picture.read_angle_rad, tags_in(read_picture(session, picture))});
+  }
+  for (const auto& [mounting, seen] : posed) mounted[mounting] = measure_holder(seen, calibration, asked.rig);
+  if (posed.empty())
+    for (const rig::Mounting mounting : {rig::Mounting::horizontal, rig::Mounting::vertical})
+      mounted[mounting] = {.platform_from_holder = nominal_pose(asked.rig, asked.spool, mounting)};
+  return mounted;
+}
+
 void require_expected_width(double width_mm, const Spool& spool) {
   constexpr double kTolerance = 0.05;  // a pixel or two at either edge; a forgotten turn is 0.02
   const double expected_mm = spool.wrapping.turns * spool.wrapping.thread_diameter_mm;
@@ -273,6 +290,20 @@ void require_expected_width(double width_mm, const Spool& spool) {
                            number_text(spool.wrapping.thread_diameter_mm, 3) + " mm would be " +
                            number_text(expected_mm, 2) + " mm wide, the pictures show " + number_text(width_mm, 2) +
                            " mm; correct turns or thread_diameter_mm in the spool file");
+}
+
+// Notes what follows from all views together: the lamp's changes and the sheet's width.
+void note_what_views_share(const SessionFile& asked, const std::vector<DevelopedPicture>& found,
+                           DevelopedViews& developed) {
+  std::vector<ChipView> patches;
+  std::vector<double> widths_mm;
+  for (const DevelopedPicture& picture : found) {
+    patches.push_back(picture.patch);
+    if (picture.sheet_width_mm) widths_mm.push_back(*picture.sheet_width_mm);
+  }
+  if (asked.rig.reference_chip && !asked.spool.fabric) note_lamp_changes(patches, developed.views);
+  if (!widths_mm.empty()) developed.sheet_width_mm = calibration::median(widths_mm);
+  if (developed.sheet_width_mm) require_expected_width(*developed.sheet_width_mm, asked.spool);
 }
 
 }  // namespace
@@ -286,18 +317,7 @@ DevelopedViews develop_session(const std::filesystem::path& session, ProgressSty
   RigCalibration calibration = read_calibration(session / "calibration");
   if (calibration.sensor) load_sensor_maps(session / "calibration", *calibration.sensor);
   const Pictures pictures = taken_pictures(read_journal(session / "journal.jsonl").records);
-  std::map<rig::Mounting, MountedHolder> mounted;
-  std::map<rig::Mounting, std::vector<PosePicture>> posed;
-  for (const PlanStep& step : asked.plan.steps) {
-    if (step.kind != StepKind::pose) continue;
-    const PictureRecord& picture = picture_of(pictures, step.id);
-    posed[step.mounting].push_back({step.id, picture.read_angle_rad, tags_in(read_picture(session, picture))});
-  }
-  for (const auto& [mounting, seen] : posed) mounted[mounting] = measure_holder(seen, calibration, asked.rig);
-  if (posed.empty())
-    for (const rig::Mounting mounting : {rig::Mounting::horizontal, rig::Mounting::vertical})
-      mounted[mounting] = {.platform_from_holder = nominal_pose(asked.rig, asked.spool, mounting)};
-
+  const std::map<rig::Mounting, MountedHolder> mounted = mounted_holders(session, asked, pictures, calibration);
   std::vector<PlanStep> views;
   for (const PlanStep& step : asked.plan.steps)
     if (step.kind == StepKind::view) views.push_back(step);
@@ -314,15 +334,7 @@ DevelopedViews develop_session(const std::filesystem::path& session, ProgressSty
                             developed.views[i]);
     ++done;
   });
-  std::vector<ChipView> patches;
-  std::vector<double> widths_mm;
-  for (const DevelopedPicture& picture : found) {
-    patches.push_back(picture.patch);
-    if (picture.sheet_width_mm) widths_mm.push_back(*picture.sheet_width_mm);
-  }
-  if (asked.rig.reference_chip && !asked.spool.fabric) note_lamp_changes(patches, developed.views);
-  if (!widths_mm.empty()) developed.sheet_width_mm = calibration::median(widths_mm);
-  if (developed.sheet_width_mm) require_expected_width(*developed.sheet_width_mm, asked.spool);
+  note_what_views_share(asked, found, developed);
   write_json_file(session / "linear" / "views.json", to_json(developed));
   write_manifest(session / "linear", disk);
   write_manifest(session / "masks", disk);

@@ -104,6 +104,29 @@ void add_spreads(const std::vector<Reading>& draws, std::vector<RecoveredQuantit
   }
 }
 
+// Each quantity of the fit beside the true one.
+std::vector<RecoveredQuantity> recovered_quantities(const inversion::ViewFit& truth, const inversion::ViewFit& fit) {
+  const std::vector<std::string> names = quantity_names();
+  const Reading true_values = reading_of(truth, fit.certainty.covariance),
+                found = reading_of(fit, fit.certainty.covariance);
+  std::vector<RecoveredQuantity> quantities;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    quantities.push_back(
+        {.name = names[i], .truth = true_values.values[i], .fitted = found.values[i], .sigma = found.sigmas[i]});
+  return quantities;
+}
+
+// The same fit begun at what it found, by its last two rounds.
+inversion::FitOptions fit_again(const inversion::FitOptions& options, const inversion::ViewFit& found) {
+  inversion::FitOptions again = options;
+  again.start = found.thread();
+  again.other_starts.clear();
+  const std::vector<int>& paths = options.paths_per_block;
+  again.paths_per_block.assign(paths.end() - static_cast<std::ptrdiff_t>(std::min<std::size_t>(2, paths.size())),
+                               paths.end());
+  return again;
+}
+
 }  // namespace
 
 RecoveredThread recover_thread(const RecoverRequest& request) {
@@ -143,19 +166,9 @@ RecoveredThread recover_thread(const RecoverRequest& request) {
   };
   result.loss_of_truth = loss_of(truth);
   result.loss_of_fit = loss_of(first);
-  const std::vector<std::string> names = quantity_names();
-  const Reading true_values = reading_of(truth, first.certainty.covariance),
-                found = reading_of(first, first.certainty.covariance);
-  for (std::size_t i = 0; i < names.size(); ++i)
-    result.quantities.push_back(
-        {.name = names[i], .truth = true_values.values[i], .fitted = found.values[i], .sigma = found.sigmas[i]});
+  result.quantities = recovered_quantities(truth, first);
 
-  inversion::FitOptions again = request.fit;
-  again.start = first.thread();
-  again.other_starts.clear();
-  const std::vector<int>& paths = request.fit.paths_per_block;
-  again.paths_per_block.assign(paths.end() - static_cast<std::ptrdiff_t>(std::min<std::size_t>(2, paths.size())),
-                               paths.end());
+  inversion::FitOptions again = fit_again(request.fit, first);
   std::vector<Reading> draws;
   for (int draw = 1; draw <= request.draws; ++draw) {
     again.seed = request.fit.seed + 100000 * static_cast<std::uint64_t>(draw);

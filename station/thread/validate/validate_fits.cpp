@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <opencv2/imgproc.hpp>
 
@@ -21,8 +22,10 @@ namespace {
 
 using inversion::View;
 using Pictures = PictureHalves;
+using Step = std::function<void(const std::string&, double)>;  // told what is being done and the finished fraction
 
 constexpr int kBlock_px = 8;
+constexpr double kPhotographShare = 0.2;  // of the work, for each draw
 // The views that each fold leaves out, as indices among the reflections and among the transmissions: middle and oblique
 // ones of both mountings.
 constexpr std::array<std::pair<std::size_t, std::size_t>, 3> kFolds{{{2, 2}, {7, 1}, {10, 3}}};
@@ -82,8 +85,7 @@ cv::Mat3b comparison_row(const View& view, const std::vector<cv::Mat3f>& renderi
 // Fits the thread model to all views by either solver with its defaults, then by the fewest of Levenberg-Marquardt's
 // first rounds that get as far as Adam.
 std::vector<ComparedSolver> compare_solvers(const ValidateRequest& request, const Spool& spool,
-                                            const std::vector<View>& views,
-                                            const std::function<void(const std::string&, double)>& step) {
+                                            const std::vector<View>& views, const Step& step) {
   constexpr int kPaths = 4096, kRepetitions = 4;
   const inversion::FitOptions whole{.seed = request.seed},
       adam{.solver = inversion::Solver::adam, .seed = request.seed};
@@ -139,74 +141,136 @@ std::string label_of(const ValidatedModel& of) {
   return name_of(of.model) + (of.calibrated ? "*" : "");
 }
 
-ValidatedSpool validate_spool(const ValidateRequest& request, const RigFile& rig,
-                              const std::filesystem::path& spool_file,
-                              const std::function<void(const std::string&, double)>& step) {
-  const Spool spool = read_spool(spool_file);
+// The photographs of a spool and those of another draw of its fibers.
+struct TwoDraws {
+  PhotographedSpool made, other;
+};
+
+TwoDraws photograph_twice(const ValidateRequest& request, const RigFile& rig, const Spool& spool,
+                          const std::filesystem::path& spool_file, const Step& step) {
   const std::filesystem::path folder = request.out / spool_file.stem();
-  constexpr double kPhotographShare = 0.2;  // of each draw
   const SpoolPhotographs as_asked{.rig_file = request.rig,
                                   .spool_file = spool_file,
                                   .folder = folder / "photographs",
                                   .samples_per_pixel = request.samples_per_pixel,
                                   .seed = request.seed};
-  const PhotographedSpool made = photograph_spool(
-      rig, spool, as_asked, [&](const std::string& what, double share) { step(what, kPhotographShare * share); });
+  TwoDraws draws;
+  draws.made = photograph_spool(rig, spool, as_asked,
+                                [&](const std::string& what, double share) { step(what, kPhotographShare * share); });
   SimulatedFibers placed_anew = *spool.simulation;
   placed_anew.seed += 1000;
   Spool drawn_anew = spool;
   drawn_anew.simulation = placed_anew;
   SpoolPhotographs of_other = as_asked;
   of_other.folder = folder / "another_draw";
-  const PhotographedSpool other =
-      photograph_spool(rig, drawn_anew, of_other,
-                       [&](const std::string& what, double share) { step(what, kPhotographShare * (1 + share)); });
-  Gathered draws;
+  draws.other = photograph_spool(rig, drawn_anew, of_other, [&](const std::string& what, double share) {
+    step(what, kPhotographShare * (1 + share));
+  });
+  return draws;
+}
+
+Gathered agreement_of(const TwoDraws& draws) {
+  const PhotographedSpool& made = draws.made;
+  Gathered gathered;
   for (std::size_t i = 0; i < made.views.size(); ++i)
-    draws.add(made.views[i],
-              inversion::noiseless_agreement(made.views[i], made.pictures[i], other.pictures[i], kBlock_px));
-  const std::vector<Variant> variants = variants_of(request, rig, spool, made);
-  std::vector<Gathered> gathered(variants.size());
-  const auto parts = static_cast<double>(variants.size()) * request.folds;
-  for (int fold = 0; fold < request.folds; ++fold) {
-    const std::vector<bool> out = left_out(made.views, static_cast<std::size_t>(fold));
-    std::vector<std::vector<cv::Mat3f>> shown(out.size());
-    for (std::size_t m = 0; m < variants.size(); ++m) {
-      Gathered& of = gathered[m];
-      std::vector<View> kept;
-      for (std::size_t i = 0; i < out.size(); ++i)
-        if (!out[i]) kept.push_back(variants[m].views[i]);
-      inversion::FitOptions options{.model = variants[m].model, .seed = request.seed};
-      if (options.model == inversion::ModelKind::yarn) options.paths_per_block = {128, 512};
-      const double done =
-          (static_cast<double>(fold) * static_cast<double>(variants.size()) + static_cast<double>(m)) / parts;
-      options.progress = [&](const std::string& what, double share) {
-        step(name_of(options.model) + (variants[m].calibrated ? " as calibrated, " : ", ") + what,
-             2 * kPhotographShare + (1 - 2 * kPhotographShare) * (done + 0.8 * share / parts));
-        return !interrupted();
-      };
-      const auto started = std::chrono::steady_clock::now();
-      const inversion::ViewFit fit = inversion::fit_views(spool.wrapping, kept, options);
-      of.seconds += seconds_since(started) / request.folds;
-      for (std::size_t i = 0; i < out.size(); ++i) {
-        if (!out[i] && fold > 0) continue;
-        const View& view = variants[m].views[i];
-        const Pictures pictures = rendered(spool.wrapping, view, fit, request.fitted_samples,
-                                           kFittedViewSeeds + 100 * static_cast<std::uint64_t>(fold) + 2 * i);
-        const auto agreement = inversion::noiseless_agreement(view, made.pictures[i], pictures, kBlock_px);
-        if (fold == 0) of.views.push_back({view.id, out[i], agreement.relative_rmse(), agreement.relative_bias});
-        if (!out[i]) {
-          of.fitted.push_back(agreement);
-          continue;
-        }
-        of.add(view, agreement);
-        cv::Mat3f& mean = shown[i].emplace_back();
-        cv::addWeighted(pictures[0], 0.5, pictures[1], 0.5, 0, mean);
-      }
+    gathered.add(made.views[i],
+                 inversion::noiseless_agreement(made.views[i], made.pictures[i], draws.other.pictures[i], kBlock_px));
+  return gathered;
+}
+
+// A spool whose variants are fitted, fold by fold.
+struct FittedSpool {
+  const ValidateRequest& request;
+  const Spool& spool;
+  const PhotographedSpool& made;
+  std::vector<Variant> variants;
+  std::vector<Gathered> gathered;  // of each variant
+};
+
+struct Fold {
+  int number;
+  std::vector<bool> out;                      // of each view
+  std::vector<std::vector<cv::Mat3f>> shown;  // of each view that is left out: the variants' renderings
+};
+
+// Fits a variant to the views that the fold keeps. `step` is told the finished fraction of this fit.
+inversion::ViewFit fit_kept(const FittedSpool& of, const Variant& variant, const Fold& fold, const Step& step) {
+  std::vector<View> kept;
+  for (std::size_t i = 0; i < fold.out.size(); ++i)
+    if (!fold.out[i]) kept.push_back(variant.views[i]);
+  inversion::FitOptions options{.model = variant.model, .seed = of.request.seed};
+  if (options.model == inversion::ModelKind::yarn) options.paths_per_block = {128, 512};
+  options.progress = [&](const std::string& what, double share) {
+    step(name_of(options.model) + (variant.calibrated ? " as calibrated, " : ", ") + what, share);
+    return !interrupted();
+  };
+  return inversion::fit_views(of.spool.wrapping, kept, options);
+}
+
+// Renders the views that the fold leaves out, in the first fold the others too, and gathers how they agree.
+void compare_views(const FittedSpool& of, const Variant& variant, const inversion::ViewFit& fit, Fold& fold,
+                   Gathered& gathered) {
+  for (std::size_t i = 0; i < fold.out.size(); ++i) {
+    if (!fold.out[i] && fold.number > 0) continue;
+    const View& view = variant.views[i];
+    const Pictures pictures = rendered(of.spool.wrapping, view, fit, of.request.fitted_samples,
+                                       kFittedViewSeeds + 100 * static_cast<std::uint64_t>(fold.number) + 2 * i);
+    const auto agreement = inversion::noiseless_agreement(view, of.made.pictures[i], pictures, kBlock_px);
+    if (fold.number == 0)
+      gathered.views.push_back({view.id, fold.out[i], agreement.relative_rmse(), agreement.relative_bias});
+    if (!fold.out[i]) {
+      gathered.fitted.push_back(agreement);
+      continue;
     }
-    for (std::size_t i = 0; i < out.size(); ++i)
-      if (out[i]) renderer::write_png(folder / (made.views[i].id + ".png"), comparison_row(made.views[i], shown[i]));
+    gathered.add(view, agreement);
+    cv::Mat3f& mean = fold.shown[i].emplace_back();
+    cv::addWeighted(pictures[0], 0.5, pictures[1], 0.5, 0, mean);
   }
+}
+
+// Fits all variants without the fold's views. `step` is told the finished fraction of all folds.
+void validate_fold(FittedSpool& of, int number, const std::filesystem::path& folder, const Step& step) {
+  Fold fold{.number = number, .out = left_out(of.made.views, static_cast<std::size_t>(number)), .shown = {}};
+  fold.shown.resize(fold.out.size());
+  const auto variants = static_cast<double>(of.variants.size()), parts = variants * of.request.folds;
+  for (std::size_t m = 0; m < of.variants.size(); ++m) {
+    const double done = (static_cast<double>(number) * variants + static_cast<double>(m)) / parts;
+    const auto started = std::chrono::steady_clock::now();
+    const inversion::ViewFit fit = fit_kept(of, of.variants[m], fold, [&](const std::string& what, double share) {
+      step(what, 2 * kPhotographShare + (1 - 2 * kPhotographShare) * (done + 0.8 * share / parts));
+    });
+    of.gathered[m].seconds += seconds_since(started) / of.request.folds;
+    compare_views(of, of.variants[m], fit, fold, of.gathered[m]);
+  }
+  for (std::size_t i = 0; i < fold.out.size(); ++i)
+    if (fold.out[i])
+      renderer::write_png(folder / (of.made.views[i].id + ".png"), comparison_row(of.made.views[i], fold.shown[i]));
+}
+
+ValidatedModel validated_model(const Variant& variant, const Gathered& gathered) {
+  return {.model = variant.model,
+          .calibrated = variant.calibrated,
+          .relative_rmse = inversion::overall_relative_rmse(gathered.all),
+          .reflection = inversion::overall_relative_rmse(gathered.reflection),
+          .transmission = inversion::overall_relative_rmse(gathered.transmission),
+          .fitted_views = inversion::overall_relative_rmse(gathered.fitted),
+          .seconds = gathered.seconds,
+          .views = gathered.views};
+}
+
+ValidatedSpool validate_spool(const ValidateRequest& request, const RigFile& rig,
+                              const std::filesystem::path& spool_file, const Step& step) {
+  const Spool spool = read_spool(spool_file);
+  const TwoDraws photographs = photograph_twice(request, rig, spool, spool_file, step);
+  const PhotographedSpool& made = photographs.made;
+  const Gathered draws = agreement_of(photographs);
+  FittedSpool fitted{.request = request,
+                     .spool = spool,
+                     .made = made,
+                     .variants = variants_of(request, rig, spool, made),
+                     .gathered = {}};
+  fitted.gathered.resize(fitted.variants.size());
+  for (int fold = 0; fold < request.folds; ++fold) validate_fold(fitted, fold, request.out / spool_file.stem(), step);
   ValidatedSpool result{.name = spool.name,
                         .fibers_per_thread = spool.simulation->fibers_per_thread,
                         .draw = inversion::overall_relative_rmse(draws.all) / std::sqrt(2.0),
@@ -216,15 +280,8 @@ ValidatedSpool validate_spool(const ValidateRequest& request, const RigFile& rig
                         .solvers = {}};
   if (request.solvers) result.solvers = compare_solvers(request, spool, made.views, step);
   if (request.folds == 0) return result;
-  for (std::size_t m = 0; m < variants.size(); ++m)
-    result.models.push_back({.model = variants[m].model,
-                             .calibrated = variants[m].calibrated,
-                             .relative_rmse = inversion::overall_relative_rmse(gathered[m].all),
-                             .reflection = inversion::overall_relative_rmse(gathered[m].reflection),
-                             .transmission = inversion::overall_relative_rmse(gathered[m].transmission),
-                             .fitted_views = inversion::overall_relative_rmse(gathered[m].fitted),
-                             .seconds = gathered[m].seconds,
-                             .views = gathered[m].views});
+  for (std::size_t m = 0; m < fitted.variants.size(); ++m)
+    result.models.push_back(validated_model(fitted.variants[m], fitted.gathered[m]));
   return result;
 }
 
