@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <opencv2/calib3d.hpp>
 #include <set>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 #include "calibration/geometry/lens_difference.h"
 #include "calibration/geometry/mrcal_lens.h"
 #include "calibration/geometry/pose.h"
+#include "calibration/sensor/degree.h"
 #include "calibration/sensor/median.h"
 
 namespace calibration {
@@ -98,7 +98,7 @@ double tilt_spread_deg(const LensBundle& bundle) {
       largest = std::max(largest, std::acos(std::clamp(cosine, -1.0, 1.0)));
     }
   }
-  return largest * 180.0 / std::numbers::pi;
+  return largest / kDegree;
 }
 
 // The number of the picture's 3 x 3 fields in which corners were seen.

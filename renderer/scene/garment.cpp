@@ -5,6 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "renderer/scattering/degree.h"
 #include "renderer/scene/grid_triangles.h"
 
 namespace renderer {
@@ -78,8 +79,7 @@ constexpr int kFine = 4096;  // points of a line whose length is measured
 struct Maker {
   UvMesh operator()(const SkirtShape& s) const {
     constexpr int kAcross = 720, kDown = 180;
-    const double sector_rad = s.flare_deg * std::numbers::pi / 180,
-                 inner_mm = 2 * std::numbers::pi * s.waist_radius_mm / sector_rad;
+    const double sector_rad = s.flare_deg * kDegree, inner_mm = 2 * std::numbers::pi * s.waist_radius_mm / sector_rad;
     const double step_mm = s.length_mm / kDown;
     std::vector<std::vector<Vector2d>> rings;
     for (int row = 0; row <= kDown; ++row) {

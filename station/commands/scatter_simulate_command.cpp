@@ -1,8 +1,8 @@
 #include <iostream>
-#include <numbers>
 
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/documents/degree.h"
 #include "station/thread/scatter/simulate.h"
 
 namespace station {
@@ -36,7 +36,7 @@ void add_scatter_simulate_command(CLI::App& scatter) {
   arguments->output.add_to(*command);
   command->callback([arguments] {
     SimulateRequest& request = arguments->request;
-    request.options.theta_rad = arguments->theta_deg * std::numbers::pi / 180;
+    request.options.theta_rad = arguments->theta_deg * kDegree;
     if (arguments->placement == "radius") request.options.placement = renderer::FiberPlacement::radius_uniform;
     request.progress = arguments->output.progress_style();
     const renderer::MultiFiberScattering found = simulate_to_file(request);

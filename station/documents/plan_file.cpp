@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "station/documents/degree.h"
@@ -44,8 +43,7 @@ PlanStep read_step(ObjectReader& reader) {
   step.mounting = mounting_from_name(reader.choice("mounting", {"horizontal", "vertical"}));
   step.lamp = lamp_from_name(reader.choice("lamp", {"off", "front", "back", "front_left"}));
   step.room_light = reader.flag("room_light");
-  step.platform_angle_rad =
-      reader.number("platform_angle_deg", -kWidestAngleDeg, kWidestAngleDeg) / (180 / std::numbers::pi);
+  step.platform_angle_rad = reader.number("platform_angle_deg", -kWidestAngleDeg, kWidestAngleDeg) * kDegree;
   if (step.kind == StepKind::dark || step.kind == StepKind::exposure) step.exposure_of = reader.text("exposure_of");
   if (step.kind == StepKind::exposure) {
     step.stops = reader.number("stops", -10, 10);

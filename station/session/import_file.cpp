@@ -1,8 +1,8 @@
 #include "station/session/import_file.h"
 
 #include <algorithm>
-#include <numbers>
 
+#include "station/documents/degree.h"
 #include "station/documents/plan_file.h"
 #include "station/documents/reader.h"
 
@@ -16,7 +16,7 @@ ImportedPicture read_picture(ObjectReader& reader, const std::filesystem::path& 
   picture.kind = kind == "view" ? StepKind::view : kind == "pose" ? StepKind::pose : StepKind::dark;
   if (picture.kind != StepKind::dark) {
     picture.mounting = mounting_from_name(reader.choice("mounting", {"horizontal", "vertical"}));
-    picture.platform_angle_rad = reader.number("platform_angle_deg", -360, 360) * std::numbers::pi / 180;
+    picture.platform_angle_rad = reader.number("platform_angle_deg", -360, 360) * kDegree;
   }
   picture.lamp =
       picture.kind == StepKind::view ? lamp_from_name(reader.choice("lamp", {"front", "back"})) : rig::Lamp::off;

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "calibration/sensor/sensor_file.h"
 #include "station/bench/exposure.h"
+#include "station/documents/degree.h"
 #include "station/documents/disk/file_system.h"
 #include "station/documents/disk/sha256.h"
 #include "station/documents/disk/stored_file.h"
@@ -24,7 +24,7 @@ void write_list(const std::filesystem::path& folder, const std::vector<Calibrati
                     {"role", to_text(p.role)},
                     {"file", p.file},
                     {"sha256", p.sha256},
-                    {"reading_deg", p.reading_rad * (180 / std::numbers::pi)},
+                    {"reading_deg", p.reading_rad / kDegree},
                     {"exposure_s", p.exposure_s},
                     {"exposure_of", p.exposure_of},
                     {"utc", p.utc}});
@@ -45,7 +45,7 @@ std::vector<CalibrationPicture> read_list(const std::filesystem::path& folder) {
     p.role = calibration_role(entry.text("role"));
     p.file = entry.text("file");
     p.sha256 = entry.text("sha256");
-    p.reading_rad = entry.number("reading_deg", -360, 360) / (180 / std::numbers::pi);
+    p.reading_rad = entry.number("reading_deg", -360, 360) * kDegree;
     p.exposure_s = entry.number("exposure_s", 1e-9, 1e6);
     p.exposure_of = entry.text("exposure_of");
     p.utc = entry.text("utc");

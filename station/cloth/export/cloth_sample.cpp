@@ -10,6 +10,7 @@
 #include "renderer/scene/patch_curves.h"
 #include "renderer/weave/woven_patch.h"
 #include "station/cloth/render/build_scene.h"
+#include "station/documents/degree.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/thread_file.h"
 
@@ -19,7 +20,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kFar_mm = 1e6;  // of cameras and lights: a period is a millionth of it
-constexpr double kLightRadius_rad = 3 * std::numbers::pi / 180;
+constexpr double kLightRadius_rad = 3 * kDegree;
 constexpr double kMostDifference = 0.1;  // of a yarn's diameter from its thread's
 
 void check_diameter(const renderer::YarnSystem& system, const ThreadFile& thread, const std::filesystem::path& draft,

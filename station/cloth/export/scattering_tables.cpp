@@ -1,11 +1,11 @@
 #include "station/cloth/export/scattering_tables.h"
 
 #include <cstdio>
-#include <numbers>
 #include <xtensor/xadapt.hpp>
 #include <xtensor/xnpy.hpp>
 
 #include "renderer/scattering/thread.h"
+#include "station/documents/degree.h"
 #include "station/thread/scatter/queries.h"
 
 namespace station {
@@ -16,7 +16,7 @@ constexpr int kMeanOffsets = 64;
 
 std::vector<double> steps_deg(double first, double step, int count) {
   std::vector<double> angles_rad;
-  for (int i = 0; i < count; ++i) angles_rad.push_back((first + step * i) * std::numbers::pi / 180);
+  for (int i = 0; i < count; ++i) angles_rad.push_back((first + step * i) * kDegree);
   return angles_rad;
 }
 

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <stdexcept>
 
 #include "calibration/light/colour_chart.h"
 #include "inversion/view/blocks.h"
+#include "station/documents/degree.h"
 #include "station/output/display.h"
 
 namespace station {
@@ -113,7 +113,7 @@ HighlightProfile highlight_of(const std::vector<Eigen::Array3d>& columns, double
   if (light.maxCoeff() > 0) {
     const Eigen::Vector3d lab =
         calibration::lab_of_linear_srgb((colour * (light / light.maxCoeff()).matrix()).cwiseMax(0));
-    profile.hue_deg = std::atan2(lab.z(), lab.y()) * 180 / std::numbers::pi;
+    profile.hue_deg = std::atan2(lab.z(), lab.y()) / kDegree;
   }
   return profile;
 }

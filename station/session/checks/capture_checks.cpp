@@ -190,8 +190,8 @@ class CaptureChecks::Work {
       const auto problem = slip_problem(calibration_, seen.bench, seen.reading_rad, name);
       found("angle", problem ? Grade::bad : Grade::good,
             std::remainder(seen.bench.angle->angle_rad - calibration_.platform.scale * seen.reading_rad,
-                           2 * std::numbers::pi) *
-                180 / std::numbers::pi,
+                           2 * std::numbers::pi) /
+                kDegree,
             problem.value_or(""));
     }
   }
@@ -233,11 +233,11 @@ class CaptureChecks::Work {
     const double tilt_rad = tilt_from(mounted, seen.step.mounting);
     const rig::Mounting other =
         seen.step.mounting == rig::Mounting::horizontal ? rig::Mounting::vertical : rig::Mounting::horizontal;
-    found("orientation", tilt_rad > kMostTilt_rad ? Grade::bad : Grade::good, tilt_rad * 180 / std::numbers::pi,
+    found("orientation", tilt_rad > kMostTilt_rad ? Grade::bad : Grade::good, tilt_rad / kDegree,
           "'" + seen.step.id + "' was to show " + mounting_name(seen.step.mounting) + " threads and the holder " +
               (tilt_from(mounted, other) < kMostTilt_rad
                    ? "stands with them " + mounting_name(other)
-                   : "stands turned by " + number_text(tilt_rad * 180 / std::numbers::pi, 0) + " degrees") +
+                   : "stands turned by " + number_text(tilt_rad / kDegree, 0) + " degrees") +
               "; turn the holder, then resume");
   }
 

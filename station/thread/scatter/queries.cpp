@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "renderer/scene/scene.h"
+#include "station/documents/degree.h"
 #include "station/documents/fiber_file.h"
 #include "station/documents/number_table.h"
 #include "station/documents/parameter_ranges.h"
@@ -58,9 +59,9 @@ FiberParameters overridden(FiberParameters fiber, const NumberTable& table, std:
   take(fiber.sigma_a[2], "sigma_a_b", kAbsorption);
   take(fiber.beta_m, "beta_m", kRoughness);
   take(fiber.beta_n, "beta_n", kRoughness);
-  double tilt_deg = fiber.tilt_rad * 180 / std::numbers::pi;
+  double tilt_deg = fiber.tilt_rad / kDegree;
   take(tilt_deg, "tilt_deg", kTilt_deg);
-  fiber.tilt_rad = tilt_deg * std::numbers::pi / 180;
+  fiber.tilt_rad = tilt_deg * kDegree;
   return fiber;
 }
 
