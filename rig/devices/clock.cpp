@@ -36,6 +36,11 @@ void SystemClock::sleep_s(double duration_s) {
   std::this_thread::sleep_for(std::chrono::duration<double>(duration_s));
 }
 
+void SimulatedClock::sleep_s(double duration_s) {
+  if (pace_ > 0) std::this_thread::sleep_for(std::chrono::duration<double>(duration_s * pace_));
+  elapsed_s_ += duration_s;
+}
+
 std::string SimulatedClock::utc() {
   return utc_from_unix_ms(std::llround((utc_start_unix_s_ + elapsed_s_) * 1000));
 }

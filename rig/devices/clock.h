@@ -22,16 +22,18 @@ class SystemClock final : public Clock {
   void sleep_s(double duration_s) override;
 };
 
-// A clock that starts at a given UTC time and stands still but for sleep_s(), which advances it at once, in any thread.
+// A clock that starts at a given UTC time and stands still but for sleep_s(), which advances it in any thread: at once,
+// or after `pace` real seconds for each of its own, so that another thread can look on.
 class SimulatedClock final : public Clock {
  public:
-  explicit SimulatedClock(double utc_start_unix_s) : utc_start_unix_s_(utc_start_unix_s) {}
+  explicit SimulatedClock(double utc_start_unix_s, double pace = 0)
+      : utc_start_unix_s_(utc_start_unix_s), pace_(pace) {}
   double monotonic_s() override { return elapsed_s_; }
   std::string utc() override;
-  void sleep_s(double duration_s) override { elapsed_s_ += duration_s; }
+  void sleep_s(double duration_s) override;
 
  private:
-  double utc_start_unix_s_;
+  double utc_start_unix_s_, pace_;
   std::atomic<double> elapsed_s_ = 0.0;
 };
 

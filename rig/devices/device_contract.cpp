@@ -92,26 +92,51 @@ Verdict refuses(Turntable& turntable, double angle_rad) {
   return {said && moved_rad == 0, said ? *said + words("; moved by ", degrees(moved_rad)) : "it was accepted"};
 }
 
-// Stops the platform from this thread as soon as it is seen to move in another one; a very quick device may have
-// arrived by then.
-Verdict stopping(Turntable& turntable, double tolerance_rad) {
+constexpr double kStopAfterRad = 5 * kDegree;
+constexpr int kMostStops = 5;
+
+struct Stop {
+  bool seen_turning = false;  // a reading on the way, at which the stop was asked for
+  double asked_at_rad = 0;
+  std::optional<std::string> ended_with{};  // what the move threw; nothing when it had arrived before
+};
+
+// Turns from 0 to 90 degrees in another thread and stops the platform from this one, once it is seen to be on its way.
+Stop stop_on_the_way(Turntable& turntable) {
   turntable.move_to(0);
+  Stop stop;
   std::future<void> move = std::async(std::launch::async, [&] { turntable.move_to(90 * kDegree); });
-  while (turntable.state() != TurntableState::moving &&
-         move.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-    std::this_thread::yield();
-  turntable.stop();
-  const auto ended_early = refusal([&] { move.get(); });
+  while (move.wait_for(std::chrono::seconds(0)) != std::future_status::ready && !stop.seen_turning) {
+    if (turntable.state() != TurntableState::moving) continue;
+    stop.asked_at_rad = turntable.angle_rad();
+    stop.seen_turning = stop.asked_at_rad > kStopAfterRad && stop.asked_at_rad < 90 * kDegree - kStopAfterRad;
+  }
+  if (stop.seen_turning) turntable.stop();
+  stop.ended_with = refusal([&] { move.get(); });
+  return stop;
+}
+
+// A very quick device may arrive before the stop reaches it, so there are several tries. A platform that a hand turns is
+// never seen on its way.
+Verdict stopping(Turntable& turntable, double tolerance_rad) {
+  Stop stop;
+  bool seen_turning = false;
+  for (int tries = 0; tries < kMostStops && !stop.ended_with; ++tries) {
+    stop = stop_on_the_way(turntable);
+    seen_turning = seen_turning || stop.seen_turning;
+  }
+  if (!stop.ended_with)
+    return {!seen_turning, seen_turning ? words("it turned on to its target after each of ", kMostStops, " stops")
+                                        : "it is turned in one go, there is nothing to stop"};
   const TurntableState state = turntable.state();
-  if (state == TurntableState::unknown_position)
-    return {false, "the position was lost: " + ended_early.value_or("no reason was given")};
+  if (state == TurntableState::unknown_position) return {false, "the position was lost: " + *stop.ended_with};
   const double stood_rad = turntable.angle_rad();
   turntable.move_to(10 * kDegree);
   const double then_rad = turntable.angle_rad();
-  const bool known = state == TurntableState::stopped || state == TurntableState::idle;
-  return {known && std::abs(then_rad - 10 * kDegree) <= tolerance_rad,
-          words(ended_early ? "stopped at " : "had arrived before the stop, at ", degrees(stood_rad),
-                known ? "" : " in an unknown state", "; a move to 10 deg then ended at ", degrees(then_rad))};
+  return {state == TurntableState::stopped && std::abs(then_rad - 10 * kDegree) <= tolerance_rad,
+          words("told to stop at ", degrees(stop.asked_at_rad), ", stood at ", degrees(stood_rad),
+                state == TurntableState::stopped ? "" : " in an unknown state", "; a move to 10 deg then ended at ",
+                degrees(then_rad))};
 }
 
 // ------------------------------------------------------------------------------------------------- the camera's rows
@@ -207,7 +232,7 @@ std::vector<ContractRow> check_turntable(Turntable& turntable, double tolerance_
       row("an angle out of range is refused", [&] { return refuses(turntable, 1e6); }),
       row("an angle that is not a number is refused", [&] { return refuses(turntable, kNan); }),
       row("an infinite angle is refused", [&] { return refuses(turntable, -kInfinity); }),
-      row("after a stop the position is known", [&] { return stopping(turntable, tolerance_rad); }),
+      row("a stop ends a move and keeps the position", [&] { return stopping(turntable, tolerance_rad); }),
       row("homing works again", [&] { return homing(turntable, tolerance_rad); }),
   };
 }

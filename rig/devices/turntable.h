@@ -16,8 +16,11 @@ class Turntable {
   virtual void home() = 0;                     // makes the position known; angle 0 afterwards
   virtual void move_to(double angle_rad) = 0;  // returns when the platform stands still at the nearest step
   virtual void stop() = 0;                     // stops at once; from any thread, also the one that ctrl-C wakes
-  virtual double angle_rad() = 0;              // as the device reads it
+  virtual double angle_rad() = 0;  // as the device reads it; from any thread while it moves: what it read last
   virtual TurntableState state() = 0;
+  // Takes an angle that somebody has measured for the one at which the platform stands now, in place of the reading.
+  // Throws for a turntable that finds its home by itself: its reading cannot be set right.
+  virtual void stands_at(double angle_rad);
 };
 
 }  // namespace rig

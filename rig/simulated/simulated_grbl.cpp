@@ -48,6 +48,7 @@ class SimulatedGrbl final : public SimulatedController {
     line_.clear();
     waiting_.clear();
     planner_.clear();
+    going_to_.reset();
     dwell_until_s_.reset();
     homing_ = false;
     modes_ = {};
@@ -122,7 +123,7 @@ class SimulatedGrbl final : public SimulatedController {
   void resume() {
     if (state_ == State::hold && motor_.speed_deg_s() == 0) {
       state_ = planner_.empty() ? State::idle : State::run;
-      begun_ = false;
+      going_to_.reset();
     }
   }
 
@@ -198,15 +199,35 @@ class SimulatedGrbl final : public SimulatedController {
     if (state_ == State::jog && planner_.empty() && !motor_.turning()) state_ = State::idle;
     while (!planner_.empty() && (state_ == State::idle || state_ == State::run || state_ == State::jog)) {
       state_ = planner_.front().jog ? State::jog : State::run;
-      if (!begun_) {
-        motor_.go_to(planner_.front().target_steps, planner_.front().speed_deg_s);
-        begun_ = true;
+      const std::size_t joined = joined_blocks();
+      const double end_steps = planner_[joined - 1].target_steps;
+      if (going_to_ != end_steps) motor_.go_to(end_steps, planner_.front().speed_deg_s);
+      going_to_ = end_steps;
+      if (motor_.turning()) {
+        while (planner_.front().target_steps != end_steps && passed(planner_.front())) planner_.pop_front();
+        return;
       }
-      if (motor_.turning()) return;
-      planner_.pop_front();
-      begun_ = false;
+      planner_.erase(planner_.begin(), planner_.begin() + static_cast<std::ptrdiff_t>(joined));
+      going_to_.reset();
       if (planner_.empty()) state_ = State::idle;
     }
+  }
+
+  // How many blocks from the first on lead in one direction: the motor runs through them without slowing down.
+  std::size_t joined_blocks() const {
+    std::size_t joined = 1;
+    double way = planner_[0].target_steps - motor_.counted_steps();
+    for (; joined < planner_.size(); ++joined) {
+      const double next = planner_[joined].target_steps - planner_[joined - 1].target_steps;
+      if (way * next <= 0) break;
+      way = next;
+    }
+    return joined;
+  }
+
+  // Whether the motor has left a block that it ran through behind.
+  bool passed(const Block& block) const {
+    return (*going_to_ - block.target_steps) * (motor_.counted_steps() - block.target_steps) >= 0;
   }
 
   void answer(const std::string& line) {
@@ -337,7 +358,7 @@ class SimulatedGrbl final : public SimulatedController {
   std::string line_;
   std::deque<std::string> waiting_;  // lines received and not yet answered
   std::deque<Block> planner_;
-  bool begun_ = false;  // whether the planner's first block has begun
+  std::optional<double> going_to_;  // the place to which the motor was sent, in steps
   std::optional<double> dwell_until_s_;
   bool homing_ = false, report_asked_ = false, wait_for_reset_ = false;
   GrblModes modes_;

@@ -39,7 +39,7 @@ SimulatedGrblSettings::SimulatedGrblSettings(const SimulatedMotor& motor, bool w
              {110, deg_min},
              {111, 500},
              {112, 500},
-             {120, motor.full_speed_deg_s() / 0.2},
+             {120, motor.acceleration_deg_s2()},
              {121, 10},
              {122, 10},
              {130, 360},

@@ -22,6 +22,10 @@ double SimulatedMotor::full_speed_deg_s() const {
   return bench_.truth().turntable.speed_rad_s / kDegree;
 }
 
+double SimulatedMotor::acceleration_deg_s2() const {
+  return full_speed_deg_s() / kSpeedUpS;
+}
+
 void SimulatedMotor::go_to(double counted_steps, double speed_deg_s) {
   update();
   target_steps_ = std::round(counted_steps);
@@ -54,7 +58,7 @@ void SimulatedMotor::update() {
 // One slice of time, in which the speed changes towards the largest one from which the motor can still stop at the
 // target.
 void SimulatedMotor::advance(double duration_s) {
-  const double acceleration = full_speed_deg_s() * steps_per_deg_ / kSpeedUpS;
+  const double acceleration = acceleration_deg_s2() * steps_per_deg_;
   const double change = acceleration * duration_s;
   const double left = target_steps_ - counted_steps();
   const double allowed = std::min(wanted_speed_steps_s_, std::sqrt(2 * acceleration * std::abs(left)));

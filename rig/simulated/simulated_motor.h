@@ -17,6 +17,7 @@ class SimulatedMotor {
 
   double steps_per_deg() const { return steps_per_deg_; }
   double full_speed_deg_s() const;
+  double acceleration_deg_s2() const;
 
   void go_to(double counted_steps, double speed_deg_s);
   void slow_down();  // comes to a stand as fast as the acceleration allows

@@ -11,6 +11,14 @@ constexpr double kLookEveryS = 0.01;
 // Bytes that neither protocol uses, with the beginning of a report and a line end among them.
 constexpr std::string_view kGarbage = "\xff\xfe\x81<Ru\r\n\xc3o%k";
 
+// Changes the first digit of the position that the answer of either protocol holds.
+void garble_position(std::string& reply) {
+  std::size_t at = reply.find("Pos:");
+  if (at == std::string::npos) at = reply.find("-- ");
+  if (at != std::string::npos) at = reply.find_first_of("0123456789", at);
+  if (at != std::string::npos) reply[at] = reply[at] == '7' ? '2' : '7';
+}
+
 bool is_operation(char byte) {
   return byte == '\n' || byte == '?' || byte == '!' || byte == '~' || byte == '\x18';
 }
@@ -115,6 +123,9 @@ class FaultyPort final : public SimulatedPort {
           break;
         case LineFault::garbage:
           reply = std::string(kGarbage) + reply;
+          break;
+        case LineFault::wrong_digit:
+          garble_position(reply);
           break;
         case LineFault::glued:
           while (!reply.empty() && (reply.back() == '\n' || reply.back() == '\r')) reply.pop_back();

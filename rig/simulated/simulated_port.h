@@ -17,6 +17,7 @@ enum class LineFault {
   silence,      // from now on nothing is said and nothing done, until the power comes back
   lost_reply,   // the answer is missing
   garbage,      // noise before the answer
+  wrong_digit,  // a digit of the position in the answer is another one
   glued,        // the answer's line end is missing: it runs into the next one
   split,        // the answer comes in halves
   late,         // the answer comes after the next question, in front of that one's answer

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -13,6 +14,8 @@ namespace rig {
 namespace {
 
 constexpr int kDevice = 1, kAxis = 1;
+constexpr double kSpeedUnit = 1.6384,
+                 kAccelerationUnit = 1.6384e-4;  // of a microstep per second, and per second squared
 
 // A received command. The numbers in front of the words are device, axis and message number.
 struct Command {
@@ -108,6 +111,11 @@ class SimulatedZaber final : public SimulatedController {
       reply(command, "64");
     else if (setting == "limit.cycle.dist")
       reply(command, std::to_string(std::llround(motor_.steps_per_deg() * 360)));
+    else if (setting == "maxspeed")
+      reply(command, std::to_string(std::lround(motor_.full_speed_deg_s() * motor_.steps_per_deg() * kSpeedUnit)));
+    else if (setting == "accel")
+      reply(command,
+            std::to_string(std::lround(motor_.acceleration_deg_s2() * motor_.steps_per_deg() * kAccelerationUnit)));
     else
       reply(command, "BADCOMMAND", false);
   }
@@ -124,7 +132,8 @@ class SimulatedZaber final : public SimulatedController {
       homing_ = true;
       motor_.go_to(motor_.counted_at_true_zero(), motor_.full_speed_deg_s());
       reply(command, "0");
-    } else if (words[0] == "move" && words.size() == 3 && (words[1] == "abs" || words[1] == "rel")) {
+    } else if (words[0] == "move" && (words.size() == 3 || words.size() == 4) &&
+               (words[1] == "abs" || words[1] == "rel")) {
       move(command);
     } else {
       reply(command, "BADCOMMAND", false);
@@ -135,12 +144,15 @@ class SimulatedZaber final : public SimulatedController {
     const auto steps = number_from<std::int64_t>(command.words[2]);
     const double base = command.words[1] == "rel" ? motor_.counted_steps() : 0;
     const double target = base + static_cast<double>(steps.value_or(0));
-    if (!steps || (!homed_ && command.words[1] == "abs") || std::abs(target) > motor_.steps_per_deg() * 360 * 100) {
+    const auto speed = number_from<double>(command.words.size() == 4 ? command.words[3] : "0");  // 0: the stored one
+    if (!steps || !speed || *speed < 0 || (!homed_ && command.words[1] == "abs") ||
+        std::abs(target) > motor_.steps_per_deg() * 360 * 100) {
       reply(command, "BADDATA", false);
       return;
     }
     interrupted_ = motor_.turning();
-    motor_.go_to(target, motor_.full_speed_deg_s());
+    const double asked_deg_s = *speed / kSpeedUnit / motor_.steps_per_deg();
+    motor_.go_to(target, *speed > 0 ? std::min(asked_deg_s, motor_.full_speed_deg_s()) : motor_.full_speed_deg_s());
     reply(command, "0");
   }
 

@@ -1,5 +1,5 @@
-// GRBL 1.1 as a motion controller. Moves are "G53 G0": absolute in machine coordinates whatever the modal state is, so
-// the position survives the reset that ends a stop (a work offset would not). The "ok" of a move only says that it was
+// GRBL 1.1 as a motion controller. Moves are "G53 G1": absolute in machine coordinates whatever the modal state is, so
+// the position survives the reset that ends a stop (a work offset would not), and no faster than a stop allows. The "ok" of a move only says that it was
 // planned, so nothing is concluded from it: only the reported position tells whether the platform has arrived.
 
 #include <algorithm>
@@ -16,6 +16,7 @@
 #include "rig/turntables/controllers.h"
 #include "rig/turntables/grbl_reply.h"
 #include "rig/turntables/line_frames.h"
+#include "rig/turntables/stopping.h"
 
 namespace rig {
 namespace {
@@ -25,6 +26,7 @@ constexpr double kQuietS = 0.1;      // a silence of this length: nothing more i
 constexpr double kHoldTimeoutS = 3;  // from the hold to standing still
 constexpr double kLookS = 0.02;      // the wait per look for homing's answer, which may come much later
 constexpr double kPollS = 0.05;
+constexpr double kSecondsPerMinute = 60;
 constexpr double kSameRatio = 1e-4;  // rounding when steps per degree are written down in two places
 constexpr char kReset = '\x18';
 
@@ -66,9 +68,9 @@ class GrblController final : public MotionController {
   }
 
   void start_move(std::int64_t steps) override {
-    std::array<char, 64> command{};
-    std::snprintf(command.data(), command.size(), "G21 G53 G0 X%.4f\n",
-                  static_cast<double>(steps) / identity_.steps_per_deg);
+    std::array<char, 80> command{};
+    std::snprintf(command.data(), command.size(), "G21 G94 G53 G1 X%.4f F%.1f\n",
+                  static_cast<double>(steps) / identity_.steps_per_deg, identity_.speed_deg_s * kSecondsPerMinute);
     begin(command.data());
   }
 
@@ -224,6 +226,7 @@ class GrblController final : public MotionController {
           "FluidNC");
     }
     identity_.steps_per_deg = found.at(100);
+    identity_.speed_deg_s = stoppable_speed(found);
     // Positions come with three decimals.
     identity_.reading_tolerance_steps = static_cast<int>(std::floor(0.0005 * found.at(100) + 0.5));
     if (!(std::abs(found.at(100) / setup_.steps_per_deg - 1) <= kSameRatio)) {
@@ -240,6 +243,15 @@ class GrblController final : public MotionController {
     // In other firmware $1 means something else; its own manual says how to keep the motor powered.
     if (identity_.firmware.starts_with("Grbl 1.1"))
       require(found, 1, 255, "lets its motor go between moves ($1), and the platform would drift; set $1=255");
+  }
+
+  // By its own limits of speed ($110, deg/min) and acceleration ($120, deg/s^2).
+  static double stoppable_speed(const std::map<int, double>& found) {
+    const auto fastest = found.find(110), acceleration = found.find(120);
+    const bool known = acceleration != found.end() && acceleration->second > 0;
+    const double speed_deg_s = known ? stoppable_speed_deg_s(acceleration->second) : kSureSpeedDegS;
+    const bool limited = fastest != found.end() && fastest->second > 0;
+    return limited ? std::min(speed_deg_s, fastest->second / kSecondsPerMinute) : speed_deg_s;
   }
 
   static void require(const std::map<int, double>& found, int number, double wanted, const std::string& problem) {

@@ -32,6 +32,7 @@ struct MotionStatus {
 struct ControllerIdentity {
   std::string firmware;             // the name that the firmware gives itself
   double steps_per_deg = 0;         // as the controller is set up
+  double speed_deg_s = 0;           // of its moves; a stop ends within 5 degrees (stopping.h)
   int reading_tolerance_steps = 0;  // by how much a reported position may be rounded
   int repeated = 0;                 // number of questions asked again because the answer was noise or missing
 };
@@ -45,8 +46,10 @@ class MotionController {
  public:
   virtual ~MotionController() = default;
   virtual ControllerIdentity identity() = 0;
-  virtual void start_home() = 0;                    // begins homing, which has ended when status() is idle again
-  virtual void start_move(std::int64_t steps) = 0;  // begins a move to an absolute position (as MotionStatus::steps)
+  virtual void start_home() = 0;  // begins homing, which has ended when status() is idle again
+  // Begins a move to an absolute position (as MotionStatus::steps), or lets the one under way end there instead when it
+  // lies ahead: a platform that turns does not slow down in between.
+  virtual void start_move(std::int64_t steps) = 0;
   virtual MotionStatus status() = 0;
   virtual void stop() = 0;        // writes once and does not wait; from any thread, also during homing
   virtual void clear_stop() = 0;  // waits until the motor stands and allows moves again; PositionLost if it was homing

@@ -1,5 +1,6 @@
 #include "rig/turntables/stepper_turntable.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
@@ -13,9 +14,12 @@
 namespace rig {
 namespace {
 constexpr double kPollS = 0.05;
-constexpr int kMostTries = 4;     // of a move: begun once and repeated three times
-constexpr int kIdleReadings = 2;  // so many in a row at the target: the platform has arrived
-constexpr int kLostReadings = 6;  // so many in a row elsewhere: the command was lost
+constexpr int kMostTries = 4;      // of a move: begun once and repeated three times
+constexpr int kIdleReadings = 2;   // so many in a row at the target: the platform has arrived
+constexpr int kLostReadings = 6;   // so many in a row elsewhere: the command was lost
+constexpr int kMostReadings = 20;  // for two equal ones of a platform that stands
+constexpr double kLeashS = 1;      // the controller is told of no place farther away than what is turned in this time
+constexpr int kPiecesPerLeash = 4;
 constexpr const char* kStoppedHoming = "the platform was stopped while it looked for its home; home it again";
 constexpr double kLargestSteps = 1 << 24;  // GRBL counts in single precision, 24 bits
 
@@ -23,7 +27,7 @@ std::string degrees(double angle_rad) {
   return std::to_string(angle_rad / kDegree) + " deg";
 }
 
-// stop() and state() may be called from any thread, everything else from one.
+// stop(), state() and angle_rad() of a platform that turns may be called from any thread, everything else from one.
 class StepperTurntable final : public Turntable {
  public:
   StepperTurntable(ConnectController connect, Clock& clock, const StepperSetup& setup)
@@ -46,7 +50,20 @@ class StepperTurntable final : public Turntable {
         return;
       }
       controller()->start_home();
-      zero_steps_ = wait_until_idle();
+      wait_until_idle();
+      zero_steps_ = standing_steps();
+      if (setup_.home_by == HomeBy::here && setup_.memory) return_from_where_it_was_left(zero_steps_);
+      zero_known_ = true;
+    });
+  }
+
+  void stands_at(double angle_rad) override {
+    require_known_position("take another angle for its own");
+    if (setup_.home_by != HomeBy::here) return Turntable::stands_at(angle_rad);
+    guarded([&] {
+      const std::int64_t steps = standing_steps();
+      zero_steps_ = steps - std::llround(angle_rad * steps_per_rad_);
+      keep_place(steps, false);
     });
   }
 
@@ -75,11 +92,12 @@ class StepperTurntable final : public Turntable {
   }
 
   double angle_rad() override {
+    if (state_ == TurntableState::moving) return passing_rad_;
     require_known_position("tell its angle");
     double angle_rad = 0;
     const TurntableState before = state_;
     guarded([&] {
-      angle_rad = static_cast<double>(controller()->status().steps - zero_steps_) / steps_per_rad_;
+      angle_rad = angle_of(standing_steps());
       state_ = before;
     });
     return angle_rad;
@@ -104,7 +122,7 @@ class StepperTurntable final : public Turntable {
     steps_per_rad_ = found->identity().steps_per_deg / kDegree;
     set_controller(std::move(found));
     state_ = TurntableState::unknown_position;
-    lost_ = false;
+    lost_ = zero_known_ = false;
   }
 
   void set_controller(std::shared_ptr<MotionController> controller) {
@@ -145,47 +163,106 @@ class StepperTurntable final : public Turntable {
     state_ = TurntableState::moving;
   }
 
+  // Without a home switch a platform that was left somewhere is turned back from there. A controller whose board was
+  // reset counts from 0; then the place is known only if the platform stood.
+  void return_from_where_it_was_left(std::int64_t counted) {
+    const std::optional<PlatformPlace> left = setup_.memory->recall();
+    zero_known_ = true;
+    if (!left) return keep_place(counted, false);
+    const bool reset = counted == 0 && left->steps != 0;
+    if (left->turning && counted == 0) {
+      zero_known_ = false;
+      state_ = TurntableState::unknown_position;
+      if (!setup_.memory->ask_for_mark("the last program ended while the platform was turning"))
+        throw PositionLost(
+            "the platform was turning when the last program ended, and its controller has been reset since; turn the "
+            "platform to its mark, then say so with \"threadstation home --mark\"");
+      zero_steps_ = standing_steps();
+      zero_known_ = true;
+      state_ = TurntableState::idle;
+      return keep_place(zero_steps_, false);
+    }
+    const auto turned_since = static_cast<double>(reset ? 0 : counted - left->steps);
+    zero_steps_ = counted - std::llround(left->angle_rad * steps_per_rad_ + turned_since);
+    state_ = TurntableState::moving;  // a stop that was asked for meanwhile still counts
+    approach(zero_steps_);
+  }
+
+  void keep_place(std::int64_t steps, bool turning) {
+    if (setup_.memory && zero_known_) setup_.memory->keep({steps, angle_of(steps), turning});
+  }
+
   void approach(std::int64_t target) {
     const auto backlash = static_cast<std::int64_t>(std::ceil(setup_.backlash_rad * steps_per_rad_ - 1e-6));
-    if (backlash > 0 && target < controller()->status().steps) travel(target - backlash);
+    const std::int64_t from = standing_steps();
+    keep_place(from, true);
+    if (backlash > 0 && target < from) travel(target - backlash);
     travel(target);
+    keep_place(target, false);
     state_ = TurntableState::idle;
   }
 
+  // Turns on a leash: should this program die on the way, the controller stops by itself within kLeashS.
   void travel(std::int64_t target) {
-    const int tolerance = controller()->identity().reading_tolerance_steps;
-    std::int64_t stands_at = 0;
+    const ControllerIdentity identity = controller()->identity();
+    const int tolerance = identity.reading_tolerance_steps;
+    const auto leash =
+        std::max<std::int64_t>(kPiecesPerLeash, std::llround(identity.speed_deg_s * identity.steps_per_deg * kLeashS));
+    std::int64_t stands_at = standing_steps();
     for (int tries = 0; tries < kMostTries; ++tries) {
-      controller()->start_move(target);
-      stands_at = wait_to_stand_at(target, tolerance);
+      const std::int64_t began_at = stands_at;
+      stands_at = turn_on_leash(stands_at, target, leash, tolerance);
       if (std::abs(stands_at - target) <= tolerance) return;
+      if (std::abs(stands_at - began_at) > tolerance) tries = 0;  // only a part of the way was lost
     }
     throw std::runtime_error("the platform was asked to turn to " + place(target) + " " + std::to_string(kMostTries) +
                              " times and stands at " + place(stands_at) +
                              "; check the turntable's cable and that nothing else commands it, then home it");
   }
 
-  std::string place(std::int64_t steps) const {
-    return degrees(static_cast<double>(steps - zero_steps_) / steps_per_rad_);
+  double angle_of(std::int64_t steps) const { return static_cast<double>(steps - zero_steps_) / steps_per_rad_; }
+
+  std::string place(std::int64_t steps) const { return degrees(angle_of(steps)); }
+
+  // The place where a platform stands that does not turn: two readings in a row have to agree, because a digit that was
+  // garbled on the wire looks like any other.
+  std::int64_t standing_steps() {
+    std::int64_t before = controller()->status().steps;
+    for (int readings = 1; readings < kMostReadings; ++readings) {
+      const std::int64_t steps = controller()->status().steps;
+      if (steps == before) return steps;
+      before = steps;
+    }
+    throw PositionLost("the turntable was asked where it stands " + std::to_string(kMostReadings) +
+                       " times and never said the same twice in a row; check its cable, then home it");
   }
 
-  std::int64_t wait_to_stand_at(std::int64_t target, int tolerance) {
+  // Turns from `from` towards `target`. Returns where the platform came to stand: there, or where a command got lost.
+  std::int64_t turn_on_leash(std::int64_t from, std::int64_t target, std::int64_t leash, int tolerance) {
+    const std::int64_t piece = leash / kPiecesPerLeash;
+    std::int64_t goal = from + std::clamp(target - from, -leash, leash);
+    controller()->start_move(goal);
     int there = 0, elsewhere = 0;
+    std::int64_t before = from;
     return watch(
         [&](const MotionStatus& status) {
-          const bool idle = status.motion == Motion::idle, near = std::abs(status.steps - target) <= tolerance;
-          there = idle && near ? there + 1 : 0;
+          const bool idle = status.motion == Motion::idle, near = std::abs(status.steps - goal) <= tolerance;
+          const bool same = std::exchange(before, status.steps) == status.steps;
+          there = !idle || !near || goal != target ? 0 : same ? there + 1 : 1;
           elsewhere = idle && !near ? elsewhere + 1 : 0;
+          if (goal != target && std::abs(goal - status.steps) <= leash - piece) {
+            goal += std::clamp(target - goal, -piece, piece);  // a piece at a time, whatever a garbled digit says
+            controller()->start_move(goal);
+          }
           return there >= kIdleReadings || elsewhere >= kLostReadings;
         },
         true);
   }
 
-  std::int64_t wait_until_idle() {
+  void wait_until_idle() {
     try {
-      const std::int64_t steps = watch([](const MotionStatus& status) { return status.motion == Motion::idle; }, false);
+      watch([](const MotionStatus& status) { return status.motion == Motion::idle; }, false);
       state_ = TurntableState::idle;
-      return steps;
     } catch (const Stopped&) {
       throw PositionLost(kStoppedHoming);
     } catch (const PositionLost&) {
@@ -204,6 +281,7 @@ class StepperTurntable final : public Turntable {
     for (;;) {
       const MotionStatus status = controller()->status();
       const double now_s = clock_.monotonic_s();
+      passing_rad_ = angle_of(status.steps);
       if (stop_asked_ || status.motion == Motion::held) end_at_stop();
       if (ended(status)) return status.steps;
       if (std::exchange(first, false) || status.steps != before || status.motion != Motion::moving) {
@@ -226,7 +304,8 @@ class StepperTurntable final : public Turntable {
   [[noreturn]] void end_at_stop() {
     stop_asked_ = false;
     controller()->clear_stop();
-    const std::int64_t steps = controller()->status().steps;
+    const std::int64_t steps = standing_steps();
+    keep_place(steps, false);
     if (state_ == TurntableState::moving) state_ = TurntableState::stopped;
     throw Stopped("the platform was stopped at " + place(steps) +
                   " on its way; ask for the move again when it is safe");
@@ -239,7 +318,8 @@ class StepperTurntable final : public Turntable {
   std::shared_ptr<MotionController> controller_;
   double steps_per_rad_ = 1;
   std::int64_t zero_steps_ = 0;
-  bool lost_ = false;
+  bool lost_ = false, zero_known_ = false;
+  std::atomic<double> passing_rad_ = 0;  // the last reading of a platform that turns
   std::atomic<TurntableState> state_ = TurntableState::unknown_position;
   std::atomic<bool> stop_asked_ = false;
 };

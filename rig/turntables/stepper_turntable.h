@@ -2,14 +2,18 @@
 // moves.
 //
 // An angle that is not finite or out of limits is refused before anything is sent. The platform stands at the nearest
-// whole step, which angle_rad() reads back. A move has ended when the controller reports twice that it is idle at the
-// target; a command that got lost is repeated, three times at most. With backlash, every position is approached by
+// whole step, which angle_rad() reads back. No place counts that the controller has not reported twice in a row. A move is
+// sent in pieces, the next one while the platform turns, so that the motor never has more than a second's way before it: a
+// program that is killed leaves a platform that stops by itself. A piece that got lost is repeated, three times at most. With backlash, every position is approached by
 // turning counter-clockwise. After silence, an alarm or a reset the position is unknown, and home() connects anew; with
-// `HomeBy::here` somebody has to turn the platform to its mark before.
+// `HomeBy::here` the platform is turned back from where its memory says that it was left.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "rig/devices/clock.h"
 #include "rig/devices/turntable.h"
@@ -17,12 +21,31 @@
 
 namespace rig {
 
+// Where the platform stands, for the program that comes after this one.
+struct PlatformPlace {
+  std::int64_t steps = 0;  // in the controller's count, which begins at 0 when its board is reset
+  double angle_rad = 0;
+  bool turning = false;  // a move was begun there and its end was not written
+};
+
+// What a turntable without a home switch knows from one program to the next.
+class PlatformMemory {
+ public:
+  virtual ~PlatformMemory() = default;
+  virtual std::optional<PlatformPlace> recall() = 0;  // nothing: there was no program before
+  virtual void keep(const PlatformPlace& place) = 0;
+  // Has somebody turn the platform to its mark, because nobody knows where it stands; false: there is nobody.
+  virtual bool ask_for_mark(const std::string& why) = 0;
+};
+
 struct StepperSetup {
   HomeBy home_by = HomeBy::here;
   double limit_rad = 6.283185307179586;  // largest angle either way: one turn
   double backlash_rad = 0;
   double move_timeout_s = 120;  // for one move or one homing
   double stall_timeout_s = 3;   // for a move during which the reading does not change
+  std::shared_ptr<PlatformMemory>
+      memory{};  // for HomeBy::here; without one the platform is believed to stand at its mark
 };
 
 // Opens the line and connects to the controller. It is called again after the controller was lost; the port may then

@@ -2,6 +2,7 @@
 // answer repeats, so that late and repeated answers are recognised, and a check sum, so that the stage does not obey a
 // garbled command.
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "rig/turntables/controllers.h"
 #include "rig/turntables/line_frames.h"
 #include "rig/turntables/number_text.h"
+#include "rig/turntables/stopping.h"
 #include "rig/turntables/zaber_reply.h"
 
 namespace rig {
@@ -20,6 +22,10 @@ constexpr double kStopTimeoutS = 3;  // from the stop to standing still
 constexpr double kPollS = 0.05;
 constexpr double kSameRatio = 1e-4;  // rounding when steps per degree are written down in two places
 constexpr double kDegreesPerTurn = 360;
+// The stage's units: 1.6384 in "maxspeed" is a microstep per second, and 1 in "accel" is 10000 / 1.6384 of them per
+// second squared.
+constexpr double kSpeedUnit = 1.6384, kAccelerationUnit = 1.6384e-4;
+constexpr double kTakesSpeed = 7.25;  // from this firmware on a move may be given its own speed
 
 class ZaberController final : public MotionController {
  public:
@@ -39,7 +45,7 @@ class ZaberController final : public MotionController {
     ask("home");
   }
 
-  void start_move(std::int64_t steps) override { ask("move abs " + std::to_string(steps)); }
+  void start_move(std::int64_t steps) override { ask("move abs " + std::to_string(steps) + move_speed_); }
 
   MotionStatus status() override {
     const ZaberReply reply = ask("get pos");
@@ -154,6 +160,24 @@ class ZaberController final : public MotionController {
                                " microsteps per degree (limit.cycle.dist / 360) and the rig file says " +
                                std::to_string(setup_.steps_per_deg) + "; correct \"steps_per_deg\" in the rig file");
     }
+    limit_speed(number_from<double>(version).value_or(0));
+  }
+
+  // Older firmware moves at the speed that is stored in the stage, which is not changed behind its owner's back.
+  void limit_speed(double version) {
+    const double unit = kSpeedUnit * identity_.steps_per_deg;
+    const double stored_deg_s = ask_number("maxspeed") / unit;
+    const double most_deg_s =
+        stoppable_speed_deg_s(ask_number("accel") / (kAccelerationUnit * identity_.steps_per_deg));
+    identity_.speed_deg_s = std::min(stored_deg_s, most_deg_s);
+    const std::string most = std::to_string(static_cast<long>(most_deg_s * unit));
+    if (stored_deg_s <= most_deg_s) return;
+    if (version < kTakesSpeed) {
+      throw std::runtime_error("the turntable turns at " + std::to_string(stored_deg_s) +
+                               " deg/s, too fast to be stopped within 5 degrees; send \"set maxspeed " + most + "\" (" +
+                               std::to_string(most_deg_s) + " deg/s)");
+    }
+    move_speed_ = " " + most;
   }
 
   void wait_to_stand() {
@@ -170,7 +194,8 @@ class ZaberController final : public MotionController {
   ControllerSetup setup_;
   ControllerIdentity identity_;
   LineFrames frames_;
-  std::string noise_;  // the last noise heard
+  std::string noise_;       // the last noise heard
+  std::string move_speed_;  // behind a move's place; empty: the stage's own is slow enough
   int message_ = 0;
   bool homing_ = false;
   std::atomic<bool> stopped_ = false;  // stop() comes from other threads

@@ -5,8 +5,10 @@
 #include <functional>
 
 #include "station/bench/check_picture.h"
+#include "station/bench/guarded_turntable.h"
 #include "station/bench/rig_devices.h"
 #include "station/documents/degree.h"
+#include "station/output/interrupt.h"
 
 namespace station {
 namespace {
@@ -27,9 +29,19 @@ double turntable_step_rad(const RigFile& rig) {
   return rig.simulation->truth.turntable.step_rad;
 }
 
+void require_not_interrupted(const DeviceCheck& check) {
+  if (!interrupted()) return;
+  const auto ended = std::ranges::find_if(check.rows, [](const rig::ContractRow& row) { return !row.passed; });
+  throw Interrupted("the check was stopped" + (ended == check.rows.end() ? "" : ": " + ended->what));
+}
+
 DeviceCheck checked(const std::string& device, const std::function<std::vector<rig::ContractRow>()>& check) {
   try {
-    return {device, check()};
+    DeviceCheck done{device, check()};
+    require_not_interrupted(done);
+    return done;
+  } catch (const Interrupted&) {
+    throw;
   } catch (const std::exception& error) {
     return {device, {{.name = "it can be connected", .passed = false, .what = error.what()}}};
   }
@@ -39,6 +51,7 @@ DeviceCheck checked(const std::string& device, const std::function<std::vector<r
 
 std::vector<DeviceCheck> check_rig(const RigFile& rig, const std::optional<RigCalibration>& calibration,
                                    rig::AskedPerson& asked) {
+  watch_interrupts();
   std::vector<DeviceCheck> checks;
   checks.push_back(checked(turntable_name(rig), [&] {
     const RigDevices devices = open_turntable(rig, &asked);

@@ -19,7 +19,7 @@ struct DeviceCheck {
 
 // Tries both devices; the platform must be free to turn. A device that cannot be connected has one row, which says why.
 // When there is a calibration and both devices are sound, a test picture is judged as well (check_picture.h). `asked`
-// turns a platform that has no motor.
+// turns a platform that has no motor. Throws Interrupted when ctrl-C stopped it.
 std::vector<DeviceCheck> check_rig(const RigFile& rig, const std::optional<RigCalibration>& calibration,
                                    rig::AskedPerson& asked);
 

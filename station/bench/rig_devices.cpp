@@ -1,5 +1,6 @@
 #include "station/bench/rig_devices.h"
 
+#include <atomic>
 #include <chrono>
 #include <stdexcept>
 #include <utility>
@@ -11,6 +12,8 @@
 #include "rig/people/practice_turntable.h"
 #include "rig/turntables/serial_line.h"
 #include "station/bench/bench_picture.h"
+#include "station/bench/guarded_turntable.h"
+#include "station/bench/platform_memory.h"
 
 namespace station {
 namespace {
@@ -24,11 +27,11 @@ bool photographs_the_bench(const RigFile& rig) {
   return rig.camera_driver == "simulated" || (rig.camera_wire && rig.camera_wire->simulated);
 }
 
-std::unique_ptr<rig::Clock> make_clock(bool simulated) {
+// Exposures and moves of a simulated rig take no real time, or `pace` of it; its clock starts at the real date.
+std::unique_ptr<rig::Clock> make_clock(bool simulated, double pace = 0) {
   if (!simulated) return std::make_unique<rig::SystemClock>();
-  // Exposures and moves of a simulated rig take no real time; its clock starts at the real date.
   const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-  return std::make_unique<rig::SimulatedClock>(now);
+  return std::make_unique<rig::SimulatedClock>(now, pace);
 }
 
 std::unique_ptr<rig::ByteLine> open_line(const TurntableWire& wire, const rig::PtyServer* server) {
@@ -43,8 +46,9 @@ std::unique_ptr<rig::ByteLine> open_line(const TurntableWire& wire, const rig::P
   return rig::open_pty_line(server->path());
 }
 
-std::unique_ptr<rig::Turntable> make_wired_turntable(const RigFile& rig, RigDevices& devices) {
-  const TurntableWire wire = *rig.turntable_wire;
+std::unique_ptr<rig::Turntable> make_wired_turntable(const RigFile& rig, RigDevices& devices, rig::AskedPerson* asked) {
+  TurntableWire wire = *rig.turntable_wire;
+  if (remembers_its_place(rig)) wire.stepper.memory = remember_platform(platform_memory_file(rig), asked);
   if (wire.line == TurntableWire::Line::simulated)
     devices.simulated_wire = rig::serve_on_pty(start_firmware(rig, *devices.bench, *devices.clock));
   const auto connect = rig.turntable_driver == "grbl" ? rig::connect_grbl : rig::connect_zaber;
@@ -67,9 +71,12 @@ std::unique_ptr<rig::Camera> make_camera(const RigFile& rig, RigDevices& devices
   return rig::make_process_camera(setup);
 }
 
+std::atomic<int> opened{0};
+
 std::unique_ptr<rig::Turntable> make_turntable(const RigFile& rig, RigDevices& devices, rig::AskedPerson* asked) {
+  if (rig.turntable_driver != "simulated") ++opened;
   if (rig.turntable_driver == "simulated") return rig::make_simulated_turntable(*devices.bench, *devices.clock);
-  if (rig.turntable_driver != "manual") return make_wired_turntable(rig, devices);
+  if (rig.turntable_driver != "manual") return make_wired_turntable(rig, devices, asked);
   auto by_hand = rig::make_manual_turntable(*asked);
   return devices.bench ? rig::make_practice_turntable(std::move(by_hand),
                                                       rig::make_simulated_turntable(*devices.bench, *devices.clock))
@@ -89,6 +96,10 @@ cv::Mat3f undrawn(const rig::BenchState& state) {
 }
 
 }  // namespace
+
+int turntables_opened() {
+  return opened;
+}
 
 std::shared_ptr<rig::SimulatedPort> start_firmware(const RigFile& rig, rig::SimulatedBench& bench, rig::Clock& clock,
                                                    const rig::LineFaultPlan& faults) {
@@ -128,7 +139,7 @@ RigDevices open_rig(const RigFile& rig, const std::optional<Spool>& spool, rig::
   if (simulated)
     devices.bench = std::make_unique<rig::SimulatedBench>(rig.simulation->truth, make_bench_picture(rig, spool));
   devices.camera = make_camera(rig, devices);
-  devices.turntable = make_turntable(rig, devices, asked);
+  devices.turntable = guard_turntable(make_turntable(rig, devices, asked));
   if (rig.operator_driver == "console") devices.person = rig::make_console_operator(*asked);
   if (devices.bench) {
     auto hand = rig::make_simulated_operator(*devices.bench);
@@ -139,11 +150,12 @@ RigDevices open_rig(const RigFile& rig, const std::optional<Spool>& spool, rig::
 }
 
 RigDevices open_turntable(const RigFile& rig, rig::AskedPerson* asked) {
+  constexpr double kPace = 0.01;  // a check looks at it from another thread while it turns
   require_person(rig, asked);
   RigDevices devices;
-  devices.clock = make_clock(turns_the_bench(rig));
+  devices.clock = make_clock(turns_the_bench(rig), kPace);
   if (turns_the_bench(rig)) devices.bench = std::make_unique<rig::SimulatedBench>(rig.simulation->truth, undrawn);
-  devices.turntable = make_turntable(rig, devices, asked);
+  devices.turntable = guard_turntable(make_turntable(rig, devices, asked));
   return devices;
 }
 

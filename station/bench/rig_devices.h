@@ -39,11 +39,15 @@ struct RigDevices {
 // `spool` is what is wrapped on the holder; a simulated bench needs it to draw the holder.
 // `asked` is asked where the rig needs a person, and must outlive the devices; without one such a rig is refused. On a
 // simulated bench the simulated hand then does what the person was asked.
+// Ctrl-C stops the turntable, whoever drives it (guarded_turntable.h).
 RigDevices open_rig(const RigFile& rig, const std::optional<Spool>& spool, rig::AskedPerson* asked);
 
 // One device alone, with its clock; what is simulated stands on a bench that nobody draws.
 RigDevices open_turntable(const RigFile& rig, rig::AskedPerson* asked);
 RigDevices open_camera(const RigFile& rig);
+
+// How many turntables that move were opened in this process; the simulated one without a wire moves nothing.
+int turntables_opened();
 
 // Puts the simulated camera that a rig file names on this computer's network, photographing `devices.bench`.
 void start_simulated_camera(RigDevices& devices, const rig::CameraFaultPlan& faults = {});

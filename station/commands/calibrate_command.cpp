@@ -75,7 +75,8 @@ void run(Arguments& arguments) {
 
 void add_calibrate_command(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("calibrate", "calibrate lens, platform, sensor and lamp with the rig");
+  CLI::App* command =
+      turns_platform(app.add_subcommand("calibrate", "calibrate lens, platform, sensor and lamp with the rig"));
   command->add_option("--rig", arguments->request.rig, "rig file");
   command->add_option("--out", arguments->request.out,
                       "folder for pictures and calibration.json; an interrupted one goes on");

@@ -62,7 +62,7 @@ void add_capture_command(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   CaptureRequest& request = arguments->request;
   NewSession& made_of = request.new_session.emplace();
-  CLI::App* command = app.add_subcommand("capture", "photograph a spool in 17 views");
+  CLI::App* command = turns_platform(app.add_subcommand("capture", "photograph a spool in 17 views"));
   CLI::Option* rig = command->add_option("--rig", made_of.rig, "rig file");
   CLI::Option* calibration = command->add_option("--calibration", made_of.calibration, "folder made by calibrate");
   CLI::Option* spool = command->add_option("--spool", made_of.spool, "spool file");

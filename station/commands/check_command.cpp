@@ -39,7 +39,8 @@ void add_check_command(CLI::App& app) {
   auto rig = std::make_shared<std::string>();
   auto calibration = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false);
-  CLI::App* command = app.add_subcommand("check", "connect a rig's devices, turn the platform, take test pictures");
+  CLI::App* command =
+      turns_platform(app.add_subcommand("check", "connect a rig's devices, turn the platform, take test pictures"));
   command->add_option("--rig", *rig, "rig file")->required();
   command->add_option("--calibration", *calibration,
                       "the rig's calibration: takes a test picture too (empty platform, room light on)");

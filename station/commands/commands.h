@@ -22,6 +22,7 @@ void add_plan_command(CLI::App& app);
 void add_predict_command(CLI::App& app);
 void add_preview_command(CLI::App& app);
 void add_render_command(CLI::App& app);
+void add_home_command(CLI::App& app);
 void add_import_command(CLI::App& app);
 void add_invert_command(CLI::App& app);
 void add_replay_command(CLI::App& app);
@@ -36,6 +37,12 @@ void add_validate_cloth_command(CLI::App& app);
 void add_validate_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
 void add_weave_command(CLI::App& app);
+
+// Marks a command that opens a rig's turntable: --help lists those together, and a test stops each of them.
+CLI::App* turns_platform(CLI::App* command);
+
+// Throws std::logic_error after a command that opened a real turntable and is not marked.
+void require_declared_turning(const CLI::App& app);
 
 // The sub-commands of `threadstation scatter` and of `threadstation export`.
 void add_scatter_eval_command(CLI::App& scatter);

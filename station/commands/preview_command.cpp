@@ -12,7 +12,8 @@ void add_preview_command(CLI::App& app) {
     OutputOptions output;
   };
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("preview", "the camera's live view, frame after frame, in a JPEG file");
+  CLI::App* command =
+      turns_platform(app.add_subcommand("preview", "the camera's live view, frame after frame, in a JPEG file"));
   command->add_option("--rig", arguments->request.rig, "rig file")->required();
   command->add_option("--out", arguments->request.out, "JPEG file, replaced by each frame")->required();
   command->add_option("--frames", arguments->request.frames, "end after so many; ctrl-C ends it too")

@@ -15,9 +15,10 @@ using rig::LineFault;
 constexpr int kMostOperations = 1000000;
 
 // The words of fault files are the enumerators' own names.
-constexpr std::array<std::pair<const char*, LineFault>, 12> kLineFaults{{{"silence", LineFault::silence},
+constexpr std::array<std::pair<const char*, LineFault>, 13> kLineFaults{{{"silence", LineFault::silence},
                                                                          {"lost_reply", LineFault::lost_reply},
                                                                          {"garbage", LineFault::garbage},
+                                                                         {"wrong_digit", LineFault::wrong_digit},
                                                                          {"glued", LineFault::glued},
                                                                          {"split", LineFault::split},
                                                                          {"late", LineFault::late},

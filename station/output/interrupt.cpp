@@ -4,6 +4,7 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <csignal>
@@ -46,8 +47,17 @@ void watch_interrupts(int watched) {
   struct sigaction action {};
   action.sa_handler = on_signal;
   sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    if (signal == SIGHUP && before.sa_handler == SIG_IGN) continue;  // nohup: the run is to outlive its terminal
+    sigaction(signal, &action, nullptr);
+  }
+}
+
+void watch_more_interrupts(int watched) {
+  if (interrupt_event < 0) watch_interrupts(watched);
+  interrupts_watched = std::max(interrupts_watched.load(), watched);
 }
 
 int interrupts() {
@@ -73,9 +83,10 @@ struct StopOnInterrupt::Watch {
     for (int done = 0; done <= last;) {
       std::array<pollfd, 2> watched{pollfd{interrupt_event, POLLIN, 0}, pollfd{over, POLLIN, 0}};
       if (interrupts() <= done) {
-        while (poll(watched.data(), watched.size(), -1) < 0) {
+        // Not for ever: another watch may have taken the event between the look above and this one.
+        while (poll(watched.data(), watched.size(), kStopAgainMs) < 0) {
         }
-        if (watched[1].revents != 0 && watched[0].revents == 0) return;
+        if (watched[1].revents != 0 && interrupts() <= done) return;
         std::uint64_t count = 0;
         [[maybe_unused]] const ssize_t drained = read(interrupt_event, &count, sizeof count);
       }

@@ -49,6 +49,11 @@ Words check(const Asked& asked) {
   return words;
 }
 
+// An option without a text would take the next word for it.
+void add_person(Words& words, const Asked& asked) {
+  if (const std::string person = asked.text("person"); !person.empty()) words.push_back("--operator=" + person);
+}
+
 Words capture(const Asked& asked) {
   const std::string spool = name_of(asked.fields, "spool");
   Words words{"capture",
@@ -59,24 +64,18 @@ Words capture(const Asked& asked) {
               "--spool",
               asked.workspace.spool(spool),
               "--out",
-              asked.workspace.session(asked.name()),
-              "--operator=" + asked.text("person")};
+              asked.workspace.session(asked.name())};
+  add_person(words, asked);
   if (fs::exists(asked.workspace.sample(spool)))
     words.insert(words.end(), {"--sample", asked.workspace.sample(spool).string()});
   return words;
 }
 
 Words queue(const Asked& asked) {
-  return {"capture",
-          "--queue",
-          asked.workspace.queue(asked.name()),
-          "--rig",
-          asked.rig,
-          "--calibration",
-          asked.calibration(),
-          "--out",
-          asked.workspace.folder() / "sessions",
-          "--operator=" + asked.text("person")};
+  Words words{"capture",           "--queue", asked.workspace.queue(asked.name()),  "--rig", asked.rig, "--calibration",
+              asked.calibration(), "--out",   asked.workspace.folder() / "sessions"};
+  add_person(words, asked);
+  return words;
 }
 
 Words invert(const Asked& asked) {
@@ -145,6 +144,12 @@ const Commands kKinds{
     {"calibrate",
      [](const Asked& asked) {
        return Words{"calibrate", "--rig", asked.rig, "--out", asked.workspace.calibration(asked.name())};
+     }},
+    {"home",
+     [](const Asked& asked) {
+       Words words{"home", "--rig", asked.rig};
+       if (asked.flag("mark")) words.emplace_back("--mark");
+       return words;
      }},
     {"capture", capture},
     {"queue", queue},

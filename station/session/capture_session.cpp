@@ -7,9 +7,12 @@
 
 #include "station/bench/calibration_validity.h"
 #include "station/bench/drawing_operator.h"
+#include "station/bench/platform_memory.h"
 #include "station/bench/rig_devices.h"
 #include "station/documents/calibration_file.h"
+#include "station/documents/degree.h"
 #include "station/documents/disk/whole_file.h"
+#include "station/documents/number_text.h"
 #include "station/documents/plan_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
@@ -69,6 +72,19 @@ std::string last_line(RunState state, const std::string& session) {
                                      : state_name(state) + "; go on with capture --resume --out " + session;
 }
 
+// Which of the two is right can only be told by somebody who looks.
+std::optional<double> ask_where_it_stands(rig::AskedPerson* asked, double reading_rad, double tags_rad) {
+  if (asked == nullptr) return std::nullopt;
+  const auto degrees = [](double angle_rad) { return number_text(angle_rad / kDegree, 1) + " deg"; };
+  const rig::Question question{
+      .text = "The tags on the platform show that it stands at " + degrees(tags_rad) +
+              ", and the turntable remembers that it left it at " + degrees(reading_rad) +
+              ". Was it turned by hand meanwhile, so that the tags are right?",
+      .how = "Press Enter when the tags are right, or q and Enter to end and look what slipped: ",
+      .choices = {{rig::kDone, "", "The tags are right"}, {rig::kDecline, "q", "End: I look what slipped"}}};
+  return asked->ask(question) == rig::kDone ? std::optional(tags_rad) : std::nullopt;
+}
+
 RunState run(SessionFolder& session, RigDevices& devices, const SessionFile& asked, const RigCalibration& calibration,
              const CaptureRequest& request) {
   ProgressDisplay display("capture", request.progress_style);
@@ -84,18 +100,20 @@ RunState run(SessionFolder& session, RigDevices& devices, const SessionFile& ask
       display.note(step.id + " is refused: " + verdict.reason());
   };
   options.said = [&](const std::string& line) { display.note(line); };
+  if (remembers_its_place(asked.rig))
+    options.settle_place = [&](double reading_rad, double differ_rad) {
+      return ask_where_it_stands(request.asked, reading_rad, reading_rad + differ_rad / calibration.platform.scale);
+    };
   watch_interrupts(2);
   const StopOnInterrupt emergency(
-      [&] {
-        devices.turntable->stop();
-        display.note("pausing after the picture under way; ctrl-C again stops at once");
-      },
+      [&] { display.note("pausing after the picture under way; ctrl-C again stops at once"); },
       [&] { stop_now(session, devices); });
   std::unique_ptr<rig::Operator> drawing;
   if (asked.rig.operator_driver == "console") drawing = make_drawing_operator(*devices.person, *request.asked);
   const RunDevices run_devices{*devices.camera, *devices.turntable, drawing ? *drawing : *devices.person,
                                *devices.clock};
   const RunState state = run_session(session, run_devices, asked, calibration, request, options);
+  if (state == RunState::complete) leave_at_zero(asked.rig, *devices.turntable);
   display.finish(last_line(state, session.path().string()));
   return state;
 }

@@ -2,6 +2,7 @@
 
 #include "station/bench/calibrate/calibration_report.h"
 #include "station/bench/drawing_operator.h"
+#include "station/bench/platform_memory.h"
 #include "station/bench/rig_devices.h"
 #include "station/documents/lens_file.h"
 #include "station/documents/reader.h"
@@ -51,8 +52,8 @@ RigCalibration calibrate_rig(const CalibrateRequest& request) {
       person = std::move(devices.person);
       devices.person = make_drawing_operator(*person, *request.asked);
     }
-    const StopOnInterrupt emergency([&devices] { devices.turntable->stop(); });
     record_calibration(plan, devices, request.out, show, interrupted);
+    leave_at_zero(rig, *devices.turntable);
     utc = devices.clock->utc();
   }
   RigCalibration calibration = solve_calibration(rig, request.out, read_calibration_pictures(request.out), show);

@@ -124,6 +124,7 @@ const answer = (question, chosen) => post("/api/answer", {question: question.id,
 export function beginBench() {
   byId("pause").onclick = () => post("/api/pause");
   byId("preview").onclick = () => startJob({kind: "preview"});
+  byId("home").onclick = () => startJob({kind: "home"});
   byId("check-form").onsubmit = event => {
     event.preventDefault();
     startJob({kind: "check", calibration: event.target.calibration.value});

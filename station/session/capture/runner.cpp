@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "calibration/sensor/median.h"
@@ -112,6 +113,7 @@ class CaptureRun {
       record.verdict = judge(step, record, delivered);
       if (options_.judged) options_.judged(step, record.verdict);
       if (record.verdict.grade() != Grade::bad) {
+        place_settled_ = place_settled_ || record.verdict.find("angle") != nullptr;
         recorder_.keep(record, delivered);
         ahead_.wait();
         order_.push_back(step.id);
@@ -119,11 +121,23 @@ class CaptureRun {
       }
       recorder_.refused(step, record.verdict, delivered);
       ahead_.wait();
+      if (settle_place(record.verdict)) continue;
       withdraw_doubted(record.verdict);
       if (!record.verdict.may_pass_again() || attempt >= options_.most_attempts)
         throw std::runtime_error(record.verdict.reason());
       poll();
     }
+  }
+
+  // A turntable without a home switch believes what it remembers. The platform's first tags prove it, or set it right.
+  bool settle_place(const Verdict& verdict) {
+    const Finding* angle = verdict.find("angle");
+    if (angle == nullptr || !angle->value || std::exchange(place_settled_, true) || !options_.settle_place)
+      return false;
+    const double reading_rad = devices_.turntable.angle_rad();
+    const std::optional<double> stands_rad = options_.settle_place(reading_rad, *angle->value * kDegree);
+    if (stands_rad) devices_.turntable.stands_at(*stands_rad);
+    return stands_rad.has_value();
   }
 
   static PictureRecord record_of(const PlanStep& step) {
@@ -300,6 +314,7 @@ class CaptureRun {
   const RunDevices& devices_;
   Recorder& recorder_;
   const RunOptions& options_;
+  bool place_settled_ = false;                // a picture's tags have shown where the platform stands
   bool lamp_cold_ = false;                    // switched on since the last view
   std::optional<rig::Arrangement> standing_;  // unknown at the beginning: somebody may have been there
   std::vector<std::string> order_;            // steps in the order of their pictures

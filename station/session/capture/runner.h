@@ -62,8 +62,12 @@ struct RunOptions {
   std::function<void(const Progress&)> progress{};
   std::function<void(const PlanStep&, const Verdict&)> judged{};  // is told of each picture
   std::function<void(const std::string&)> said{};                 // takes a line for the person while the run waits
-  std::vector<std::string> reshoot{};                             // steps to take again although they have a picture
-  double angle_tolerance_rad = 0.5 * kDegree;                     // |asked - read| of the platform
+  // The angle at which the platform stands (radians), where its tags differ from the turntable's reading by
+  // `tags_differ_rad` and nothing has shown yet that the reading is right; nothing: the platform slipped. Empty: it
+  // always did.
+  std::function<std::optional<double>(double reading_rad, double tags_differ_rad)> settle_place{};
+  std::vector<std::string> reshoot{};          // steps to take again although they have a picture
+  double angle_tolerance_rad = 0.5 * kDegree;  // |asked - read| of the platform
   StepDurations durations{};
 };
 
@@ -73,7 +77,8 @@ struct RunOptions {
 //
 // A picture that does not serve goes to refused/; where the next one may, it is taken again. When what was found (the
 // platform slipped, camera or table were moved, the lamp changed, the focus is lost) may have happened earlier, the
-// views since the last one that showed the contrary are withdrawn and taken again by the next run.
+// views since the last one that showed the contrary are withdrawn and taken again by the next run. A platform that stands
+// elsewhere than its turntable believes from the beginning is no slip: see settle_place.
 //
 // Errors: those of devices and operator, and of pictures that do not serve: the session is suspended and says so
 // (as far as the disk lets it); RecordingFailed of the disk: failed. std::runtime_error for a plan or camera other than

@@ -101,6 +101,11 @@ class RecordedTurntable final : public rig::Turntable {
         [](double angle_rad) { return json(angle_rad); });
   }
   rig::TurntableState state() override { return turntable_.state(); }
+  void stands_at(double angle_rad) override {
+    recorded(
+        log_, {{"call", "stands_at"}, {"asked", angle_rad}}, [&] { return turntable_.stands_at(angle_rad), true; },
+        [](bool done) { return json(done); });
+  }
 
  private:
   rig::Turntable& turntable_;

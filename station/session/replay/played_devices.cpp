@@ -103,6 +103,7 @@ class ScriptedTurntable final : public rig::Turntable {
   void stop() override {}
   double angle_rad() override { return script_->answer({{"call", "angle_rad"}}).get<double>(); }
   rig::TurntableState state() override { return rig::TurntableState::idle; }
+  void stands_at(double angle_rad) override { script_->answer({{"call", "stands_at"}, {"asked", angle_rad}}); }
 
  private:
   std::shared_ptr<Script> script_;

@@ -110,6 +110,10 @@ TEST_P(LineFaults, NoiseBeforeAnAnswerIsPassedOver) {
   EXPECT_THAT(sweep(rig::LineFault::garbage, 0), testing::IsEmpty());
 }
 
+TEST_P(LineFaults, AWrongDigitOfAPositionIsNotBelieved) {
+  EXPECT_THAT(sweep(rig::LineFault::wrong_digit, 0), testing::IsEmpty());
+}
+
 TEST_P(LineFaults, AnAnswerThatRunsIntoTheNextOneIsNoFalseOk) {
   EXPECT_THAT(sweep(rig::LineFault::glued, 0), testing::IsEmpty());
 }

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -24,11 +25,18 @@ std::string content(const fs::path& file) {
   return text.str();
 }
 
+// Where the programs of this test keep what they remember: not where this computer's user keeps it.
+const fs::path& state_folder() {
+  static const TemporaryFolder folder;
+  return folder.path();
+}
+
 // Replaces the child's image; never returns.
-[[noreturn]] void execute(const std::vector<std::string>& command, const char* out, const char* error) {
+[[noreturn]] void execute(const std::vector<std::string>& command, const char* out, const char* error,
+                          const char* in = "/dev/null") {
   const int out_fd = ::open(out, O_WRONLY | O_CREAT | O_TRUNC, 0600),
             error_fd = ::open(error, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  const int in_fd = ::open("/dev/null", O_RDONLY);
+  const int in_fd = ::open(in, O_RDONLY);
   ::dup2(in_fd, 0);
   ::dup2(out_fd, 1);
   ::dup2(error_fd, 2);
@@ -41,9 +49,10 @@ std::string content(const fs::path& file) {
 
 ProgramResult run(const std::vector<std::string>& command) {
   const TemporaryFolder folder;
-  const std::string out = folder / "out", error = folder / "error";
+  const std::string out = folder / "out", error = folder / "error", state = state_folder();
   const pid_t child = ::fork();
   if (child < 0) throw std::runtime_error("fork failed");
+  if (child == 0) ::setenv("XDG_STATE_HOME", state.c_str(), 1);
   if (child == 0) execute(command, out.c_str(), error.c_str());
   ProgramResult result;
   result.status = wait_for(child);
@@ -72,12 +81,17 @@ ProgramResult run_shell(const std::string& command_line) {
   return run({"sh", "-c", command_line});
 }
 
-pid_t start_threadstation(const std::vector<std::string>& arguments) {
+pid_t start_threadstation(const std::vector<std::string>& arguments, const fs::path& input,
+                          const std::map<std::string, std::string>& environment) {
   const std::vector<std::string> command = with_program(arguments);
+  const std::string state = state_folder();
   const pid_t child = ::fork();
   if (child < 0) throw std::runtime_error("fork failed");
-  if (child == 0) execute(command, "/dev/null", "/dev/null");
-  return child;
+  if (child > 0) return child;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
+  ::setenv("XDG_STATE_HOME", state.c_str(), 1);
+  for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
+  execute(command, "/dev/null", "/dev/null", input.c_str());
 }
 
 int wait_for(pid_t process) {

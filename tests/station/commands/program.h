@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,10 @@ ProgramResult run_threadstation(const std::vector<std::string>& arguments);
 // Runs any command line through the shell.
 ProgramResult run_shell(const std::string& command_line);
 
-// Starts the program in the background, its output thrown away.
-pid_t start_threadstation(const std::vector<std::string>& arguments);
+// Starts the program in the background, its output thrown away. `environment` is added to the test's own; ctrl-C and the
+// like mean what they mean to a program in a terminal.
+pid_t start_threadstation(const std::vector<std::string>& arguments, const std::filesystem::path& input = "/dev/null",
+                          const std::map<std::string, std::string>& environment = {});
 int wait_for(pid_t process);  // exit status; 128 + signal when it was killed
 
 // A new empty folder for one test, below the system's folder for temporary files; removed with the object.

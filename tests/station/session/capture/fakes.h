@@ -85,6 +85,7 @@ class FakeCamera final : public rig::Camera {
 class FakeTurntable final : public rig::Turntable {
  public:
   bool homed = false, slips = false;
+  double off_rad = 0;  // by how much the platform stands further than is read
   int stops = 0, moves = 0;
   std::function<void()> on_stop;
   std::function<void(double angle_rad)> on_move;  // called before the platform arrives; may throw
@@ -97,6 +98,10 @@ class FakeTurntable final : public rig::Turntable {
   }
   double angle_rad() override { return angle_rad_; }
   rig::TurntableState state() override { return rig::TurntableState::idle; }
+  void stands_at(double angle_rad) override {
+    off_rad -= angle_rad - angle_rad_;
+    angle_rad_ = angle_rad;
+  }
 
  private:
   double angle_rad_ = 0;

@@ -407,6 +407,50 @@ TEST_F(RunnerTest, ViewsStayApprovedOnlyIfTheFaultCouldNotHaveTouchedThem) {
   EXPECT_EQ(fresh.run(path, small_plan()), RunState::complete);
 }
 
+// The platform's tags in each picture tell where it really stands.
+Verdict seen_by_tags(const FakeTurntable& turntable) {
+  const bool off = std::abs(turntable.off_rad) > 0.5 * kDegree;
+  Verdict verdict;
+  verdict.findings.push_back({.check = "angle",
+                              .grade = off ? Grade::bad : Grade::good,
+                              .value = turntable.off_rad / kDegree,
+                              .reason = off ? "the platform slipped" : ""});
+  return verdict;
+}
+
+TEST_F(RunnerTest, APlatformThatStandsElsewhereFromTheBeginningIsSetRightByItsTags) {
+  fake.turntable.off_rad = 45 * kDegree;
+  fake.options.inspect = [&](const PlanStep&, const rig::Picture&, double) { return seen_by_tags(fake.turntable); };
+  std::vector<double> asked_deg;
+  fake.options.settle_place = [&](double reading_rad, double differ_rad) {
+    asked_deg.push_back(differ_rad / kDegree);
+    return std::optional(reading_rad + differ_rad);
+  };
+  EXPECT_EQ(fake.run(path, small_plan()), RunState::complete);
+  ASSERT_EQ(asked_deg.size(), 1U) << "one question, at the first picture";
+  EXPECT_NEAR(asked_deg[0], 45, 1e-9);
+  EXPECT_NEAR(fake.turntable.off_rad, 0, 1e-12);
+}
+
+TEST_F(RunnerTest, APlatformWhoseTagsAreNotBelievedEndsTheRun) {
+  fake.turntable.off_rad = 45 * kDegree;
+  fake.options.inspect = [&](const PlanStep&, const rig::Picture&, double) { return seen_by_tags(fake.turntable); };
+  fake.options.settle_place = [](double, double) { return std::optional<double>(); };
+  EXPECT_THAT(message_of([&] { fake.run(path, small_plan()); }), HasSubstr("slipped"));
+}
+
+TEST_F(RunnerTest, APlatformThatSlipsLaterHasSlippedWhateverAnybodySays) {
+  int pictures = 0;
+  fake.options.inspect = [&](const PlanStep&, const rig::Picture&, double) {
+    if (++pictures == 3) fake.turntable.off_rad = 45 * kDegree;
+    return seen_by_tags(fake.turntable);
+  };
+  fake.options.settle_place = [](double reading_rad, double differ_rad) {
+    return std::optional(reading_rad + differ_rad);
+  };
+  EXPECT_THAT(message_of([&] { fake.run(path, small_plan()); }), HasSubstr("slipped"));
+}
+
 TEST_F(RunnerTest, TheStateOfASessionIsToldByItsJournal) {
   EXPECT_EQ(state_of({}, false), RunState::idle);
   fake.options.stop_wish = [&] { return fake.camera.captures > 3 ? StopWish::pause : StopWish::none; };
