@@ -1,7 +1,9 @@
 #include <libserialport.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -39,7 +41,45 @@ FoundDevice described(const sp_port* port) {
   return found;
 }
 
+// The links in a folder by the device that they lead to; of several the first by name.
+std::map<std::string, std::string> links_in(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> links;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    std::error_code nowhere;
+    const std::string device = std::filesystem::canonical(entry.path(), nowhere).string();
+    if (nowhere) continue;
+    std::string& link = links[device];
+    if (link.empty() || entry.path().string() < link) link = entry.path().string();
+  }
+  return links;
+}
+
+// Two adapters with one serial number, as some makers sell them, compete for one link.
+bool has_by_id_link_of_its_own(const FoundDevice& port, const std::vector<FoundDevice>& ports) {
+  return !port.by_id.empty() && !port.serial.empty() && std::ranges::none_of(ports, [&](const FoundDevice& other) {
+    return other.usb_id == port.usb_id && other.serial == port.serial && other.by_id.empty();
+  });
+}
+
 }  // namespace
+
+void name_for_good(std::vector<FoundDevice>& ports, const std::filesystem::path& folder) {
+  const auto by_id = links_in(folder / "by-id"), by_path = links_in(folder / "by-path");
+  const auto link = [](const std::map<std::string, std::string>& links, const FoundDevice& port) {
+    const auto found = links.find(port.port);
+    return found == links.end() ? std::string() : found->second;
+  };
+  for (FoundDevice& port : ports) {
+    port.by_id = link(by_id, port);
+    port.by_path = link(by_path, port);
+  }
+  for (FoundDevice& port : ports) {
+    port.recommended = has_by_id_link_of_its_own(port, ports) ? port.by_id
+                       : port.by_path.empty()                 ? port.port
+                                                              : port.by_path;
+  }
+}
 
 std::string believed_serial_device(int usb_vendor_id) {
   switch (usb_vendor_id) {
@@ -75,6 +115,7 @@ std::vector<FoundDevice> find_serial_ports() {
   const std::unique_ptr<sp_port*, void (*)(sp_port**)> owner(ports, sp_free_port_list);
   std::vector<FoundDevice> found;
   for (sp_port** port = ports; *port != nullptr; ++port) found.push_back(described(*port));
+  name_for_good(found);
   return found;
 }
 

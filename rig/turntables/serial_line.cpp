@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <mutex>
 
 #include "rig/devices/detect.h"
@@ -22,6 +23,18 @@ constexpr int kMostEarlyReturns = 3;  // so many waits that end at once with not
 
 std::string system_words() {
   return std::strerror(errno);
+}
+
+// The device file that a name stands for, because libserialport knows no links: those below /dev/serial among them.
+// A name that is none stays as it is.
+std::string device_behind(const std::string& name) {
+  std::error_code error;
+  if (!std::filesystem::is_symlink(name, error)) return name;
+  const std::string device = std::filesystem::canonical(name, error).string();
+  if (!error) return device;
+  throw std::runtime_error("the port " + name + " is a link to " + std::filesystem::read_symlink(name).string() +
+                           ", which is not there; plug the turntable in and switch it on (\"threadstation devices\" "
+                           "lists what is there)");
 }
 
 std::string named_port(const SerialPortChoice& choice) {
@@ -67,7 +80,9 @@ std::string unplugged_words(const std::string& port) {
 class SerialLine final : public ByteLine {
  public:
   explicit SerialLine(const SerialPortChoice& choice) : name_(named_port(choice)) {
-    if (sp_get_port_by_name(name_.c_str(), &port_) != SP_OK) {
+    const std::string device = device_behind(name_);
+    if (device != name_) name_ += " (" + device + ")";
+    if (sp_get_port_by_name(device.c_str(), &port_) != SP_OK) {
       errno = ENOENT;
       throw std::runtime_error(why_not_open(name_));
     }
@@ -151,7 +166,7 @@ class SerialLine final : public ByteLine {
     sp_free_port(port_);
   }
 
-  std::string name_;
+  std::string name_;  // in messages: as the rig file names it, and the device behind a link
   sp_port* port_ = nullptr;
   sp_event_set* events_ = nullptr;
   std::mutex writing_;

@@ -9,10 +9,10 @@
 
 namespace rig {
 
-// The choice of a port by its device file, or by the serial number of its USB adapter, which stays the same when the
-// file's name changes.
+// The choice of a port by its device file, or by what stays the same when that file's name changes: a link to it, as
+// the system keeps them below /dev/serial, or the serial number of its USB adapter.
 struct SerialPortChoice {
-  std::string port;        // "/dev/ttyUSB0"; empty when the serial number chooses
+  std::string port;        // "/dev/ttyUSB0", "/dev/serial/by-path/..."; empty when the serial number chooses
   std::string usb_serial;  // empty when the port's name chooses
   int baud = 115200;
 };

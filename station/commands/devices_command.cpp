@@ -15,14 +15,21 @@ void print(const std::vector<rig::FoundDevice>& devices, bool json) {
                       {"port", d.port},
                       {"usb_id", d.usb_id},
                       {"serial", d.serial},
-                      {"believed_to_be", d.believed_to_be}});
+                      {"believed_to_be", d.believed_to_be},
+                      {"by_id", d.by_id},
+                      {"by_path", d.by_path},
+                      {"recommended", d.recommended}});
     std::cout << list.dump() << "\n";
     return;
   }
   if (devices.empty()) std::cout << "no camera and no serial port found; plug one in and switch it on\n";
-  for (const rig::FoundDevice& d : devices)
+  for (const rig::FoundDevice& d : devices) {
     std::cout << d.kind << "  " << d.port << "  " << d.name << (d.serial.empty() ? "" : "  serial " + d.serial) << "  ("
               << d.believed_to_be << ")\n";
+    for (const std::string& link : {d.by_id, d.by_path})
+      if (!link.empty()) std::cout << "  also " << link << "\n";
+    if (!d.recommended.empty()) std::cout << "  in the rig file: \"port\": \"" << d.recommended << "\"\n";
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <future>
 #include <thread>
 
@@ -31,6 +32,24 @@ std::string refusal(const std::function<void()>& action) {
   }
   return "(accepted)";
 }
+
+class FolderOfLinks {
+ public:
+  FolderOfLinks() {
+    std::string name = std::filesystem::temp_directory_path() / "linksXXXXXX";
+    folder_ = mkdtemp(name.data());
+  }
+  ~FolderOfLinks() { std::filesystem::remove_all(folder_); }
+  FolderOfLinks(const FolderOfLinks&) = delete;
+  FolderOfLinks& operator=(const FolderOfLinks&) = delete;
+  std::string make(const std::string& name, const std::string& target) const {
+    std::filesystem::create_symlink(target, folder_ / name);
+    return folder_ / name;
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
 
 struct Wire : testing::TestWithParam<std::tuple<Protocol, Line>> {
   Wire() {
@@ -120,6 +139,18 @@ TEST_P(Wire, APlugPulledWhileTheLineIsOpenedStaysPulled) {
   EXPECT_FALSE(rig.port->plugged());
 }
 
+// The links that the system keeps below /dev/serial; a link to a link is one, too.
+TEST_P(Wire, APortIsOpenedByALinkToIt) {
+  const FolderOfLinks links;
+  const std::string id = links.make("by-id", server->path()), mine = links.make("turntable", id);
+  rig.open_line = [&] { return open_line(line(), mine); };
+  const auto table = rig.make_turntable();
+  table->home();
+  EXPECT_NEAR(rig.true_angle_rad(), 0, 1e-12);
+  EXPECT_THAT(refusal([&] { open_line(line(), id); }),
+              testing::AllOf(HasSubstr("by-id"), HasSubstr("used by another program")));
+}
+
 TEST_P(Wire, SilenceIsAnEmptyRead) {
   const auto open = open_line(line(), server->path());
   while (!open->read(0.05).empty()) {
@@ -169,6 +200,17 @@ TEST_P(Wire, AStopFromAnotherThreadReachesTheMotorWhileTheMoverSleeps) {
   EXPECT_THAT(refusal([&] { table->move_to(350 * kDegree); }), HasSubstr("was stopped at"));
   EXPECT_LT(rig.true_angle_rad(), 340 * kDegree);
   EXPECT_NEAR(table->angle_rad(), rig.true_angle_rad(), 1e-12);
+}
+
+TEST(SerialLine, SaysBothNamesOfAPortThatIsALink) {
+  const FolderOfLinks links;
+  const std::string nowhere = links.make("by-path", "../../ttyUSB7");
+  EXPECT_THAT(refusal([&] { rig::open_serial_line({.port = nowhere, .usb_serial = ""}); }),
+              testing::AllOf(HasSubstr("the port " + nowhere + " is a link to ../../ttyUSB7, which is not there; plug"),
+                             testing::Not(HasSubstr("\n"))));
+  const std::string no_port = links.make("null", "/dev/null");
+  EXPECT_THAT(refusal([&] { rig::open_serial_line({.port = no_port, .usb_serial = ""}); }),
+              HasSubstr("there is no port " + no_port + " (/dev/null); plug"));
 }
 
 TEST(SerialLine, SaysThatAPortIsNotThere) {
