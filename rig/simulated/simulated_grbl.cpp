@@ -243,7 +243,7 @@ class SimulatedGrbl final : public SimulatedController {
   std::optional<int> system_line(const std::string& line) {
     if (line == "$I") {
       say("[VER:1.1h.20190830:]");
-      say("[OPT:V,15,128]");
+      say("[OPT:" + settings_.options() + "]");
       return 0;
     }
     if (line == "$X") {
@@ -262,7 +262,7 @@ class SimulatedGrbl final : public SimulatedController {
       for (const std::string& setting : settings_.lines()) say(setting);
       return 0;
     }
-    if (line == "$H") return begin_homing();
+    if (line == "$H" || (line == "$HX" && settings_.homes_single_axis())) return begin_homing();
     if (line == "$#") {
       print_offsets();
       return 0;

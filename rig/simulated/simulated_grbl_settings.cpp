@@ -9,7 +9,8 @@
 
 namespace rig {
 
-SimulatedGrblSettings::SimulatedGrblSettings(const SimulatedMotor& motor, bool with_switch) {
+SimulatedGrblSettings::SimulatedGrblSettings(const SimulatedMotor& motor, bool with_switch)
+    : with_switch_(with_switch) {
   const double deg_min = motor.full_speed_deg_s() * 60;
   values_ = {{0, 10},
              {1, 255},
@@ -70,6 +71,10 @@ std::vector<std::string> SimulatedGrblSettings::lines() const {
     lines.emplace_back(text.data());
   }
   return lines;
+}
+
+std::string SimulatedGrblSettings::options() const {
+  return homes_single_axis() ? "VH,15,128" : "V,15,128";
 }
 
 }  // namespace rig

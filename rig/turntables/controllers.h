@@ -14,6 +14,7 @@ namespace rig {
 struct ControllerSetup {
   double steps_per_deg = 0;  // from the rig file; the controller's own value must agree
   HomeBy home_by = HomeBy::here;
+  bool homes_x_alone = false;            // GRBL's $H was built to home no other axis than X
   double reply_timeout_s = 2;            // a silence of this length is an error
   double banner_timeout_s = 5;           // for GRBL's greeting; boards reset by opening their port start in two seconds
   int zaber_device = 1, zaber_axis = 1;  // which stage in a chain of stages on one line

@@ -8,13 +8,13 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "rig/turntables/controllers.h"
 #include "rig/turntables/grbl_reply.h"
+#include "rig/turntables/grbl_settings.h"
 #include "rig/turntables/line_frames.h"
 #include "rig/turntables/stopping.h"
 
@@ -27,7 +27,6 @@ constexpr double kHoldTimeoutS = 3;  // from the hold to standing still
 constexpr double kLookS = 0.02;      // the wait per look for homing's answer, which may come much later
 constexpr double kPollS = 0.05;
 constexpr double kSecondsPerMinute = 60;
-constexpr double kSameRatio = 1e-4;  // rounding when steps per degree are written down in two places
 constexpr char kReset = '\x18';
 
 using Take = std::function<bool(const GrblReply&)>;
@@ -41,15 +40,45 @@ bool is_garbled_command(int code) {
   return code == 1 || code == 2 || code == 3 || code == 20;
 }
 
-class GrblController final : public MotionController {
+class GrblController final : public MotionController, public GrblSettingsPort {
  public:
+  // Asks the controller who it is; its settings may be wrong until check_settings().
   GrblController(std::shared_ptr<ByteLine> line, Clock& clock, const ControllerSetup& setup)
       : line_(std::move(line)), clock_(clock), setup_(setup) {
     reset();
     identify();
-    check_settings();
+  }
+
+  // From now on an alarm or a banner is an error.
+  void check_settings() {
+    const GrblSettings found = read_settings();
+    require_grbl_settings(found, setup_, firmware_);
+    identity_.steps_per_deg = found.at(100);
+    identity_.speed_deg_s = stoppable_speed(found);
+    // Positions come with three decimals.
+    identity_.reading_tolerance_steps = static_cast<int>(std::floor(0.0005 * found.at(100) + 0.5));
     on_guard_ = true;
   }
+
+  GrblFirmware firmware() override { return firmware_; }
+
+  // Asks again if $100 got lost on the wire.
+  GrblSettings read_settings() override {
+    GrblSettings found;
+    for (int tries = 0; tries < kMostTries && !found.contains(100); ++tries) {
+      for (const GrblReply& reply : ask("$$"))
+        if (const auto* setting = std::get_if<GrblSetting>(&reply))
+          found.insert_or_assign(setting->number, setting->value);
+    }
+    if (!found.contains(100)) {
+      throw std::runtime_error(
+          "the turntable does not say its steps per degree ($100); it needs GRBL 1.1, grblHAL or "
+          "FluidNC");
+    }
+    return found;
+  }
+
+  void write_setting(int number, double value) override { ask(grbl_setting_line(number, value)); }
 
   ControllerIdentity identity() override { return identity_; }
 
@@ -64,7 +93,7 @@ class GrblController final : public MotionController {
     on_guard_ = true;
     home_seen_ = false;
     homing_ = true;
-    begin("$H\n");
+    begin(*grbl_homing_command(setup_, firmware_) + "\n");
   }
 
   void start_move(std::int64_t steps) override {
@@ -201,62 +230,30 @@ class GrblController final : public MotionController {
                    " times and did not answer; check its cable and its power, then home it");
   }
 
+  // Both lines must have come: the options tell how it homes.
   void identify() {
     for (int tries = 0; tries < kMostTries; ++tries) {
+      std::vector<std::string> lines;
       for (const GrblReply& reply : ask("$I"))
-        if (const auto* message = std::get_if<GrblMessage>(&reply); message && message->text.starts_with("VER:"))
-          return;
+        if (const auto* message = std::get_if<GrblMessage>(&reply)) lines.push_back(message->text);
+      const auto says = [&](const char* kind) {
+        return std::ranges::any_of(lines, [&](const std::string& line) { return line.starts_with(kind); });
+      };
+      firmware_ = grbl_firmware(identity_.firmware, lines);
+      if (says("VER:") && (says("OPT:") || tries + 1 == kMostTries)) return;
     }
     throw std::runtime_error(
         "the device on the turntable's port started like GRBL and did not say its version; it "
         "needs GRBL 1.1, grblHAL or FluidNC");
   }
 
-  // Reads the settings, again if $100 got lost on the wire. The others are checked only if the firmware has them.
-  void check_settings() {
-    std::map<int, double> found;
-    for (int tries = 0; tries < kMostTries && !found.contains(100); ++tries) {
-      for (const GrblReply& reply : ask("$$"))
-        if (const auto* setting = std::get_if<GrblSetting>(&reply))
-          found.insert_or_assign(setting->number, setting->value);
-    }
-    if (!found.contains(100)) {
-      throw std::runtime_error(
-          "the turntable does not say its steps per degree ($100); it needs GRBL 1.1, grblHAL or "
-          "FluidNC");
-    }
-    identity_.steps_per_deg = found.at(100);
-    identity_.speed_deg_s = stoppable_speed(found);
-    // Positions come with three decimals.
-    identity_.reading_tolerance_steps = static_cast<int>(std::floor(0.0005 * found.at(100) + 0.5));
-    if (!(std::abs(found.at(100) / setup_.steps_per_deg - 1) <= kSameRatio)) {
-      throw std::runtime_error("the turntable is set to " + std::to_string(found.at(100)) +
-                               " steps per degree ($100) and the rig file says " +
-                               std::to_string(setup_.steps_per_deg) +
-                               "; steps per turn x microsteps x gear / 360 is right for both");
-    }
-    require(found, 13, 0, "reports in inches ($13=1); set $13=0");
-    require(found, 20, 0, "has soft limits ($20=1), a platform turns endlessly; set $20=0");
-    require(found, 32, 0, "is in laser mode ($32=1); set $32=0");
-    if (setup_.home_by == HomeBy::home_switch)
-      require(found, 22, 1, "has homing switched off ($22=0); set $22=1, or \"home\": \"here\" in the rig file");
-    // In other firmware $1 means something else; its own manual says how to keep the motor powered.
-    if (identity_.firmware.starts_with("Grbl 1.1"))
-      require(found, 1, 255, "lets its motor go between moves ($1), and the platform would drift; set $1=255");
-  }
-
   // By its own limits of speed ($110, deg/min) and acceleration ($120, deg/s^2).
-  static double stoppable_speed(const std::map<int, double>& found) {
+  static double stoppable_speed(const GrblSettings& found) {
     const auto fastest = found.find(110), acceleration = found.find(120);
     const bool known = acceleration != found.end() && acceleration->second > 0;
     const double speed_deg_s = known ? stoppable_speed_deg_s(acceleration->second) : kSureSpeedDegS;
     const bool limited = fastest != found.end() && fastest->second > 0;
     return limited ? std::min(speed_deg_s, fastest->second / kSecondsPerMinute) : speed_deg_s;
-  }
-
-  static void require(const std::map<int, double>& found, int number, double wanted, const std::string& problem) {
-    const auto setting = found.find(number);
-    if (setting != found.end() && setting->second != wanted) throw std::runtime_error("the turntable " + problem);
   }
 
   GrblStatus ask_status() {
@@ -339,6 +336,7 @@ class GrblController final : public MotionController {
   Clock& clock_;
   ControllerSetup setup_;
   ControllerIdentity identity_;
+  GrblFirmware firmware_;
   LineFrames frames_;
   std::optional<double> work_offset_deg_;
   std::string noise_;              // the last noise heard
@@ -352,6 +350,13 @@ class GrblController final : public MotionController {
 
 std::unique_ptr<MotionController> connect_grbl(std::shared_ptr<ByteLine> line, Clock& clock,
                                                const ControllerSetup& setup) {
+  auto controller = std::make_unique<GrblController>(std::move(line), clock, setup);
+  controller->check_settings();
+  return controller;
+}
+
+std::unique_ptr<GrblSettingsPort> connect_grbl_settings(std::shared_ptr<ByteLine> line, Clock& clock,
+                                                        const ControllerSetup& setup) {
   return std::make_unique<GrblController>(std::move(line), clock, setup);
 }
 

@@ -238,6 +238,8 @@ TurntableWire parse_turntable(ObjectReader reader, const std::string& driver) {
   wire.controller.home_by =
       reader.choice("home", {"here", "switch"}) == "here" ? rig::HomeBy::here : rig::HomeBy::home_switch;
   wire.stepper.home_by = wire.controller.home_by;
+  if (driver == "grbl" && reader.has("homing_cycle"))
+    wire.controller.homes_x_alone = reader.choice("homing_cycle", {"z_first", "x_only"}) == "x_only";
   if (driver == "zaber" && wire.controller.home_by == rig::HomeBy::here)
     reader.refuse("home", "a Zaber stage finds its home by itself; expected \"switch\"");
   wire.stepper.limit_rad = reader.number("limit_deg", 90, 360) * kDegree;

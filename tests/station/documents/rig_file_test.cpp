@@ -67,6 +67,16 @@ TEST(RigFileDevices, AreReadWithTheirUnits) {
   EXPECT_EQ(rig.camera_wire->setup.width_px, 6024);
 }
 
+TEST(RigFileDevices, MayHaveFirmwareThatWasBuiltToHomeOneAxis) {
+  json grbl = rig_document("grbl_sony_usb");
+  EXPECT_FALSE(parse_rig(grbl, "rig.json").turntable_wire->controller.homes_x_alone);
+  grbl["turntable_setup"]["homing_cycle"] = "x_only";
+  EXPECT_TRUE(parse_rig(grbl, "rig.json").turntable_wire->controller.homes_x_alone);
+  EXPECT_THAT(said(grbl, "/turntable_setup/homing_cycle", "x"), HasSubstr("turntable_setup.homing_cycle"));
+  EXPECT_THAT(said(rig_document("zaber_sony_usb"), "/turntable_setup/homing_cycle", "x_only"),
+              HasSubstr("homing_cycle"));
+}
+
 TEST(RigFileDevices, AreRefusedWithTheKeyWhenTheyCannotBeMeant) {
   const json grbl = rig_document("grbl_sony_usb"), zaber = rig_document("zaber_sony_usb");
   EXPECT_THAT(said(grbl, "/turntable", "stepper"), HasSubstr("turntable"));
