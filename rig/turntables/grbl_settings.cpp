@@ -76,10 +76,10 @@ std::vector<GrblSettingRow> grbl_setting_rows(const GrblSettings& found, const C
   // In other firmware $1 means something else; its own manual says how to keep the motor powered.
   if (firmware.name.starts_with("Grbl 1.1")) rows.add(1, "the motor stays on between moves", 255);
   rows.add(13, "reports in inches", 0);
-  rows.add(20, "soft limits, but a platform turns endlessly", 0);
+  rows.add(20, "soft limits, off because a platform turns endlessly", 0);
   const bool by_switch = setup.home_by == HomeBy::home_switch;
   if (by_switch) {
-    rows.add(21, "alarm at the switch, but the platform passes it", 0);
+    rows.add(21, "alarm at the switch, off because the platform passes it", 0);
     add_homing(rows, firmware);
   }
   rows.add(32, "laser mode", 0);

@@ -1,0 +1,211 @@
+// The driver on both simulations of GRBL, and what it says about boards as people have them: with the settings and the
+// homing that the firmware comes with.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "rig/devices/device_contract.h"
+#include "rig/turntables/grbl_settings.h"
+#include "tests/rig/turntables/wired_bench.h"
+#include "tests/support/documented_grbl.h"
+
+namespace {
+
+using rig::kDegree;
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string refusal(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "(accepted)";
+}
+
+constexpr double kStepRad = kDegree / 40;
+
+// A documented board, right in every way unless a test says otherwise, with the driver on it.
+struct DocumentedBench {
+  explicit DocumentedBench(DocumentedGrblOptions options = right(), const std::map<int, double>& others = {})
+      : board(clock, with(std::move(options), others)) {
+    setup.steps_per_deg = 40;
+    setup.home_by = stepper.home_by = rig::HomeBy::home_switch;
+    stepper.move_timeout_s = 200;
+  }
+  static DocumentedGrblOptions with(DocumentedGrblOptions options, const std::map<int, double>& others) {
+    for (const auto& [number, value] : others) options.eeprom[number] = value;
+    return options;
+  }
+  static DocumentedGrblOptions right() {
+    DocumentedGrblOptions options;
+    options.homes_single_axis = true;
+    options.homing = DocumentedGrblOptions::Homing::z_first;
+    options.eeprom = documented_turntable_settings();
+    return options;
+  }
+  static DocumentedGrblOptions as_it_comes() {
+    DocumentedGrblOptions options;
+    options.homing = DocumentedGrblOptions::Homing::z_first;
+    return options;
+  }
+  std::unique_ptr<rig::Turntable> make_turntable() {
+    return rig::make_stepper_turntable([this] { return rig::connect_grbl(board.open(), clock, setup); }, clock,
+                                       stepper);
+  }
+  double at_rad() { return (board.platform_deg() - 361) * kDegree; }  // the pull-off ends at 361 deg
+
+  EventfulClock clock;
+  DocumentedGrbl board;
+  rig::ControllerSetup setup;
+  rig::StepperSetup stepper;
+};
+
+// One bench of either simulation.
+struct EitherGrbl : testing::TestWithParam<bool> {
+  std::unique_ptr<rig::Turntable> make_turntable() {
+    return GetParam() ? documented.make_turntable() : simulated.make_turntable();
+  }
+  EventfulClock& clock() { return GetParam() ? documented.clock : simulated.clock; }
+  double at_rad() { return GetParam() ? documented.at_rad() : simulated.true_angle_rad(); }
+
+  WiredBench<EventfulClock> simulated{Protocol::grbl};
+  DocumentedBench documented;
+};
+
+INSTANTIATE_TEST_SUITE_P(Simulations, EitherGrbl, testing::Bool(),
+                         [](const auto& test) { return test.param ? "Documented" : "Simulated"; });
+
+}  // namespace
+
+TEST_P(EitherGrbl, KeepsTheContractOfTurntables) {
+  const auto table = make_turntable();
+  for (const rig::ContractRow& row : rig::check_turntable(*table, kStepRad))
+    EXPECT_TRUE(row.passed) << row.name << ": " << row.what;
+  EXPECT_NEAR(std::remainder(at_rad(), 360 * kDegree), 0, 1e-9);
+}
+
+TEST_P(EitherGrbl, StandsAtTheNearestStepAndReadsItBack) {
+  const auto table = make_turntable();
+  table->home();
+  EXPECT_NEAR(at_rad(), 0, 1e-9);
+  for (const double wanted_deg : {30.01, -77.7, 359.99, 0.0, -360.0}) {
+    table->move_to(wanted_deg * kDegree);
+    const double expected_rad = std::round(wanted_deg * 40) * kStepRad;
+    EXPECT_NEAR(table->angle_rad(), expected_rad, 1e-9);
+    EXPECT_NEAR(at_rad(), expected_rad, 1e-9);
+  }
+}
+
+TEST_P(EitherGrbl, AStopEndsTheMoveKeepsThePositionAndTheNextMoveGoesOn) {
+  const auto table = make_turntable();
+  table->home();
+  for (const double after_s : {0.06, 0.3, 1.0, 2.5, 3.1}) {
+    clock().plan(after_s, [&] { table->stop(); });
+    EXPECT_THAT(refusal([&] { table->move_to(90 * kDegree); }), HasSubstr("was stopped at"));
+    const double stood_rad = at_rad();
+    EXPECT_NEAR(table->angle_rad(), stood_rad, 1e-9);
+    clock().sleep_s(5);
+    EXPECT_EQ(at_rad(), stood_rad);
+    table->move_to(0);
+    EXPECT_NEAR(at_rad(), 0, 1e-9);
+  }
+}
+
+TEST_P(EitherGrbl, AStopWhileHomingLeavesThePositionUnknown) {
+  const auto table = make_turntable();
+  clock().plan(0.5, [&] { table->stop(); });
+  EXPECT_THAT(refusal([&] { table->home(); }), HasSubstr("home it again"));
+  EXPECT_EQ(table->state(), rig::TurntableState::unknown_position);
+  table->home();
+  EXPECT_NEAR(at_rad(), 0, 1e-9);
+}
+
+TEST(DocumentedTurntable, FindsItsHomeFromAnywhere) {
+  for (double stands_at_deg = -360; stands_at_deg < 360; stands_at_deg += 36.5) {
+    auto options = DocumentedBench::right();
+    options.stands_at_deg = stands_at_deg;
+    DocumentedBench bench(options);
+    bench.make_turntable()->home();
+    EXPECT_NEAR(std::remainder(bench.board.platform_deg() - 1, 360), 0, 1e-9) << stands_at_deg;
+  }
+}
+
+TEST(DocumentedTurntable, AsItComesIsRefusedAtOnceWithAllThatMustDiffer) {
+  DocumentedBench bench(DocumentedBench::as_it_comes());
+  const std::string said = refusal([&] { bench.make_turntable(); });
+  EXPECT_THAT(said, AllOf(HasSubstr("type: $1=255, $22=1, $100=40, $130=360"), HasSubstr("homes Z first"),
+                          testing::Not(HasSubstr("alarm"))));
+  EXPECT_THAT(bench.board.log(), testing::IsEmpty());
+}
+
+TEST(DocumentedTurntable, ThatHomesZFirstIsRefusedBeforeItTurns) {
+  auto options = DocumentedBench::right();
+  options.homes_single_axis = false;
+  DocumentedBench bench(options);
+  EXPECT_THAT(refusal([&] { bench.make_turntable()->home(); }),
+              AllOf(HasSubstr("homes Z first"), HasSubstr("\"homing_cycle\": \"x_only\"")));
+  EXPECT_THAT(bench.board.log(), testing::IsEmpty());
+}
+
+TEST(DocumentedTurntable, ThatWasBuiltToHomeXAloneIsHomedWhenTheRigFileSaysSo) {
+  auto options = DocumentedBench::right();
+  options.homes_single_axis = false;
+  options.homing = DocumentedGrblOptions::Homing::x_only;
+  DocumentedBench bench(options);
+  bench.setup.homes_x_alone = true;
+  bench.make_turntable()->home();
+  EXPECT_NEAR(bench.at_rad(), 0, 1e-9);
+}
+
+TEST(DocumentedTurntable, WhoseTravelIsTooShortIsRefusedBeforeItTurns) {
+  DocumentedBench bench(DocumentedBench::right(), {{130, 200}});
+  EXPECT_THAT(refusal([&] { bench.make_turntable()->home(); }), HasSubstr("type: $130=360, or let"));
+  EXPECT_THAT(bench.board.log(), testing::IsEmpty());
+}
+
+TEST(DocumentedTurntable, SaysItsAlarmsInWords) {
+  auto without = DocumentedBench::right();
+  without.switch_deg.reset();
+  DocumentedBench lost(without);
+  EXPECT_THAT(refusal([&] { lost.make_turntable()->home(); }), HasSubstr("alarm 9: it found no home switch"));
+  auto stuck = DocumentedBench::right();
+  stuck.switch_width_deg = 350;
+  DocumentedBench pressed(stuck);
+  EXPECT_THAT(refusal([&] { pressed.make_turntable()->home(); }), HasSubstr("alarm 8"));
+}
+
+TEST(DocumentedTurntable, ThatLosesItsPowerInAMoveHasToBeHomed) {
+  DocumentedBench bench;
+  const auto table = bench.make_turntable();
+  table->home();
+  bench.clock.plan(1, [&] {
+    bench.board.unplug();
+    bench.board.plug_in();
+  });
+  EXPECT_THAT(refusal([&] { table->move_to(90 * kDegree); }), HasSubstr("started anew"));
+  table->home();
+  EXPECT_NEAR(std::remainder(bench.board.platform_deg() - 1, 360), 0, 1e-9);
+}
+
+TEST(DocumentedTurntable, WithoutASwitchIsHomeWhereItStands) {
+  DocumentedBench bench(DocumentedBench::as_it_comes(), {{1, 255}, {100, 40}, {110, 1800}, {120, 150}});
+  bench.setup.home_by = bench.stepper.home_by = rig::HomeBy::here;
+  const auto table = bench.make_turntable();
+  table->home();
+  table->move_to(30 * kDegree);
+  EXPECT_NEAR(bench.board.platform_deg(), 80, 1e-9);
+}
+
+TEST(DocumentedTurntable, IsSetUpWithWhatItNeeds) {
+  DocumentedBench bench(DocumentedBench::as_it_comes());
+  {
+    const auto port = rig::connect_grbl_settings(bench.board.open(), bench.clock, bench.setup);
+    for (const auto& row : rig::grbl_setting_rows(port->read_settings(), bench.setup, port->firmware()))
+      if (row.needed) port->write_setting(row.number, *row.needed);
+  }
+  bench.setup.homes_x_alone = true;
+  bench.make_turntable();
+  EXPECT_EQ(bench.board.settings().at(130), 360);
+  EXPECT_EQ(bench.board.settings().at(1), 255);
+}
