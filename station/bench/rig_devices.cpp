@@ -46,11 +46,15 @@ std::unique_ptr<rig::ByteLine> open_line(const TurntableWire& wire, const rig::P
   return rig::open_pty_line(server->path());
 }
 
+void start_simulated_wire(const RigFile& rig, RigDevices& devices) {
+  if (rig.turntable_wire->line == TurntableWire::Line::simulated)
+    devices.simulated_wire = rig::serve_on_pty(start_firmware(rig, *devices.bench, *devices.clock));
+}
+
 std::unique_ptr<rig::Turntable> make_wired_turntable(const RigFile& rig, RigDevices& devices, rig::AskedPerson* asked) {
   TurntableWire wire = *rig.turntable_wire;
   if (remembers_its_place(rig)) wire.stepper.memory = remember_platform(platform_memory_file(rig), asked);
-  if (wire.line == TurntableWire::Line::simulated)
-    devices.simulated_wire = rig::serve_on_pty(start_firmware(rig, *devices.bench, *devices.clock));
+  start_simulated_wire(rig, devices);
   const auto connect = rig.turntable_driver == "grbl" ? rig::connect_grbl : rig::connect_zaber;
   // The addresses stay when the struct that owns them is moved.
   return rig::make_stepper_turntable(
@@ -93,6 +97,14 @@ void require_person(const RigFile& rig, const rig::AskedPerson* asked) {
 // One grey for everything.
 cv::Mat3f undrawn(const rig::BenchState& state) {
   return cv::Mat3f(state.lens.height_px, state.lens.width_px, cv::Vec3f::all(0.1F));
+}
+
+// The clock and, for a simulated device, the bench that nobody draws.
+RigDevices undrawn_bench(const RigFile& rig, bool simulated, double pace = 0) {
+  RigDevices devices;
+  devices.clock = make_clock(simulated, pace);
+  if (simulated) devices.bench = std::make_unique<rig::SimulatedBench>(rig.simulation->truth, undrawn);
+  return devices;
 }
 
 }  // namespace
@@ -152,17 +164,22 @@ RigDevices open_rig(const RigFile& rig, const std::optional<Spool>& spool, rig::
 RigDevices open_turntable(const RigFile& rig, rig::AskedPerson* asked) {
   constexpr double kPace = 0.01;  // a check looks at it from another thread while it turns
   require_person(rig, asked);
-  RigDevices devices;
-  devices.clock = make_clock(turns_the_bench(rig), kPace);
-  if (turns_the_bench(rig)) devices.bench = std::make_unique<rig::SimulatedBench>(rig.simulation->truth, undrawn);
+  RigDevices devices = undrawn_bench(rig, turns_the_bench(rig), kPace);
   devices.turntable = guard_turntable(make_turntable(rig, devices, asked));
   return devices;
 }
 
+TurntableLine open_turntable_line(const RigFile& rig) {
+  if (!rig.turntable_wire)
+    throw std::runtime_error("rig \"" + rig.name + "\" has no turntable with a motor controller");
+  TurntableLine opened{.devices = undrawn_bench(rig, turns_the_bench(rig)), .line = nullptr};
+  start_simulated_wire(rig, opened.devices);
+  opened.line = open_line(*rig.turntable_wire, opened.devices.simulated_wire.get());
+  return opened;
+}
+
 RigDevices open_camera(const RigFile& rig) {
-  RigDevices devices;
-  devices.clock = make_clock(photographs_the_bench(rig));
-  if (photographs_the_bench(rig)) devices.bench = std::make_unique<rig::SimulatedBench>(rig.simulation->truth, undrawn);
+  RigDevices devices = undrawn_bench(rig, photographs_the_bench(rig));
   devices.camera = make_camera(rig, devices);
   return devices;
 }

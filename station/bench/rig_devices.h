@@ -12,6 +12,7 @@
 #include "rig/simulated/ptpip_server.h"
 #include "rig/simulated/pty_server.h"
 #include "rig/simulated/simulated_bench.h"
+#include "rig/turntables/byte_line.h"
 #include "station/documents/rig_file.h"
 #include "station/documents/spool.h"
 
@@ -48,6 +49,13 @@ RigDevices open_camera(const RigFile& rig);
 
 // How many turntables that move were opened in this process; the simulated one without a wire moves nothing.
 int turntables_opened();
+
+// The line to a turntable's motor controller, to which nobody has spoken yet. Throws when it has none.
+struct TurntableLine {
+  RigDevices devices;  // the clock; what simulates the firmware
+  std::shared_ptr<rig::ByteLine> line;
+};
+TurntableLine open_turntable_line(const RigFile& rig);
 
 // Puts the simulated camera that a rig file names on this computer's network, photographing `devices.bench`.
 void start_simulated_camera(RigDevices& devices, const rig::CameraFaultPlan& faults = {});

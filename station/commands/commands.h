@@ -31,6 +31,7 @@ void add_serve_command(CLI::App& app);
 void add_scatter_command(CLI::App& app);
 void add_simulate_hardware_command(CLI::App& app);
 void add_target_command(CLI::App& app);
+void add_turntable_command(CLI::App& app);
 void add_recover_command(CLI::App& app);
 void add_embroider_command(CLI::App& app);
 void add_validate_cloth_command(CLI::App& app);

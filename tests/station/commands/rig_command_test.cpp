@@ -89,6 +89,51 @@ TEST_F(RigCommands, SimulateHardwareNeedsSomethingOnAWire) {
                  "names nothing that is simulated on a wire");
 }
 
+TEST_F(RigCommands, TurntableSetUpShowsTheSettingsOfASimulatedController) {
+  const ProgramResult result = run_threadstation({"turntable", "set-up", "--rig", fixture("simulated_wire_grbl")});
+  EXPECT_EQ(result.status, 0) << result.error;
+  EXPECT_THAT(result.out, HasSubstr("Grbl 1.1h"));
+  EXPECT_THAT(result.out, HasSubstr("  right    $100  steps per degree"));
+  EXPECT_THAT(result.out, HasSubstr("nothing had to be changed"));
+  EXPECT_THAT(result.out, testing::Not(HasSubstr("DIFFERS")));
+}
+
+TEST_F(RigCommands, TurntableSetUpSaysInOneLineWhereItHasNothingToDo) {
+  expect_refused(run_threadstation({"turntable", "set-up", "--rig", fixture("simulated_wire_zaber")}),
+                 "has a Zaber stage, which needs no such set-up");
+  expect_refused(run_threadstation({"turntable", "set-up", "--rig", fixture("manual_sony_usb")}), "(manual)");
+  expect_refused(run_threadstation({"turntable", "set-up", "--rig", fixture("simulated_wire_grbl"), "--write"}),
+                 "--write needs --back-up FILE");
+}
+
+// The controller is set to 40 steps per degree and the rig file says 50.
+TEST_F(RigCommands, TurntableSetUpWritesWhatDiffersAndPutsItBack) {
+  const std::string ports = folder / "ports", program = THREADSTATION_PROGRAM, back_up = folder / "before.json";
+  const ProgramResult started = station_test::run_shell(
+      program + " simulate-hardware --json --rig " + fixture("simulated_wire_grbl") + " > " + ports +
+      " & echo $!; while [ ! -s " + ports + " ]; do kill -0 $! || exit 1; sleep 0.05; done");
+  ASSERT_EQ(started.status, 0) << started.error;
+  json rig = station::read_json_file(fixture("grbl_sony_network"));
+  rig["turntable_setup"]["line"] = "pty";
+  rig["turntable_setup"].erase("baud");
+  rig["turntable_setup"]["port"] = station::read_json_file(ports)["turntable"]["port"];
+  rig["turntable_setup"]["steps_per_deg"] = 50;
+  const std::vector<std::string> set_up{"turntable", "set-up", "--rig", rig_file(rig)};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = set_up;
+    all.insert(all.end(), more.begin(), more.end());
+    return run_threadstation(all);
+  };
+  expect_refused(run_threadstation({"check", "--rig", rig_file(rig)}), "type: $100=50");
+  EXPECT_THAT(with({}).out, HasSubstr("type: $100=50"));
+  EXPECT_THAT(with({"--write", "--back-up", back_up}).out, HasSubstr("40 -> 50"));
+  EXPECT_THAT(with({}).out, HasSubstr("nothing had to be changed"));
+  const json restored = json::parse(with({"--restore", back_up, "--json"}).out);
+  for (const json& row : restored["settings"])
+    if (row["number"] == 100) EXPECT_EQ(row["after"], 40);
+  EXPECT_EQ(station_test::run_shell("kill -INT " + started.out).status, 0);
+}
+
 // Two programs: one is the hardware with faults, the other one finds it at the ports that the first one printed.
 TEST_F(RigCommands, SimulatedHardwareServesAnotherProgramAndEndsWithCtrlC) {
   json wire = station::read_json_file(fixture("simulated_wire_grbl"));
