@@ -3,6 +3,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "rig/turntables/grbl_settings.h"
 #include "station/bench/turntable_set_up.h"
 #include "station/commands/commands.h"
 
