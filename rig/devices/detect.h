@@ -9,12 +9,12 @@
 namespace rig {
 
 struct FoundDevice {
-  std::string kind;            // "camera" or "serial port"
-  std::string name;            // "Sony ILCE-7M2 (Control)", "/dev/ttyACM0 - Arduino Uno"
-  std::string port;            // as a rig file names it: "usb:001,004", "/dev/ttyACM0"
-  std::string usb_id;          // "2341:0043"; empty when it is unknown or the device is not on USB
-  std::string serial;          // empty when it cannot be known without opening the device
-  std::string believed_to_be;  // for people: "perhaps a GRBL turntable (Arduino)"
+  std::string kind;                // "camera" or "serial port"
+  std::string name;                // "Sony ILCE-7M2 (Control)", "/dev/ttyACM0 - Arduino Uno"
+  std::string port;                // as a rig file names it: "usb:001,004", "/dev/ttyACM0"
+  std::string usb_id;              // "2341:0043"; empty when it is unknown or the device is not on USB
+  std::string serial;              // empty when it cannot be known without opening the device
+  std::string believed_to_be;      // for people: "perhaps a GRBL turntable (Arduino)"
   std::string by_id{}, by_path{};  // links to a serial port that keep their names; empty where there is none
   std::string recommended{};       // the port as it is best written into a rig file
 };
