@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -18,6 +17,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "rig/cameras/ptp_bytes.h"
 
@@ -28,7 +28,8 @@ constexpr std::uint32_t kInitCommand = 1, kInitCommandAck = 2, kInitEvent = 3, k
                         kRequest = 6, kResponse = 7, kEvent = 8, kStartData = 9, kData = 10, kEndData = 12, kPing = 13,
                         kPong = 14;
 constexpr std::size_t kHeader = 8, kLargestPacket = 1 << 20, kPiece = 1 << 16;
-constexpr int kLookEveryMs = 5;  // how often the server looks for pictures that became ready
+constexpr int kLookEveryMs = 5;         // how often the server looks for pictures that became ready
+constexpr std::size_t kMostGuests = 8;  // connections that have not said yet which they are
 // The header of a packet of an unknown type whose announced length, more than a kilobyte, never comes.
 constexpr std::string_view kNoise("\x00\x05\x00\x00\xff\xfe\x81\x07\xc3", 9);
 constexpr std::uint16_t kPictureReady = 0xc201, kGetObject = 0x1009;
@@ -77,11 +78,37 @@ struct Packet {
   std::string body;
 };
 
-Packet receive_packet(const Socket& socket) {
-  const std::string header = receive_exactly(socket, kHeader);
+// The length of the packet that begins with this header.
+std::size_t packet_length(std::string_view header) {
   const std::uint32_t length = *ptp_number<std::uint32_t>(header, 0);
   if (length < kHeader || length > kLargestPacket) throw Broken{};
-  return {*ptp_number<std::uint32_t>(header, 4), receive_exactly(socket, length - kHeader)};
+  return length;
+}
+
+Packet receive_packet(const Socket& socket) {
+  const std::string header = receive_exactly(socket, kHeader);
+  return {*ptp_number<std::uint32_t>(header, 4), receive_exactly(socket, packet_length(header) - kHeader)};
+}
+
+// A connection that has not said yet which of the two it is. Nobody waits for it, because it may stay silent for ever.
+struct Guest {
+  Socket socket;
+  std::string said;
+};
+
+// The guest's first packet, once it is whole; bytes that come after it are left where they are.
+std::optional<Packet> first_packet(Guest& guest) {
+  for (;;) {
+    const bool measured = guest.said.size() >= kHeader;
+    const std::size_t length = measured ? packet_length(guest.said) : kHeader;
+    if (measured && guest.said.size() == length)
+      return Packet{*ptp_number<std::uint32_t>(guest.said, 4), guest.said.substr(kHeader)};
+    std::string piece(length - guest.said.size(), '\0');
+    const ssize_t more = ::recv(guest.socket.get(), piece.data(), piece.size(), MSG_DONTWAIT);
+    if (more < 0 && (errno == EAGAIN || errno == EINTR)) return std::nullopt;
+    if (more <= 0) throw Broken{};
+    guest.said.append(piece, 0, static_cast<std::size_t>(more));
+  }
 }
 
 std::string packet(std::uint32_t type, const std::string& body) {
@@ -118,7 +145,7 @@ class Server final : public PtpipServer {
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     socklen_t size = sizeof address;
     if (!socket.open() || ::bind(socket.get(), reinterpret_cast<sockaddr*>(&address), size) != 0 ||
-        ::listen(socket.get(), 4) != 0 ||
+        ::listen(socket.get(), SOMAXCONN) != 0 ||
         ::getsockname(socket.get(), reinterpret_cast<sockaddr*>(&address), &size) != 0) {
       throw std::runtime_error("the simulated camera was to listen at port " + std::to_string(port_) +
                                " of this computer and cannot (" + std::strerror(errno) + "); choose another port");
@@ -147,29 +174,47 @@ class Server final : public PtpipServer {
   void serve_once() {
     if (!plugged_) {
       hang_up();
+      guests_.clear();
       door_ = Socket();
       listening_ = false;
       std::this_thread::sleep_for(std::chrono::milliseconds(kLookEveryMs));
       return;
     }
     if (!door_.open()) listen_there();
-    std::array<pollfd, 3> watched{pollfd{door_.get(), POLLIN, 0}, pollfd{command_.get(), POLLIN, 0},
-                                  pollfd{event_.get(), POLLIN, 0}};  // poll() skips negative descriptors
+    std::vector<pollfd> watched{pollfd{door_.get(), POLLIN, 0}, pollfd{command_.get(), POLLIN, 0},
+                                pollfd{event_.get(), POLLIN, 0}};  // poll() skips negative descriptors
+    for (const Guest& guest : guests_) watched.push_back({guest.socket.get(), POLLIN, 0});
     ::poll(watched.data(), watched.size(), kLookEveryMs);
     if (watched[1].revents != 0) answer(receive_packet(command_));
     if (watched[2].revents != 0 && receive_packet(event_).type == kPing) send_all(event_, packet(kPong, ""));
-    if (watched[0].revents != 0) welcome(Socket(::accept4(door_.get(), nullptr, nullptr, SOCK_CLOEXEC)));
+    std::erase_if(guests_, [this](Guest& guest) { return leaves(guest); });
+    if (watched[0].revents != 0) let_in(Socket(::accept4(door_.get(), nullptr, nullptr, SOCK_CLOEXEC)));
     announce();
   }
 
-  // The first packet says which of the two connections it is.
-  void welcome(Socket guest) {
+  void let_in(Socket caller) {
     const int yes = 1;
-    setsockopt(guest.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+    setsockopt(caller.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
     const timeval patience{.tv_sec = 5, .tv_usec = 0};
-    setsockopt(guest.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    setsockopt(guest.get(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
-    const Packet first = receive_packet(guest);
+    setsockopt(caller.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    setsockopt(caller.get(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+    if (guests_.size() == kMostGuests) guests_.erase(guests_.begin());  // the one that has been silent for longest
+    guests_.push_back({.socket = std::move(caller), .said = {}});
+  }
+
+  // True when the guest has been given its place, or is gone. Whatever it says costs the host nothing.
+  bool leaves(Guest& guest) {
+    try {
+      const auto first = first_packet(guest);
+      if (first) welcome(*first, std::move(guest.socket));
+      return first.has_value();
+    } catch (const Broken&) {
+      return true;
+    }
+  }
+
+  // The first packet says which of the two connections it is.
+  void welcome(const Packet& first, Socket guest) {
     if (first.type == kInitCommand && command_.open()) {
       constexpr std::uint32_t kBusy = 2;
       send_all(guest, packet(kInitFail, PtpWriter().put(kBusy).take()));
@@ -310,6 +355,7 @@ class Server final : public PtpipServer {
   const CameraFaultPlan plan_;
   std::atomic<int> port_;
   Socket door_, command_, event_;
+  std::vector<Guest> guests_;  // the longest waiting first
   int announced_ = 0;
   std::atomic<int> operations_ = 0;
   std::atomic<bool> plugged_ = true, listening_ = false;
