@@ -7,6 +7,7 @@
 #include <cmath>
 #include <deque>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
@@ -27,9 +28,8 @@ using Widget = std::unique_ptr<CameraWidget, int (*)(CameraWidget*)>;
 using File = std::unique_ptr<CameraFile, int (*)(CameraFile*)>;
 
 constexpr const char* kHeldByAnother =
-    "another program holds the camera; close file manager windows that show it (or run: gio mount -u gphoto2://*) "
-    "and "
-    "try again";
+    "another program holds the camera; close file manager windows that show it (or run: gio mount -s gphoto2) and try "
+    "again";
 
 std::string what_to_do(int status) {
   switch (status) {
@@ -104,6 +104,8 @@ class GphotoCamera final : public Camera {
   explicit GphotoCamera(const GphotoSetup& setup)
       : setup_(setup), context_(gp_context_new(), gp_context_unref), handle_(nullptr, gp_camera_unref) {
     connect();
+    offered_ = list_settings();
+    require_settings();
     require_manual_mode();
     require_battery();
     require_space();
@@ -139,7 +141,8 @@ class GphotoCamera final : public Camera {
     if (!std::isfinite(wanted.f_number) || wanted.f_number <= 0)
       throw std::runtime_error("f/" + std::to_string(wanted.f_number) + " was asked; it must be a positive number");
     choose("iso", wanted.iso, number);
-    choose("f-number", wanted.f_number, f_number_from);
+    f_number_asked_ = wanted.f_number;
+    if (has_aperture()) choose("f-number", wanted.f_number, f_number_from);
     choose("shutterspeed", exposure_s, seconds_from);
     configured_ = settings();
     return *configured_;
@@ -209,6 +212,39 @@ class GphotoCamera final : public Camera {
     check("be found at " + setup_.port, gp_camera_set_port_info(handle_.get(), info));
   }
 
+  // The names of the settings that the camera has. Asked for any other, the library answers as if the connection were
+  // broken.
+  std::set<std::string> list_settings() const {
+    CameraList* list = nullptr;
+    check("list its settings", gp_list_new(&list));
+    const std::unique_ptr<CameraList, int (*)(CameraList*)> owner(list, gp_list_free);
+    check("list its settings", gp_camera_list_config(handle_.get(), list, context_.get()));
+    std::set<std::string> names;
+    for (int i = 0; i < gp_list_count(list); ++i) {
+      const char* name = nullptr;
+      check("list its settings", gp_list_get_name(list, i, &name));
+      names.insert(name);
+    }
+    return names;
+  }
+
+  void require_settings() const {
+    std::string missing;
+    for (const char* name : {"expprogram", "focusmode", "imagequality", "iso", "shutterspeed"})
+      if (!offered_.contains(name)) missing += (missing.empty() ? "" : ", ") + std::string(name);
+    if (missing.empty()) return;
+    throw std::runtime_error("the camera was asked for its settings and has no " + missing +
+                             " among them; set its dial to M and MENU > Setup > USB Connection to PC Remote, switch it "
+                             "off and on, or take a camera that lets a computer set its exposure");
+  }
+
+  // False for a lens without an electronic aperture: the setting is missing, or it has no number to choose.
+  bool has_aperture() const {
+    if (!offered_.contains("f-number")) return false;
+    const auto is_number = [](const std::string& choice) { return f_number_from(choice).value_or(0) > 0; };
+    return std::ranges::any_of(choices_of("f-number"), is_number);
+  }
+
   Widget widget(const std::string& name) const {
     CameraWidget* found = nullptr;
     const int status = gp_camera_get_single_config(handle_.get(), name.c_str(), &found, context_.get());
@@ -271,10 +307,11 @@ class GphotoCamera final : public Camera {
   CameraSettings settings() const {
     const auto exposure_s = seconds_from(text_of("shutterspeed"));
     const auto iso = number(text_of("iso"));
-    const auto aperture = f_number_from(text_of("f-number"));
+    const auto aperture = has_aperture() ? f_number_from(text_of("f-number")) : std::optional(f_number_asked_);
     if (!exposure_s || !iso || !aperture) {
       throw std::runtime_error("the camera was asked for its exposure and answered shutter " + text_of("shutterspeed") +
-                               ", ISO " + text_of("iso") + ", aperture " + text_of("f-number") +
+                               ", ISO " + text_of("iso") + ", aperture " +
+                               (aperture ? std::to_string(*aperture) : text_of("f-number")) +
                                "; set its dial to M, switch ISO AUTO off, and check the lens");
     }
     return {.exposure_s = *exposure_s, .iso = static_cast<int>(std::lround(*iso)), .f_number = *aperture};
@@ -293,6 +330,7 @@ class GphotoCamera final : public Camera {
   }
 
   void require_battery() const {
+    if (!offered_.contains("batterylevel")) return;  // on the mains
     std::string level = text_of("batterylevel");
     level = level.substr(0, level.find('%'));
     const auto percent = number(level);
@@ -399,6 +437,8 @@ class GphotoCamera final : public Camera {
   GphotoSetup setup_;
   Context context_;
   Handle handle_;
+  std::set<std::string> offered_;  // names of settings
+  double f_number_asked_ = CameraSettings{}.f_number;
   std::optional<CameraSettings> configured_;
   std::deque<std::size_t> delivered_;
 };

@@ -2,7 +2,9 @@
 //
 // The library may hang or crash, so a program that must live on runs this camera in a process of its own
 // (camera_process.h). Every setting is read back and compared as a number. The library may also deliver an old picture
-// again, so a picture is accepted only when the same bytes were not delivered before.
+// again, so a picture is accepted only when the same bytes were not delivered before. With a lens whose aperture the
+// camera cannot set, the f-number of settings and pictures is the one that was asked for, to which a person sets the
+// lens.
 #pragma once
 
 #include <memory>

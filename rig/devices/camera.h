@@ -11,7 +11,7 @@ namespace rig {
 struct CameraSettings {
   double exposure_s = 0.25;  // shutter time
   int iso = 100;
-  double f_number = 8.0;
+  double f_number = 8.0;  // read back; what was asked for when the lens has no electronic aperture
 };
 
 struct CameraIdentity {
