@@ -32,7 +32,6 @@ constexpr int kLookEveryMs = 5;         // how often the server looks for pictur
 constexpr std::size_t kMostGuests = 8;  // connections that have not said yet which they are
 // The header of a packet of an unknown type whose announced length, more than a kilobyte, never comes.
 constexpr std::string_view kNoise("\x00\x05\x00\x00\xff\xfe\x81\x07\xc3", 9);
-constexpr std::uint16_t kPictureReady = 0xc201, kGetObject = 0x1009;
 
 class Socket {
  public:
@@ -117,7 +116,7 @@ std::string packet(std::uint32_t type, const std::string& body) {
 
 class Server final : public PtpipServer {
  public:
-  Server(SimulatedSony& camera, int port, CameraFaultPlan plan) : camera_(camera), plan_(std::move(plan)), port_(port) {
+  Server(SimulatedBody& camera, int port, CameraFaultPlan plan) : camera_(camera), plan_(std::move(plan)), port_(port) {
     listen_there();
     thread_ = std::jthread([this](const std::stop_token& ending) { serve(ending); });
   }
@@ -220,7 +219,7 @@ class Server final : public PtpipServer {
       send_all(guest, packet(kInitFail, PtpWriter().put(kBusy).take()));
     } else if (first.type == kInitCommand) {
       PtpWriter ack;
-      ack.put(std::uint32_t{1}).bytes("threadstation-7M").wide_text("ILCE-7M2").put(std::uint32_t{0x10000});
+      ack.put(std::uint32_t{1}).bytes("threadstation-7M").wide_text(camera_.name()).put(std::uint32_t{0x10000});
       send_all(guest, packet(kInitCommandAck, ack.take()));
       command_ = std::move(guest);
     } else if (first.type == kInitEvent) {
@@ -251,8 +250,7 @@ class Server final : public PtpipServer {
       return;
     }
     if (fault == CameraFault::cut) cut_short(answer, *transaction);
-    if (answer.data)
-      send_data(*answer.data, *transaction, *code == kGetObject && request.parameters.at(0) == 0xffffc001);
+    if (answer.data) send_data(*answer.data, *transaction, answer.is_picture);
     PtpWriter response;
     response.put(answer.code).put(*transaction);
     send_all(command_, packet(kResponse, response.take()));
@@ -340,18 +338,20 @@ class Server final : public PtpipServer {
     }
   }
 
-  // Sends one event for each picture that became ready.
+  // Sends one event for each picture that became ready, if the camera is one that does.
   void announce() {
+    const auto told = camera_.picture_event();
+    if (!told) return;
     const int waiting = camera_.waiting_pictures();
     announced_ = std::min(announced_, waiting);
     for (; event_.open() && announced_ < waiting; ++announced_) {
       PtpWriter event;
-      event.put(kPictureReady).put(std::uint32_t{0}).put(std::uint32_t{0xffffc001});
+      event.put(told->first).put(std::uint32_t{0}).put(told->second);
       send_all(event_, packet(kEvent, event.take()));
     }
   }
 
-  SimulatedSony& camera_;
+  SimulatedBody& camera_;
   const CameraFaultPlan plan_;
   std::atomic<int> port_;
   Socket door_, command_, event_;
@@ -365,7 +365,7 @@ class Server final : public PtpipServer {
 
 }  // namespace
 
-std::unique_ptr<PtpipServer> serve_on_ptpip(SimulatedSony& camera, int port, CameraFaultPlan plan) {
+std::unique_ptr<PtpipServer> serve_on_ptpip(SimulatedBody& camera, int port, CameraFaultPlan plan) {
   return std::make_unique<Server>(camera, port, std::move(plan));
 }
 

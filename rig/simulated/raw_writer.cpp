@@ -28,9 +28,10 @@ void append(std::vector<std::byte>& bytes, T value) {
   for (const std::byte byte : std::bit_cast<std::array<std::byte, sizeof(T)>>(value)) bytes.push_back(byte);
 }
 
+// `count` where it is not the number of `values`: fractions have two.
 template <typename T>
-Field numbers(std::uint16_t tag, FieldType type, const std::vector<T>& values) {
-  Field field{tag, type, static_cast<std::uint32_t>(values.size()), {}};
+Field numbers(std::uint16_t tag, FieldType type, const std::vector<T>& values, std::size_t count = 0) {
+  Field field{tag, type, static_cast<std::uint32_t>(count == 0 ? values.size() : count), {}};
   for (const T value : values) append(field.data, value);
   return field;
 }
@@ -52,6 +53,7 @@ Field text(std::uint16_t tag, std::string_view value) {
 // A number as the fraction that cameras write (1/250, 13/10): a unit fraction where the reciprocal is whole, millionths
 // at worst.
 Field rational(std::uint16_t tag, double value) {
+  if (value == 0) return numbers<std::uint32_t>(tag, kRational, {0, 1}, 1);
   std::uint32_t numerator = 1, denominator = 1;
   if (const double reciprocal = std::round(1 / value); reciprocal >= 2 && std::abs(reciprocal * value - 1) < 1e-9) {
     denominator = static_cast<std::uint32_t>(reciprocal);
@@ -60,9 +62,7 @@ Field rational(std::uint16_t tag, double value) {
       denominator *= 10;
     numerator = static_cast<std::uint32_t>(std::lround(value * denominator));
   }
-  Field field = numbers<std::uint32_t>(tag, kRational, {numerator, denominator});
-  field.count = 1;
-  return field;
+  return numbers<std::uint32_t>(tag, kRational, {numerator, denominator}, 1);
 }
 
 std::size_t padded(std::size_t size) {
@@ -122,7 +122,8 @@ void check(const RawFrame& frame) {
   }
   const CameraSettings& settings = frame.settings;
   const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
-  if (!positive(settings.exposure_s) || !positive(settings.f_number) || settings.iso <= 0 || settings.iso > 65535) {
+  if (!positive(settings.exposure_s) || !(settings.f_number == 0 || positive(settings.f_number)) || settings.iso <= 0 ||
+      settings.iso > 65535) {
     throw std::runtime_error("a raw file was to be written with exposure " + std::to_string(settings.exposure_s) +
                              " s, f/" + std::to_string(settings.f_number) + ", ISO " + std::to_string(settings.iso) +
                              "; all must be positive, ISO at most 65535");
@@ -140,41 +141,62 @@ Directory exif_directory(const RawFrame& frame) {
   return exif;
 }
 
+Directory sony_levels(const RawFrame& frame) {
+  const std::uint16_t black = frame.black_level_dn, white = kRawWhiteLevelDn;
+  return {numbers<std::uint16_t>(0x7310, kShort, {black, black, black, black}),
+          numbers<std::int16_t>(0x7313, kSignedShort, {1024, 1024, 1024, 1024}),  // white balance: factors of 1
+          numbers<std::uint16_t>(0x787f, kShort, {white, white, white})};
+}
+
+Directory dng_levels(const RawFrame& frame) {
+  return {numbers<std::uint8_t>(50710, kByte, {0, 1, 2}),  // the colours of the filter array: red, green, blue
+          short_number(50711, 1),                          // on a rectangular grid
+          short_number(50714, frame.black_level_dn), short_number(50717, kRawWhiteLevelDn)};
+}
+
 Directory mosaic_directory(const RawFrame& frame, std::uint32_t pixels_at) {
   const auto width = static_cast<std::uint32_t>(frame.mosaic.cols);
   const auto height = static_cast<std::uint32_t>(frame.mosaic.rows);
-  const std::uint16_t black = frame.black_level_dn, white = kRawWhiteLevelDn;
-  return {long_number(254, 0),  // full resolution
-          long_number(256, width),
-          long_number(257, height),
-          short_number(258, 16),
-          short_number(259, 1),      // not compressed
-          short_number(262, 32803),  // colour filter array
-          long_number(273, pixels_at),
-          short_number(277, 1),
-          long_number(278, height),
-          long_number(279, width * height * 2),
-          numbers<std::uint16_t>(0x828d, kShort, {2, 2}),
-          numbers<std::uint8_t>(0x828e, kByte, {0, 1, 1, 2}),  // RGGB
-          numbers<std::uint16_t>(0x7310, kShort, {black, black, black, black}),
-          numbers<std::int16_t>(0x7313, kSignedShort, {1024, 1024, 1024, 1024}),  // white balance: factors of 1
-          numbers<std::uint16_t>(0x787f, kShort, {white, white, white})};
+  Directory directory{long_number(254, 0),  // full resolution
+                      long_number(256, width),
+                      long_number(257, height),
+                      short_number(258, 16),
+                      short_number(259, 1),      // not compressed
+                      short_number(262, 32803),  // colour filter array
+                      long_number(273, pixels_at),
+                      short_number(277, 1),
+                      long_number(278, height),
+                      long_number(279, width * height * 2),
+                      numbers<std::uint16_t>(0x828d, kShort, {2, 2}),
+                      numbers<std::uint8_t>(0x828e, kByte, {0, 1, 1, 2})};  // RGGB
+  const Directory levels = frame.make == CameraMake::sony ? sony_levels(frame) : dng_levels(frame);
+  directory.insert(directory.end(), levels.begin(), levels.end());
+  return directory;
+}
+
+Directory main_directory(const RawFrame& frame, std::size_t mosaic_at, std::size_t exif_at) {
+  const RawNames names = raw_names(frame.make);
+  Directory directory{text(271, names.make),
+                      text(272, names.model),
+                      short_number(274, 1),
+                      text(306, exif_date(frame.utc)),
+                      long_number(330, static_cast<std::uint32_t>(mosaic_at)),
+                      long_number(0x8769, static_cast<std::uint32_t>(exif_at))};
+  if (frame.make != CameraMake::sony) {
+    directory.push_back(numbers<std::uint8_t>(50706, kByte, {1, 4, 0, 0}));  // DNG 1.4
+    directory.push_back(text(50708, names.model));
+    directory.push_back(
+        numbers<std::uint32_t>(50728, kRational, {1, 1, 1, 1, 1, 1}, 3));  // white balance: factors of 1
+  }
+  return directory;
 }
 
 }  // namespace
 
 std::vector<std::byte> encode_raw(const RawFrame& frame) {
   check(frame);
-  const auto main_directory = [&](std::size_t mosaic_at, std::size_t exif_at) -> Directory {
-    return {text(271, "SONY"),
-            text(272, "ILCE-7M2"),
-            short_number(274, 1),
-            text(306, exif_date(frame.utc)),
-            long_number(330, static_cast<std::uint32_t>(mosaic_at)),
-            long_number(0x8769, static_cast<std::uint32_t>(exif_at))};
-  };
   const Directory exif = exif_directory(frame);
-  const std::size_t mosaic_at = 8 + directory_size(main_directory(0, 0));
+  const std::size_t mosaic_at = 8 + directory_size(main_directory(frame, 0, 0));
   const std::size_t exif_at = mosaic_at + directory_size(mosaic_directory(frame, 0));
   const std::size_t pixels_at = exif_at + directory_size(exif);
 
@@ -182,7 +204,7 @@ std::vector<std::byte> encode_raw(const RawFrame& frame) {
   file.reserve(pixels_at + frame.mosaic.total() * 2);
   append(file, std::array<char, 4>{'I', 'I', 42, 0});
   append(file, std::uint32_t{8});
-  append_directory(file, main_directory(mosaic_at, exif_at));
+  append_directory(file, main_directory(frame, mosaic_at, exif_at));
   append_directory(file, mosaic_directory(frame, static_cast<std::uint32_t>(pixels_at)));
   append_directory(file, exif);
   for (int row = 0; row < frame.mosaic.rows; ++row) {

@@ -15,6 +15,7 @@
 #include "rig/devices/clock.h"
 #include "rig/devices/turntable.h"
 #include "rig/people/operator.h"
+#include "rig/simulated/camera_make.h"
 #include "rig/simulated/lamp_changes.h"
 #include "rig/simulated/sensor_defects.h"
 
@@ -27,7 +28,8 @@ struct TrueLens {
   // v0, v1: gain = 1 + v0 r^2 + v1 r^4, r = distance to the image centre ((w - 1) / 2, (h - 1) / 2) over the half
   // diagonal hypot(w, h) / 2.
   std::array<double, 2> vignetting{};
-  double blur_px = 0.0;  // blur of a lens out of focus: standard deviation of a Gaussian
+  bool electronic_aperture = true;  // false: neither the body sets its aperture, nor do files tell it
+  double blur_px = 0.0;             // blur of a lens out of focus: standard deviation of a Gaussian
   Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();  // OpenCV axes, mm
 };
 
@@ -125,7 +127,7 @@ class SimulatedBench {
 // has the strength of the seconds on the clock during which the shutter is open. The camera offers thirds of stops; the
 // light gathered goes with (8 / f)^2. Its files are described in rig/simulated/raw_writer.h. The turntable's position
 // is unknown until it is homed; its angles are within +-360 deg, on the truth's steps.
-std::unique_ptr<Camera> make_simulated_camera(SimulatedBench& bench, Clock& clock);
+std::unique_ptr<Camera> make_simulated_camera(SimulatedBench& bench, Clock& clock, CameraMake make = CameraMake::sony);
 std::unique_ptr<Turntable> make_simulated_turntable(SimulatedBench& bench, Clock& clock);
 std::unique_ptr<Operator> make_simulated_operator(SimulatedBench& bench);
 

@@ -104,13 +104,13 @@ void check_sensor(const TrueSensor& sensor) {
 
 class SimulatedCamera final : public Camera {
  public:
-  SimulatedCamera(SimulatedBench& bench, Clock& clock) : bench_(bench), clock_(clock) {
+  SimulatedCamera(SimulatedBench& bench, Clock& clock, CameraMake make) : bench_(bench), clock_(clock), make_(make) {
     check_sensor(bench.truth().sensor);
   }
 
   CameraIdentity identity() override {
-    return {.make = "Sony",
-            .model = "ILCE-7M2",
+    return {.make = make_ == CameraMake::sony ? "Sony" : raw_names(make_).make,
+            .model = raw_names(make_).model,
             .serial = "SIM" + std::to_string(bench_.truth().seed),
             .width_px = bench_.truth().lens.width_px,
             .height_px = bench_.truth().lens.height_px};
@@ -145,10 +145,13 @@ class SimulatedCamera final : public Camera {
     frame.mosaic = expose(light_of(now.lens));
     frame.black_level_dn = static_cast<std::uint16_t>(bench_.truth().sensor.black_level_dn);
     frame.settings = settings_;
+    if (!now.lens.electronic_aperture) frame.settings.f_number = 0;
+    frame.make = make_;
     frame.utc = clock_.utc();
     frame.serial = identity().serial;
     clock_.sleep_s(settings_.exposure_s);
-    return {.bytes = encode_raw(frame), .extension = "arw", .settings = settings_, .utc = frame.utc};
+    return {
+        .bytes = encode_raw(frame), .extension = raw_names(make_).extension, .settings = settings_, .utc = frame.utc};
   }
 
   std::vector<std::byte> preview() override {
@@ -201,6 +204,7 @@ class SimulatedCamera final : public Camera {
 
   SimulatedBench& bench_;
   Clock& clock_;
+  const CameraMake make_;
   CameraSettings settings_;
   std::uint64_t pictures_taken_ = 0;
   std::optional<BenchState> drawn_state_;  // the state that the drawings show
@@ -210,8 +214,8 @@ class SimulatedCamera final : public Camera {
 
 }  // namespace
 
-std::unique_ptr<Camera> make_simulated_camera(SimulatedBench& bench, Clock& clock) {
-  return std::make_unique<SimulatedCamera>(bench, clock);
+std::unique_ptr<Camera> make_simulated_camera(SimulatedBench& bench, Clock& clock, CameraMake make) {
+  return std::make_unique<SimulatedCamera>(bench, clock, make);
 }
 
 }  // namespace rig

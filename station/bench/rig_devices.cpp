@@ -65,10 +65,11 @@ std::unique_ptr<rig::Turntable> make_wired_turntable(const RigFile& rig, RigDevi
 }
 
 std::unique_ptr<rig::Camera> make_camera(const RigFile& rig, RigDevices& devices) {
-  if (rig.camera_driver == "simulated") return rig::make_simulated_camera(*devices.bench, *devices.clock);
+  if (rig.camera_driver == "simulated")
+    return rig::make_simulated_camera(*devices.bench, *devices.clock, rig.simulation->camera_make);
   rig::CameraProcessSetup setup{.command = {"/proc/self/exe", kCameraProcess}, .camera = rig.camera_wire->setup};
   if (rig.camera_wire->simulated) {
-    start_simulated_camera(devices);
+    start_simulated_camera(rig, devices);
     const std::string port = std::to_string(devices.simulated_camera.network->port());
     setup.camera.port = "ptpip:127.0.0.1:" + port + ":" + port;
   }
@@ -127,10 +128,13 @@ std::shared_ptr<rig::SimulatedPort> start_firmware(const RigFile& rig, rig::Simu
       faults);
 }
 
-void start_simulated_camera(RigDevices& devices, const rig::CameraFaultPlan& faults) {
+void start_simulated_camera(const RigFile& rig, RigDevices& devices, const rig::CameraFaultPlan& faults) {
   auto& simulated = devices.simulated_camera;
-  simulated.lens = rig::make_simulated_camera(*devices.bench, *devices.clock);
-  simulated.body = rig::make_simulated_sony(*simulated.lens);
+  const rig::CameraMake make = rig.simulation->camera_make;
+  simulated.lens = rig::make_simulated_camera(*devices.bench, *devices.clock, make);
+  simulated.body = rig::make_simulated_body(*simulated.lens, make);
+  if (!rig.simulation->truth.lens.electronic_aperture)
+    simulated.body->set_condition({.missing = {rig::aperture_property(make)}});
   simulated.network = rig::serve_on_ptpip(*simulated.body, 0, faults);
 }
 

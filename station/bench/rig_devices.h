@@ -27,7 +27,7 @@ struct RigDevices {
   std::unique_ptr<rig::PtyServer> simulated_wire;  // the turntable's firmware, when it is simulated on a wire
   struct {
     std::unique_ptr<rig::Camera> lens;  // what the simulated body photographs with
-    std::unique_ptr<rig::SimulatedSony> body;
+    std::unique_ptr<rig::SimulatedBody> body;
     std::unique_ptr<rig::PtpipServer> network;
   } simulated_camera;  // when it is simulated on a wire
   std::unique_ptr<rig::Camera> camera;
@@ -58,7 +58,7 @@ struct TurntableLine {
 TurntableLine open_turntable_line(const RigFile& rig);
 
 // Puts the simulated camera that a rig file names on this computer's network, photographing `devices.bench`.
-void start_simulated_camera(RigDevices& devices, const rig::CameraFaultPlan& faults = {});
+void start_simulated_camera(const RigFile& rig, RigDevices& devices, const rig::CameraFaultPlan& faults = {});
 
 // The simulated firmware that a rig file names, turning `bench`. Throws when it names none.
 std::shared_ptr<rig::SimulatedPort> start_firmware(const RigFile& rig, rig::SimulatedBench& bench, rig::Clock& clock,

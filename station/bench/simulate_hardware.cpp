@@ -40,7 +40,7 @@ void simulate_hardware(const RigFile& rig, const Faults& faults,
     ports.turntable = devices.simulated_wire->path();
   }
   if (camera) {
-    start_simulated_camera(devices, faults.camera);
+    start_simulated_camera(rig, devices, faults.camera);
     const std::string port = std::to_string(devices.simulated_camera.network->port());
     ports.camera = "ptpip:127.0.0.1:" + port + ":" + port;
   }

@@ -141,6 +141,7 @@ void parse_lens(ObjectReader lens, rig::TrueLens& truth) {
   std::copy(distortion.begin(), distortion.end(), truth.distortion.begin());
   std::copy(vignetting.begin(), vignetting.end(), truth.vignetting.begin());
   truth.blur_px = lens.number("blur_px", 0, 100);
+  if (lens.has("electronic_aperture")) truth.electronic_aperture = lens.flag("electronic_aperture");
   truth.world_from_camera = looking_at(lens.vector3("position_mm"), lens.vector3("aim_mm"));
   lens.finish();
 }
@@ -150,10 +151,15 @@ Eigen::Vector3d mirrored(const Eigen::Vector3d& point) {
   return {point.x(), -point.y(), point.z()};
 }
 
+rig::CameraMake parse_make(const std::string& make) {
+  return make == "canon" ? rig::CameraMake::canon : make == "nikon" ? rig::CameraMake::nikon : rig::CameraMake::sony;
+}
+
 SimulatedRig parse_simulation(ObjectReader simulation) {
   SimulatedRig result;
   rig::BenchTruth& truth = result.truth;
   truth.seed = static_cast<std::uint64_t>(simulation.integer("seed", 0, 1 << 30));
+  if (simulation.has("make")) result.camera_make = parse_make(simulation.choice("make", {"sony", "canon", "nikon"}));
   result.samples_per_pixel = simulation.integer("samples_per_pixel", 1, 100000);
   result.target_samples_per_pixel = simulation.integer("target_samples_per_pixel", 1, 100000);
   truth.sensor = parse_sensor(simulation.object("sensor"), truth.lens);

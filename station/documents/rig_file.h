@@ -41,6 +41,7 @@ Eigen::Vector3d chart_square_centre(const ColourChart& chart, std::size_t square
 // The truth of a simulated rig's bench, and how its pictures are drawn.
 struct SimulatedRig {
   rig::BenchTruth truth;
+  rig::CameraMake camera_make = rig::CameraMake::sony;
   double board_bow_mm = 0;            // how far the middle of the calibration board stands out
   double spectralon_droop = 0;        // the panel's droop (calibration/light/spectralon.h)
   int samples_per_pixel = 32;         // for pictures of the spool, which are path-traced

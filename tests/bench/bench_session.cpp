@@ -228,7 +228,7 @@ void capture(const fs::path& folder, bool real_clock) {
     clock = std::make_unique<rig::SimulatedClock>(1.8e9);
   rig::SimulatedBench bench(rig.simulation->truth, [](const rig::BenchState&) { return cv::Mat3f(); });
   LargeCamera lens(bench, *clock);
-  const auto body = rig::make_simulated_sony(lens);
+  const auto body = rig::make_simulated_body(lens);
   const auto network = rig::serve_on_ptpip(*body);
   rig::CameraProcessSetup setup{.command = {"/proc/self/exe", kCameraProcess}, .camera = rig.camera_wire->setup};
   setup.camera.width_px = rig.simulation->truth.lens.width_px,

@@ -70,7 +70,7 @@ std::string try_work(WiredCamera& wired) {
     take_pictures(*camera, wired);
   });
   if (said == "(accepted)") return {};
-  wired.sony->set_condition({});
+  wired.body->set_condition({});
   wired.server->plug_in();
   EXPECT_EQ(refusal([&] {
               if (!camera) camera = open_camera(wired);
@@ -205,7 +205,7 @@ TEST(CameraFaults, ASettingThatIsAcceptedAndNotDoneIsSeen) {
 TEST(CameraFaults, AQualityThatIsAcceptedAndNotDoneIsSeen) {
   const auto said = at_each_operation([](int at) {
     WiredCamera wired({{.at_operation = at, .fault = rig::CameraFault::refused_quality}});
-    wired.sony->handle({.code = 0x9205, .parameters = {0x5004}, .data = "\3"});
+    wired.body->handle({.code = 0x9205, .parameters = {0x5004}, .data = "\3"});
     return try_work(wired);
   });
   EXPECT_THAT(said, testing::ElementsAre(HasSubstr("has to be \"RAW\"; set MENU > Image Quality > RAW")));

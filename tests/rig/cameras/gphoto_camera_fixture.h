@@ -50,13 +50,14 @@ inline std::size_t open_descriptors() {
 }
 
 struct GphotoCamera : testing::Test {
+  explicit GphotoCamera(rig::CameraMake make = rig::CameraMake::sony) : wired({}, {}, make) {}
   std::unique_ptr<rig::Camera> open(double answer_timeout_s = 40 * kPatience) const {
     return rig::make_process_camera({.command = {"/proc/self/exe", "camera-process"},
                                      .camera = {.port = wired.port(), .width_px = 60, .height_px = 40},
                                      .answer_timeout_s = answer_timeout_s});
   }
-  std::string said_with(const rig::SonyCondition& condition) {
-    wired.sony->set_condition(condition);
+  std::string said_with(const rig::BodyCondition& condition) {
+    wired.body->set_condition(condition);
     return refusal([this] { open(); });
   }
   bool delivers_what_was_made(rig::Camera& camera) const {

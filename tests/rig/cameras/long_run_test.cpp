@@ -72,10 +72,10 @@ struct LongRun : GphotoCamera {
         wired.server->cut_after(1000);
         break;
       case 2:
-        wired.sony->set_condition({.repeats_last_picture = true});
+        wired.body->set_condition({.repeats_last_picture = true});
         break;
       default:
-        wired.sony->set_condition({.store_full = true});
+        wired.body->set_condition({.store_full = true});
     }
   }
 
@@ -88,7 +88,7 @@ struct LongRun : GphotoCamera {
         return;
       } catch (const std::exception& error) {
         ++said[error.what()];
-        wired.sony->set_condition({});
+        wired.body->set_condition({});
         if (table->state() == rig::TurntableState::unknown_position) {
           port->power_on();
           table->home();
@@ -127,7 +127,7 @@ TEST_F(LongRun, AThousandCapturesWithFaultsInTwoPercentEndCompleteAndLeakNothing
           std::hash<std::string_view>{}({reinterpret_cast<const char*>(picture.bytes.data()), picture.bytes.size()}));
     });
     wired.recorded.forget();
-    wired.sony->set_condition({});
+    wired.body->set_condition({});
     if (capture == 100) {
       early_mb = used_mb();
       early_descriptors = open_descriptors();

@@ -1,4 +1,4 @@
-// A small bench photographed by a simulated ILCE-7M2 on this computer's network.
+// A small bench photographed by a simulated camera of one of the makes on this computer's network.
 #pragma once
 
 #include <deque>
@@ -10,7 +10,7 @@
 
 #include "rig/simulated/ptpip_server.h"
 #include "rig/simulated/simulated_bench.h"
-#include "rig/simulated/simulated_sony.h"
+#include "rig/simulated/simulated_body.h"
 
 // A camera that keeps what the bench's camera drew, to be compared with what came over the wire; may be asked from any
 // thread.
@@ -47,26 +47,31 @@ class RecordingCamera final : public rig::Camera {
 };
 
 // A simulated camera that lets a test act when it hears a question.
-class WatchedSony final : public rig::SimulatedSony {
+class WatchedBody final : public rig::SimulatedBody {
  public:
-  WatchedSony(rig::SimulatedSony& sony, std::function<void()> before_answer)
-      : sony_(sony), before_answer_(std::move(before_answer)) {}
+  WatchedBody(rig::SimulatedBody& body, std::function<void()> before_answer)
+      : body_(body), before_answer_(std::move(before_answer)) {}
   rig::PtpAnswer handle(const rig::PtpRequest& request) override {
     if (before_answer_) before_answer_();
-    return sony_.handle(request);
+    return body_.handle(request);
   }
-  int waiting_pictures() override { return sony_.waiting_pictures(); }
-  void set_condition(const rig::SonyCondition& condition) override { sony_.set_condition(condition); }
+  std::string name() const override { return body_.name(); }
+  int waiting_pictures() override { return body_.waiting_pictures(); }
+  std::optional<std::pair<std::uint16_t, std::uint32_t>> picture_event() const override {
+    return body_.picture_event();
+  }
+  void set_condition(const rig::BodyCondition& condition) override { body_.set_condition(condition); }
 
  private:
-  rig::SimulatedSony& sony_;
+  rig::SimulatedBody& body_;
   const std::function<void()> before_answer_;
 };
 
 struct WiredCamera {
   // Starts the server; `before_answer` is called in its thread.
-  explicit WiredCamera(rig::CameraFaultPlan plan = {}, std::function<void()> before_answer = {})
-      : faults(std::move(plan)), watched(*sony, std::move(before_answer)) {}
+  explicit WiredCamera(rig::CameraFaultPlan plan = {}, std::function<void()> before_answer = {},
+                       rig::CameraMake camera_make = rig::CameraMake::sony)
+      : make(camera_make), faults(std::move(plan)), watched(*body, std::move(before_answer)) {}
   static cv::Mat3f draw(const rig::BenchState& state) {
     cv::Mat3f picture(state.lens.height_px, state.lens.width_px);
     for (int row = 0; row < picture.rows; ++row)
@@ -79,12 +84,13 @@ struct WiredCamera {
     return "ptpip:127.0.0.1:" + number + ":" + number;
   }
 
+  rig::CameraMake make;
   rig::CameraFaultPlan faults;
   rig::SimulatedBench bench{{.lens = {.width_px = 60, .height_px = 40}}, draw};
   rig::SimulatedClock clock{1.8e9};
-  std::unique_ptr<rig::Camera> camera = rig::make_simulated_camera(bench, clock);
+  std::unique_ptr<rig::Camera> camera = rig::make_simulated_camera(bench, clock, make);
   RecordingCamera recorded{*camera};
-  std::unique_ptr<rig::SimulatedSony> sony = rig::make_simulated_sony(recorded);
-  WatchedSony watched;
+  std::unique_ptr<rig::SimulatedBody> body = rig::make_simulated_body(recorded, make);
+  WatchedBody watched;
   std::unique_ptr<rig::PtpipServer> server = rig::serve_on_ptpip(watched, 0, faults);
 };

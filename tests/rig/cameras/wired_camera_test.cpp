@@ -57,7 +57,7 @@ TEST_F(GphotoCamera, APreflightThatFailsNamesWhatToSet) {
 
 TEST_F(GphotoCamera, ASettingThatIsAcceptedAndNotDoneIsSeen) {
   const auto camera = open();
-  wired.sony->set_condition({.shutter_locked = true});
+  wired.body->set_condition({.shutter_locked = true});
   EXPECT_THAT(refusal([&] { camera->configure({.exposure_s = 2, .iso = 100, .f_number = 8}); }),
               testing::AllOf(HasSubstr("set its shutterspeed to 2 and stays at 1/4"), HasSubstr("dial to M")));
 }
@@ -65,26 +65,26 @@ TEST_F(GphotoCamera, ASettingThatIsAcceptedAndNotDoneIsSeen) {
 TEST_F(GphotoCamera, ACardThatBecomesFullIsSaidAndTheNextPictureComesWhenItIsEmptied) {
   const auto camera = open();
   camera->capture();
-  wired.sony->set_condition({.store_full = true});
+  wired.body->set_condition({.store_full = true});
   EXPECT_THAT(refusal([&] { camera->capture(); }), HasSubstr("card is full; empty the card, then resume"));
-  wired.sony->set_condition({});
+  wired.body->set_condition({});
   EXPECT_TRUE(delivers_what_was_made(*camera));
 }
 
 TEST_F(GphotoCamera, AStalePictureIsRefused) {
   const auto camera = open();
   camera->capture();
-  wired.sony->set_condition({.repeats_last_picture = true});
+  wired.body->set_condition({.repeats_last_picture = true});
   EXPECT_THAT(refusal([&] { camera->capture(); }), HasSubstr("delivered before"));
-  wired.sony->set_condition({});
+  wired.body->set_condition({});
   EXPECT_TRUE(delivers_what_was_made(*camera));
 }
 
 TEST_F(GphotoCamera, APictureThatWaitsFromBeforeIsDrainedAndNotTakenForTheNextOne) {
   const auto camera = open();
   camera->configure({.exposure_s = 0.25, .iso = 100, .f_number = 8});
-  wired.sony->handle({.code = 0x9207, .parameters = {0xd2c2}, .data = std::string("\2\0", 2)});  // somebody's finger
-  while (wired.sony->waiting_pictures() == 0) std::this_thread::yield();
+  wired.body->handle({.code = 0x9207, .parameters = {0xd2c2}, .data = std::string("\2\0", 2)});  // somebody's finger
+  while (wired.body->waiting_pictures() == 0) std::this_thread::yield();
   const rig::Picture picture = camera->capture();
   ASSERT_EQ(wired.recorded.count(), 2u);
   EXPECT_EQ(picture.bytes, wired.recorded.last().bytes);

@@ -96,6 +96,21 @@ TEST(RigFileDevices, AreRefusedWithTheKeyWhenTheyCannotBeMeant) {
   EXPECT_THAT(refusal([&] { parse_rig(wire, "rig.json"); }), HasSubstr("needs it"));
 }
 
+TEST(RigFileDevices, ASimulatedCameraIsOfOneOfThreeMakesAndItsLensMayHaveNoElectronicAperture) {
+  json document = rig_document("simulated_wire_grbl");
+  const RigFile sony = parse_rig(document, "rig.json");
+  EXPECT_EQ(sony.simulation->camera_make, rig::CameraMake::sony);
+  EXPECT_TRUE(sony.simulation->truth.lens.electronic_aperture);
+  document["simulation"]["make"] = "nikon";
+  document["simulation"]["lens"]["electronic_aperture"] = false;
+  const RigFile nikon = parse_rig(document, "rig.json");
+  EXPECT_EQ(nikon.simulation->camera_make, rig::CameraMake::nikon);
+  EXPECT_FALSE(nikon.simulation->truth.lens.electronic_aperture);
+  document["simulation"]["make"] = "canon";
+  EXPECT_EQ(parse_rig(document, "rig.json").simulation->camera_make, rig::CameraMake::canon);
+  EXPECT_THAT(said(document, "/simulation/make", "kodak"), HasSubstr("sony"));
+}
+
 TEST(RigDevices, OfTwoWorldsAreRefused) {
   std::istringstream in;
   std::ostringstream out;
