@@ -1,10 +1,17 @@
 #include "rig/devices/camera.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
 namespace rig {
+
+bool is_raw_extension(std::string_view extension) {
+  constexpr std::array<std::string_view, 12> kKnown{"arw", "cr2", "cr3", "crw", "dng", "nef",
+                                                    "nrw", "orf", "pef", "raf", "rw2", "srw"};
+  return std::ranges::find(kKnown, extension) != kKnown.end();
+}
 
 double nearest_shutter_s(const std::vector<double>& offered_s, double wanted_s) {
   if (offered_s.empty()) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace rig {
@@ -21,7 +22,7 @@ struct CameraIdentity {
 
 struct Picture {
   std::vector<std::byte> bytes;  // the file as the camera delivered it
-  std::string extension;         // "arw"
+  std::string extension;         // "arw", "cr2", "nef": one of those that is_raw_extension() knows
   CameraSettings settings;       // read back from the camera when it was taken
   std::string utc;               // when the exposure began
 };
@@ -36,6 +37,9 @@ class Camera {
   virtual Picture capture() = 0;
   virtual std::vector<std::byte> preview() = 0;  // a small JPEG of what the camera sees now, at any exposure
 };
+
+// True for the extension (small letters, without its point) of a camera's raw files.
+bool is_raw_extension(std::string_view extension);
 
 // The offered shutter time nearest to `wanted_s` in stops.
 double nearest_shutter_s(const std::vector<double>& offered_s, double wanted_s);

@@ -67,7 +67,8 @@ void require_same_camera(const RigCalibration& calibration, const calibration::S
   if (picture.mosaic.cols != lens.width_px || picture.mosaic.rows != lens.height_px)
     refuse("pictures of", std::to_string(lens.width_px) + " x " + std::to_string(lens.height_px),
            std::to_string(picture.mosaic.cols) + " x " + std::to_string(picture.mosaic.rows) + " (" + name + ")");
-  if (std::abs(picture.f_number - wanted.f_number) > 0.01 * wanted.f_number)
+  const bool told = picture.f_number > 0;  // a lens without an electronic aperture does not tell it
+  if (told && std::abs(picture.f_number - wanted.f_number) > 0.01 * wanted.f_number)
     refuse("aperture", f_text(wanted.f_number), f_text(picture.f_number) + " (" + name + ")");
 }
 

@@ -1,8 +1,23 @@
 #include "station/bench/camera_adapter.h"
 
+#include <algorithm>
+#include <cctype>
+#include <string>
+
 #include "calibration/develop/linear_grey.h"
 
 namespace station {
+
+double f_number_of(const calibration::SensorPicture& picture) {
+  return picture.f_number > 0 ? picture.f_number : rig::CameraSettings{}.f_number;
+}
+
+bool is_raw_file(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();  // with its point
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return !extension.empty() && rig::is_raw_extension(std::string_view(extension).substr(1));
+}
 
 renderer::Camera camera_of(const calibration::Lens& lens, const Eigen::Isometry3d& frame_from_camera,
                            bool undistorted) {

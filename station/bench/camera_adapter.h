@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <filesystem>
 
 #include "calibration/geometry/lens.h"
 #include "calibration/geometry/tags.h"
@@ -28,6 +29,13 @@ cv::Mat1f linear_grey(const calibration::SensorPicture& picture);
 // file's, and all else is calibrated.
 inversion::NearLight lamp_in_holder(const RigCalibration& calibration, const RigFile& rig, rig::Lamp place,
                                     const Eigen::Isometry3d& holder_from_world);
+
+// The f-number that a picture was taken at: the file's own, or the one that every camera is asked for when the file does
+// not tell it, because the lens has no electronic aperture.
+double f_number_of(const calibration::SensorPicture& picture);
+
+// True when the file's name ends as those of raw pictures do, in capitals or not.
+bool is_raw_file(const std::filesystem::path& file);
 
 // The tags in a raw picture, found in its linear_grey.
 calibration::TagObservation tags_in(const calibration::SensorPicture& picture);

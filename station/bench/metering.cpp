@@ -28,8 +28,9 @@ std::string settings_text(const rig::CameraSettings& settings) {
 }
 
 bool same_settings(const rig::CameraSettings& a, const rig::CameraSettings& b) {
+  const bool told = a.f_number != 0 && b.f_number != 0;
   return a.iso == b.iso && within_a_sixth_of_a_stop(a.exposure_s, b.exposure_s) &&
-         within_a_sixth_of_a_stop(a.f_number * a.f_number, b.f_number * b.f_number);
+         (!told || within_a_sixth_of_a_stop(a.f_number * a.f_number, b.f_number * b.f_number));
 }
 
 rig::CameraSettings set_camera(rig::Camera& camera, const rig::CameraSettings& wanted) {

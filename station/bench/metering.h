@@ -34,7 +34,7 @@ Metering meter_exposure(rig::Camera& camera, const PlanStep& step, const rig::Ca
 rig::CameraSettings set_camera(rig::Camera& camera, const rig::CameraSettings& wanted);
 
 // Whether the ISO is equal, and shutter time and f-number agree within a sixth of a stop: cameras round what is engraved
-// (1/30 is 1/32 s).
+// (1/30 is 1/32 s). An f-number of 0, of a file whose lens does not tell it, agrees with any.
 bool same_settings(const rig::CameraSettings& a, const rig::CameraSettings& b);
 
 std::string settings_text(const rig::CameraSettings& settings);  // "0.25 s, ISO 100, f/8"

@@ -55,7 +55,7 @@ CameraSetup camera_of_pictures(const RigFile& rig, const std::vector<Loaded>& lo
           .serial = first.serial,
           .lens = rig.lens_name,
           .focus = rig.focus,
-          .f_number = first.f_number};
+          .f_number = f_number_of(first)};
 }
 
 // From the camera to the middle of what stands on the platform, by tape; the board is held near it too.

@@ -9,6 +9,7 @@
 
 #include "calibration/light/lamp_stability.h"
 #include "calibration/sensor/photon_transfer.h"
+#include "station/bench/camera_adapter.h"
 #include "station/documents/gate_list.h"
 
 namespace station {
@@ -131,7 +132,7 @@ SensorSection solve_response(const std::filesystem::path& folder, const std::vec
 
   SensorSection sensor{.response = transfer.response, .gates = {}, .maps_sha256 = {}, .bad_pixels_sha256 = {}};
   sensor.response.iso = reference.iso;
-  sensor.response.f_number = reference.f_number;
+  sensor.response.f_number = f_number_of(reference);
   sensor.response.maps = darks.maps;
   sensor.bias_dn = darks.bias_dn;
   sensor.dark_dn_per_s = darks.dark_dn_per_s;

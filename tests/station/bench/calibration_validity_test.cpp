@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "station/bench/camera_adapter.h"
+#include "station/bench/metering.h"
 #include "station/documents/reader.h"
 #include "station/session/capture_session.h"
 #include "tests/places.h"
@@ -88,6 +90,15 @@ TEST(CalibrationValidity, AnotherBodyPictureSizeOrApertureIsRefusedByName) {
   picture = matching_picture();
   picture.f_number = 5.6;
   EXPECT_THAT(refusal(matching(), picture), HasSubstr("aperture \"f/8.0\", this is \"f/5.6"));
+}
+
+TEST(CalibrationValidity, AFileThatDoesNotTellItsApertureIsTaken) {
+  calibration::SensorPicture picture = matching_picture();
+  picture.f_number = 0;
+  EXPECT_EQ(refusal(matching(), picture), "");
+  EXPECT_EQ(f_number_of(picture), 8);
+  EXPECT_TRUE(same_settings({.f_number = 5.6}, {.f_number = 0}));
+  EXPECT_FALSE(same_settings({.f_number = 5.6}, {.f_number = 8}));
 }
 
 TEST(CalibrationValidity, AnOldCalibrationIsRefusedAndADateThatIsNoneToo) {
