@@ -3,6 +3,7 @@
 #include <gphoto2/gphoto2.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <deque>
@@ -12,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "rig/cameras/make_settings.h"
 #include "rig/devices/clock.h"
 
 namespace rig {
@@ -40,9 +42,11 @@ std::string what_to_do(int status) {
     case GP_ERROR_UNKNOWN_PORT:
     case GP_ERROR_IO_USB_FIND:
     case GP_ERROR_BAD_PARAMETERS:
-      return "plug it in, switch it on, set MENU > Setup > USB Connection to PC Remote, and check the camera's "
-             "\"port\" "
-             "in the rig file";
+      return "plug it in, switch it on, set a Sony's MENU > Setup > USB Connection to PC Remote, and check the "
+             "camera's "
+             "\"port\" in the rig file";
+    case GP_ERROR_NOT_SUPPORTED:
+      return "it cannot be done by a computer with this camera; take another one";
     case GP_ERROR_CAMERA_BUSY:
       return "it is busy; wait until its red light is off and try again";
     case GP_ERROR_NO_SPACE:
@@ -82,8 +86,9 @@ std::optional<double> number(std::string_view text) {
   return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-// The shutter time that the text names ("1/125", "5/10", "30"), in seconds; nothing for "Bulb".
+// The shutter time that the text names ("1/125", "5/10", "30", "0.0080s"), in seconds; nothing for "Bulb".
 std::optional<double> seconds_from(std::string_view text) {
+  if (text.ends_with('s')) text.remove_suffix(1);
   const std::size_t slash = text.find('/');
   if (slash == std::string_view::npos) return number(text);
   const auto above = number(text.substr(0, slash)), below = number(text.substr(slash + 1));
@@ -95,6 +100,20 @@ std::optional<double> f_number_from(std::string_view text) {
   return number(text.starts_with("f/") ? text.substr(2) : text);
 }
 
+std::string listed(const std::vector<std::string>& texts) {
+  std::string list;
+  for (const std::string& text : texts) list += (list.empty() ? "" : ", ") + text;
+  return list.empty() ? "nothing" : list;
+}
+
+// The part of a file's name after its last point, in small letters.
+std::string extension_of(std::string_view name) {
+  const std::size_t point = name.rfind('.');
+  std::string extension(point == std::string_view::npos ? "" : name.substr(point + 1));
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
 bool same_number(double a, double b) {
   return std::abs(a - b) <= 1e-6 * std::abs(b);
 }
@@ -104,13 +123,12 @@ class GphotoCamera final : public Camera {
   explicit GphotoCamera(const GphotoSetup& setup)
       : setup_(setup), context_(gp_context_new(), gp_context_unref), handle_(nullptr, gp_camera_unref) {
     connect();
-    offered_ = list_settings();
-    require_settings();
+    learn_settings();
     require_manual_mode();
     require_battery();
     require_space();
-    set_text("imagequality", "RAW");
-    require_text("imagequality", "RAW", "MENU > Image Quality > RAW");
+    set_raw();
+    set_if_offered("capturetarget", "Internal RAM");
     drain();
   }
   ~GphotoCamera() override { gp_camera_exit(handle_.get(), context_.get()); }
@@ -127,7 +145,7 @@ class GphotoCamera final : public Camera {
 
   std::vector<double> shutter_times_s() override {
     std::vector<double> times_s;
-    for (const std::string& choice : choices_of("shutterspeed")) {
+    for (const std::string& choice : choices_of(make_.shutter)) {
       const auto time_s = seconds_from(choice);
       if (time_s && *time_s >= setup_.shortest_shutter_s * (1 - 1e-6)) times_s.push_back(*time_s);
     }
@@ -140,16 +158,17 @@ class GphotoCamera final : public Camera {
     const double exposure_s = nearest_shutter_s(shutter_times_s(), wanted.exposure_s);
     if (!std::isfinite(wanted.f_number) || wanted.f_number <= 0)
       throw std::runtime_error("f/" + std::to_string(wanted.f_number) + " was asked; it must be a positive number");
-    choose("iso", wanted.iso, number);
+    choose(make_.iso, wanted.iso, number);
     f_number_asked_ = wanted.f_number;
-    if (has_aperture()) choose("f-number", wanted.f_number, f_number_from);
-    choose("shutterspeed", exposure_s, seconds_from);
+    if (has_aperture()) choose(make_.aperture, wanted.f_number, f_number_from);
+    choose(make_.shutter, exposure_s, seconds_from);
     configured_ = settings();
     return *configured_;
   }
 
   Picture capture() override {
     if (!configured_) configured_ = settings();
+    end_live_view();
     for (int tries = 0; tries < kMostTries; ++tries) {
       drain();
       Picture picture = take();
@@ -165,6 +184,7 @@ class GphotoCamera final : public Camera {
     const File file = empty_file();
     const int status = gp_camera_capture_preview(handle_.get(), file.get(), context_.get());
     check("show what it sees", status);
+    live_ = true;
     return bytes_of(file, "its live view");
   }
 
@@ -228,21 +248,26 @@ class GphotoCamera final : public Camera {
     return names;
   }
 
-  void require_settings() const {
+  // A Canon tells its settings bit by bit, and an answer that was lost leaves some out: so they are listed twice before
+  // one is called missing.
+  void learn_settings() {
     std::string missing;
-    for (const char* name : {"expprogram", "focusmode", "imagequality", "iso", "shutterspeed"})
-      if (!offered_.contains(name)) missing += (missing.empty() ? "" : ", ") + std::string(name);
-    if (missing.empty()) return;
+    for (int tries = 0; tries < 2; ++tries) {
+      offered_ = list_settings();
+      make_ = settings_of_make(text_of("manufacturer"), offered_);
+      missing = missing_settings(make_, offered_);
+      if (missing.empty()) return;
+    }
     throw std::runtime_error("the camera was asked for its settings and has no " + missing +
-                             " among them; set its dial to M and MENU > Setup > USB Connection to PC Remote, switch it "
-                             "off and on, or take a camera that lets a computer set its exposure");
+                             " among them; set its dial to M and " + make_.connection +
+                             ", switch it off and on, or take a camera that lets a computer set its exposure");
   }
 
   // False for a lens without an electronic aperture: the setting is missing, or it has no number to choose.
   bool has_aperture() const {
-    if (!offered_.contains("f-number")) return false;
+    if (!offered_.contains(make_.aperture)) return false;
     const auto is_number = [](const std::string& choice) { return f_number_from(choice).value_or(0) > 0; };
-    return std::ranges::any_of(choices_of("f-number"), is_number);
+    return std::ranges::any_of(choices_of(make_.aperture), is_number);
   }
 
   Widget widget(const std::string& name) const {
@@ -290,7 +315,7 @@ class GphotoCamera final : public Camera {
         best = choice;
       }
     }
-    if (best.empty() || (name == "iso" && least > 1e-6)) {
+    if (best.empty() || (name == make_.iso && least > 1e-6)) {
       throw std::runtime_error("the camera was to set its " + name + " to " + std::to_string(wanted) +
                                " and does not offer it; set its dial to M and switch ISO AUTO off");
     }
@@ -305,28 +330,60 @@ class GphotoCamera final : public Camera {
   }
 
   CameraSettings settings() const {
-    const auto exposure_s = seconds_from(text_of("shutterspeed"));
-    const auto iso = number(text_of("iso"));
-    const auto aperture = has_aperture() ? f_number_from(text_of("f-number")) : std::optional(f_number_asked_);
+    const auto exposure_s = seconds_from(text_of(make_.shutter));
+    const auto iso = number(text_of(make_.iso));
+    const auto aperture = has_aperture() ? f_number_from(text_of(make_.aperture)) : std::optional(f_number_asked_);
     if (!exposure_s || !iso || !aperture) {
-      throw std::runtime_error("the camera was asked for its exposure and answered shutter " + text_of("shutterspeed") +
-                               ", ISO " + text_of("iso") + ", aperture " +
-                               (aperture ? std::to_string(*aperture) : text_of("f-number")) +
+      throw std::runtime_error("the camera was asked for its exposure and answered shutter " + text_of(make_.shutter) +
+                               ", ISO " + text_of(make_.iso) + ", aperture " +
+                               (aperture ? std::to_string(*aperture) : text_of(make_.aperture)) +
                                "; set its dial to M, switch ISO AUTO off, and check the lens");
     }
     return {.exposure_s = *exposure_s, .iso = static_cast<int>(std::lround(*iso)), .f_number = *aperture};
   }
 
-  void require_text(const std::string& name, const std::string& wanted, const std::string& where) const {
-    if (const std::string found = text_of(name); found != wanted) {
-      throw std::runtime_error("the camera's " + name + " is \"" + found + "\" and has to be \"" + wanted + "\"; set " +
-                               where);
-    }
+  void require(const RequiredSetting& wanted) const {
+    const std::string found = text_of(wanted.name);
+    if (std::ranges::find(wanted.values, found) != wanted.values.end()) return;
+    throw std::runtime_error("the camera's " + wanted.name + " is \"" + found + "\" and has to be \"" +
+                             wanted.values.front() + "\"; set " + wanted.where);
   }
 
   void require_manual_mode() const {
-    require_text("expprogram", "M", "the mode dial on its top to M");
-    require_text("focusmode", "Manual", "MENU > Focus Mode > MF (or the switch on the lens)");
+    require(make_.mode);
+    require(make_.focus);
+    for (const RequiredSetting& automatic : make_.off)
+      if (offered_.contains(automatic.name)) require(automatic);
+  }
+
+  void set_raw() const {
+    const std::vector<std::string> choices = choices_of(make_.quality.name);
+    const auto& raw = make_.quality.values;
+    const auto found = std::ranges::find_first_of(choices, raw);
+    if (found == choices.end()) {
+      throw std::runtime_error("the camera was to deliver raw pictures and offers only " + listed(choices) +
+                               "; take a camera that has raw pictures");
+    }
+    if (text_of(make_.quality.name) != *found) set_text(make_.quality.name, *found);
+    require(make_.quality);
+  }
+
+  void set_if_offered(const std::string& name, const std::string& value) const {
+    if (!offered_.contains(name) || text_of(name) == value) return;
+    const std::vector<std::string> choices = choices_of(name);
+    if (std::ranges::find(choices, value) != choices.end()) set_text(name, value);
+  }
+
+  // A mirror stays up, and a sensor grows warm, as long as the camera shows what it sees.
+  void end_live_view() {
+    if (live_ && offered_.contains("viewfinder")) {
+      const Widget found = widget("viewfinder");
+      const int off = 0;
+      check("end its live view", gp_widget_set_value(found.get(), &off));
+      const int status = gp_camera_set_single_config(handle_.get(), "viewfinder", found.get(), context_.get());
+      check("end its live view", status);
+    }
+    live_ = false;
   }
 
   void require_battery() const {
@@ -334,9 +391,9 @@ class GphotoCamera final : public Camera {
     std::string level = text_of("batterylevel");
     level = level.substr(0, level.find('%'));
     const auto percent = number(level);
-    if (percent && *percent < setup_.least_battery_percent) {
-      throw std::runtime_error("the camera's battery is at " + level +
-                               " %; charge it, or use the mains adapter, then resume");
+    if (level == "Low" || (percent && *percent < setup_.least_battery_percent)) {
+      throw std::runtime_error("the camera's battery is " + (percent ? "at " + level + " %" : "low") +
+                               "; charge it, or use the mains adapter, then resume");
     }
   }
 
@@ -381,13 +438,12 @@ class GphotoCamera final : public Camera {
       refuse("take a picture", status);
     }
     picture.bytes = download(path);
-    const std::string_view name = path.name;
-    picture.extension = name.substr(name.rfind('.') == std::string_view::npos ? name.size() : name.rfind('.') + 1);
-    picture.settings = settings();  // up to date: taking the picture made the library ask for all settings again
-    if (picture.bytes.empty() || picture.extension != "arw") {
-      throw std::runtime_error("the camera was to deliver a raw picture and delivered \"" + std::string(name) +
-                               "\" of " + std::to_string(picture.bytes.size()) +
-                               " bytes; set MENU > Image Quality > RAW, then resume");
+    picture.extension = extension_of(path.name);
+    picture.settings = settings();
+    if (picture.bytes.empty() || !is_raw_extension(picture.extension)) {
+      throw std::runtime_error("the camera was to deliver a raw picture and delivered \"" + std::string(path.name) +
+                               "\" of " + std::to_string(picture.bytes.size()) + " bytes; set " + make_.quality.where +
+                               ", then resume");
     }
     return picture;
   }
@@ -438,6 +494,8 @@ class GphotoCamera final : public Camera {
   Context context_;
   Handle handle_;
   std::set<std::string> offered_;  // names of settings
+  MakeSettings make_;
+  bool live_ = false;  // it has shown what it sees since the last picture
   double f_number_asked_ = CameraSettings{}.f_number;
   std::optional<CameraSettings> configured_;
   std::deque<std::size_t> delivered_;

@@ -1,4 +1,5 @@
-// A camera driven by libgphoto2 over USB or network: the Sony Alpha 7 II and its like.
+// A camera driven by libgphoto2 over USB or network: Sony Alpha, Canon EOS and Nikon, known by the settings that the
+// camera offers (make_settings.h).
 //
 // The library may hang or crash, so a program that must live on runs this camera in a process of its own
 // (camera_process.h). Every setting is read back and compared as a number. The library may also deliver an old picture
@@ -28,7 +29,7 @@ struct CameraLost : std::runtime_error {
 };
 
 // Connects to the camera, checks that it is ready (mode dial at M, manual focus, battery, card) and sets RAW. Errors:
-// std::runtime_error that names the menu entry or the cable to look at. The program must ignore SIGPIPE.
+// std::runtime_error that names the menu entry or the cable to look at, or says what the camera lacks. The program must ignore SIGPIPE.
 std::unique_ptr<Camera> make_gphoto_camera(const GphotoSetup& setup);
 
 }  // namespace rig

@@ -33,13 +33,11 @@ fs::file_time_type time_of(const fs::path& file) {
   return error ? fs::file_time_type::min() : time;
 }
 
-// Of the folder's files with this ending.
-std::optional<fs::path> newest_file(const fs::path& folder, const std::string& ending) {
+std::optional<fs::path> newest_raw_file(const fs::path& folder) {
   std::optional<fs::path> newest;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == ending && (!newest || time_of(*newest) < time_of(entry.path())))
-      newest = entry.path();
+    if (is_raw_file(entry.path()) && (!newest || time_of(*newest) < time_of(entry.path()))) newest = entry.path();
   return newest;
 }
 
@@ -160,10 +158,10 @@ std::optional<LastFrame::Found> LastFrame::newest() const {
     if (!session || time_of(*session / "journal.jsonl") < time_of(folder / "journal.jsonl")) session = folder;
   }
   if (session)
-    if (const auto file = newest_file(*session / "raw", ".arw"))
+    if (const auto file = newest_raw_file(*session / "raw"))
       all.push_back({*file, *session, session->filename().string() + ": " + file->stem().string()});
   for (const std::string& name : folders_in(workspace_.folder() / "calibrations"))
-    if (const auto file = newest_file(workspace_.calibration(name) / "pictures", ".arw"))
+    if (const auto file = newest_raw_file(workspace_.calibration(name) / "pictures"))
       all.push_back({*file, {}, name + ": " + file->stem().string()});
   if (fs::exists(workspace_.preview())) all.push_back({workspace_.preview(), {}, "", false});
   const auto newest = std::ranges::max_element(all, {}, [](const Found& one) { return time_of(one.file); });

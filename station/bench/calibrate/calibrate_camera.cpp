@@ -29,9 +29,7 @@ FileKind kind_of(const fs::path& file) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   for (const char* known : {".jpg", ".jpeg", ".png", ".tif", ".tiff"})
     if (extension == known) return FileKind::photograph;
-  for (const char* known : {".arw", ".dng", ".nef", ".cr2", ".cr3", ".raf", ".orf", ".rw2"})
-    if (extension == known) return FileKind::raw;
-  return FileKind::other;
+  return is_raw_file(file) ? FileKind::raw : FileKind::other;
 }
 
 std::vector<fs::path> pictures_in(const fs::path& folder) {

@@ -1,50 +1,23 @@
 // Debian's own gphoto2 command against the simulated camera: what it says and what it downloads.
+#include "tests/rig/cameras/gphoto2_command.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
-#include "tests/rig/cameras/wired_camera.h"
 #include "tests/rig/simulated/raw_reader.h"
 
 namespace {
 
 using testing::HasSubstr;
-namespace fs = std::filesystem;
 
 struct Gphoto2Command : testing::Test {
-  void SetUp() override {
-    ASSERT_EQ(std::system("command -v gphoto2 >/dev/null"), 0) << "install gphoto2, as station/packages.txt says";
-    fs::create_directories(folder);
-  }
-  ~Gphoto2Command() override { fs::remove_all(folder); }
-
-  // What it prints; it remembers cameras in its home, so it gets one of its own.
-  std::string run(const std::string& arguments) const {
-    const std::string command = "cd " + folder.string() + " && HOME=" + folder.string() + " gphoto2 --port " +
-                                wired.port() + " " + arguments + " 2>&1";
-    std::string said;
-    FILE* pipe = popen(command.c_str(), "r");
-    std::array<char, 4096> piece{};
-    for (std::size_t got = 0; (got = fread(piece.data(), 1, piece.size(), pipe)) > 0;) said.append(piece.data(), got);
-    EXPECT_EQ(pclose(pipe), 0) << command << "\n" << said;
-    return said;
-  }
-  std::vector<std::byte> bytes_of(const std::string& name) const {
-    std::ifstream in(folder / name, std::ios::binary);
-    EXPECT_TRUE(in) << name;
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
-    const auto* begin = reinterpret_cast<const std::byte*>(text.data());
-    return {begin, begin + text.size()};
-  }
+  std::string run(const std::string& arguments) const { return gphoto2.run(arguments); }
+  std::vector<std::byte> bytes_of(const std::string& name) const { return gphoto2.bytes_of(name); }
 
   WiredCamera wired;
-  fs::path folder = fs::path(testing::TempDir()) / ("gphoto2_" + std::to_string(wired.server->port()));
+  Gphoto2 gphoto2{wired};
 };
 
 }  // namespace
@@ -98,7 +71,5 @@ TEST_F(Gphoto2Command, DownloadsRawAndJpegOfOneExposure) {
   run("--set-config 'imagequality=RAW+JPEG (Fine)' --capture-image-and-download");
   ASSERT_EQ(wired.recorded.count(), 1u);
   EXPECT_EQ(bytes_of("capt0000.arw"), wired.recorded.last().bytes);
-  std::size_t jpegs = 0;
-  for (const auto& entry : fs::directory_iterator(folder)) jpegs += entry.path().extension() == ".jpg";
-  EXPECT_EQ(jpegs, 1u);
+  EXPECT_EQ(gphoto2.files_ending_in(".jpg"), 1u);
 }

@@ -16,6 +16,7 @@ TEST(UsbCamera, ThatAnotherProgramHoldsIsSaidWithWhatToClose) {
     });
     EXPECT_THAT(said, HasSubstr("Could not claim the USB device")) << port;
     EXPECT_THAT(said, HasSubstr("another program holds the camera; close")) << port;
+    EXPECT_THAT(said, HasSubstr("gio mount -s gphoto2)")) << port;
     std::cout << "  " << said << "\n";
   }
 }

@@ -43,6 +43,17 @@ TEST_F(RigCommands, CheckEndsInATableForEverySimulatedRig) {
   }
 }
 
+TEST_F(RigCommands, CheckPassesForACameraOfEveryMakeAndForALensWithoutAnElectronicAperture) {
+  for (const char* make : {"sony", "canon", "nikon"}) {
+    json rig = station::read_json_file(fixture("simulated_wire_grbl"));
+    rig["simulation"]["make"] = make;
+    rig["simulation"]["lens"]["electronic_aperture"] = false;
+    const ProgramResult result = run_threadstation({"check", "--rig", rig_file(rig)});
+    EXPECT_EQ(result.status, 0) << make << result.error << result.out;
+    EXPECT_THAT(result.out, HasSubstr("  ok    a picture has bytes, a date and the settings asked"));
+  }
+}
+
 TEST_F(RigCommands, CheckWithACalibrationLooksAtATestPicture) {
   json rig = station::read_json_file(fixture("simulated"));
   rig["simulation"]["target_samples_per_pixel"] = 4;
