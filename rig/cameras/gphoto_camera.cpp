@@ -160,7 +160,7 @@ class GphotoCamera final : public Camera {
       throw std::runtime_error("f/" + std::to_string(wanted.f_number) + " was asked; it must be a positive number");
     choose(make_.iso, wanted.iso, number);
     f_number_asked_ = wanted.f_number;
-    if (has_aperture()) choose(make_.aperture, wanted.f_number, f_number_from);
+    if (sets_aperture_) choose(make_.aperture, wanted.f_number, f_number_from);
     choose(make_.shutter, exposure_s, seconds_from);
     configured_ = settings();
     return *configured_;
@@ -256,18 +256,36 @@ class GphotoCamera final : public Camera {
       offered_ = list_settings();
       make_ = settings_of_make(text_of("manufacturer"), offered_);
       missing = missing_settings(make_, offered_);
-      if (missing.empty()) return;
+      if (missing.empty()) break;
+    }
+    if (missing.empty()) {
+      sets_aperture_ = can_be_read(make_.aperture) && has_aperture();
+      return;
     }
     throw std::runtime_error("the camera was asked for its settings and has no " + missing +
                              " among them; set its dial to M and " + make_.connection +
                              ", switch it off and on, or take a camera that lets a computer set its exposure");
   }
 
-  // False for a lens without an electronic aperture: the setting is missing, or it has no number to choose.
+  // False for a setting that the camera does not have, or has without choices: the library then makes nothing of it and
+  // answers as if the connection were broken. So something else is asked that has to go over the connection, and the
+  // setting once more.
+  bool can_be_read(const std::string& name) const {
+    for (int tries = 0; tries < 2 && offered_.contains(name); ++tries) {
+      CameraWidget* found = nullptr;
+      const int status = gp_camera_get_single_config(handle_.get(), name.c_str(), &found, context_.get());
+      const Widget owner(found, gp_widget_free);
+      if (status >= GP_OK) return true;
+      if (status != GP_ERROR_BAD_PARAMETERS) refuse("tell its " + name, status);
+      require_space();
+    }
+    return false;
+  }
+
+  // False for a lens without an electronic aperture, which reads 0 or has no number to choose.
   bool has_aperture() const {
-    if (!offered_.contains(make_.aperture)) return false;
-    const auto is_number = [](const std::string& choice) { return f_number_from(choice).value_or(0) > 0; };
-    return std::ranges::any_of(choices_of(make_.aperture), is_number);
+    const auto is_number = [](const std::string& text) { return f_number_from(text).value_or(0) > 0; };
+    return is_number(text_of(make_.aperture)) && std::ranges::any_of(choices_of(make_.aperture), is_number);
   }
 
   Widget widget(const std::string& name) const {
@@ -332,7 +350,7 @@ class GphotoCamera final : public Camera {
   CameraSettings settings() const {
     const auto exposure_s = seconds_from(text_of(make_.shutter));
     const auto iso = number(text_of(make_.iso));
-    const auto aperture = has_aperture() ? f_number_from(text_of(make_.aperture)) : std::optional(f_number_asked_);
+    const auto aperture = sets_aperture_ ? f_number_from(text_of(make_.aperture)) : std::optional(f_number_asked_);
     if (!exposure_s || !iso || !aperture) {
       throw std::runtime_error("the camera was asked for its exposure and answered shutter " + text_of(make_.shutter) +
                                ", ISO " + text_of(make_.iso) + ", aperture " +
@@ -495,7 +513,8 @@ class GphotoCamera final : public Camera {
   Handle handle_;
   std::set<std::string> offered_;  // names of settings
   MakeSettings make_;
-  bool live_ = false;  // it has shown what it sees since the last picture
+  bool sets_aperture_ = false;  // the lens that is on the camera when it is connected
+  bool live_ = false;           // it has shown what it sees since the last picture
   double f_number_asked_ = CameraSettings{}.f_number;
   std::optional<CameraSettings> configured_;
   std::deque<std::size_t> delivered_;

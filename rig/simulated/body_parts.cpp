@@ -37,6 +37,15 @@ bool BodyParts::has(std::uint16_t property) const {
   return !condition_.missing.contains(property);
 }
 
+std::uint16_t BodyParts::f_number_times_100() const {
+  return condition().no_aperture_choices ? std::uint16_t{0} : kFNumbersTimes100.at(dial(Dial::f_number));
+}
+
+std::vector<std::uint16_t> BodyParts::f_numbers_times_100() const {
+  if (condition().no_aperture_choices) return {};
+  return {kFNumbersTimes100.begin(), kFNumbersTimes100.end()};
+}
+
 std::size_t BodyParts::dial(Dial dial) const {
   const std::lock_guard hold(mutex_);
   return dials_.at(static_cast<std::size_t>(dial));

@@ -71,6 +71,8 @@ class BodyParts {
   void set_condition(const BodyCondition& condition);
   void set_focus_mode(int mode);
   bool has(std::uint16_t property) const;
+  std::uint16_t f_number_times_100() const;                // 0 where the aperture reads nothing
+  std::vector<std::uint16_t> f_numbers_times_100() const;  // the choices; none where it has none
 
   // A locked dial stays where it is; turn_by() goes a step further on a camera that oversteps.
   std::size_t dial(Dial dial) const;

@@ -41,6 +41,7 @@ struct BodyCondition {
   bool oversteps = false;  // settings go one step further than asked
   bool store_full = false;
   bool repeats_last_picture = false;
+  bool no_aperture_choices = false;   // it has the property of the aperture, which reads 0 and cannot be set
   bool jpeg_only = false;             // it has no raw pictures
   bool auto_iso = false;              // Nikon: the ISO that is set is only where automatic ISO begins
   std::set<std::uint16_t> missing{};  // properties that it does not have

@@ -142,6 +142,7 @@ class Canon final : public SimulatedBody {
         {kLiveViewOutput, number(live_view_output_)},
         {kLiveViewMode, number(1)}};
     for (const auto& [property, dial] : kDials) values[property] = number(code_at(dial, parts_.dial(dial.dial)));
+    if (now.no_aperture_choices) values[kAperture] = number(0);
     std::erase_if(values, [this](const auto& one) { return !parts_.has(one.first); });
     return values;
   }
@@ -149,6 +150,7 @@ class Canon final : public SimulatedBody {
   // The values that a property may be given; none where it takes any.
   std::vector<std::string> choices(std::uint16_t property) const {
     std::vector<std::string> all;
+    if (property == kAperture && parts_.condition().no_aperture_choices) return all;
     if (property == kQuality && parts_.condition().jpeg_only) return {format_of(Quality::large_fine_jpeg)};
     if (property == kQuality)
       for (const Quality one : {Quality::raw, Quality::large_fine_jpeg, Quality::raw_and_jpeg})

@@ -116,8 +116,7 @@ class Nikon final : public SimulatedBody {
                                           ? std::vector<std::uint8_t>{0, 1, kJpegFine}
                                           : std::vector<std::uint8_t>{0, 1, kJpegFine, kRaw, 5, 6, kRawAndFine});
       case kFNumber:
-        return property<std::uint16_t>(code, kPtpU16, true, kFNumbersTimes100.at(parts_.dial(Dial::f_number)),
-                                       {kFNumbersTimes100.begin(), kFNumbersTimes100.end()});
+        return property<std::uint16_t>(code, kPtpU16, true, parts_.f_number_times_100(), parts_.f_numbers_times_100());
       case kFocusMode:
         return property<std::uint16_t>(
             code, kPtpU16, false, static_cast<std::uint16_t>(now.focus_mode == 1 ? 1 : 0x8010), {1, 0x8010, 0x8011});

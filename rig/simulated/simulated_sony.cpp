@@ -108,8 +108,7 @@ class Sony final : public SimulatedBody {
                            now.jpeg_only ? std::vector<std::uint8_t>{2, kJpegFine, 4}
                                          : std::vector<std::uint8_t>{2, kJpegFine, 4, kRaw, kRawAndJpeg});
     list.put<std::uint16_t>(kWhiteBalance, kPtpU16, 4, {2, 4});
-    list.put<std::uint16_t>(kFNumber, kPtpU16, kFNumbersTimes100.at(parts_.dial(Dial::f_number)),
-                            {kFNumbersTimes100.begin(), kFNumbersTimes100.end()});
+    list.put<std::uint16_t>(kFNumber, kPtpU16, parts_.f_number_times_100(), parts_.f_numbers_times_100());
     list.put<std::uint16_t>(kFocusMode, kPtpU16, static_cast<std::uint16_t>(now.focus_mode), {1, 2});
     list.put<std::uint16_t>(kProgram, kPtpU16, static_cast<std::uint16_t>(now.exposure_program), {1, 2, 3, 4}, false);
     list.put<std::int16_t>(kCompensation, kPtpI16, 0, {0});
