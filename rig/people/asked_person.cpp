@@ -1,18 +1,15 @@
 #include "rig/people/asked_person.h"
 
-#include <stdexcept>
-
 namespace rig {
 
 std::string ask_or_end(AskedPerson& asked, const Question& question) {
   const std::optional<std::string> answer = asked.ask(question);
   if (!answer) {
-    throw std::runtime_error("asked to: \"" + question.text +
-                             "\", but the input ended before anybody answered; run it at a terminal");
+    throw Declined("asked to: \"" + question.text +
+                   "\", but the input ended before anybody answered; run it at a terminal");
   }
   if (*answer == kDecline)
-    throw std::runtime_error("asked to: \"" + question.text +
-                             "\", and the person declined; resume when it can be done");
+    throw Declined("asked to: \"" + question.text + "\", and the person declined; resume when it can be done");
   return *answer;
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -41,7 +42,13 @@ class AskedPerson {
   virtual void prepare(const nlohmann::json& context, const std::string& drawing) = 0;
 };
 
-// Asks, and throws std::runtime_error when the person declines or the input ends.
+// A person cannot or does not want to do what is asked now, or there is nobody left to ask.
+class Declined : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Asks, and throws Declined when the person declines or the input ends.
 std::string ask_or_end(AskedPerson& asked, const Question& question);
 
 // The streams must outlive the person. At a terminal a line that is no choice's key is the text typed, or the first choice

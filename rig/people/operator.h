@@ -40,7 +40,7 @@ std::string full_instruction(const Arrangement& to);
 class Operator {
  public:
   virtual ~Operator() = default;
-  // Returns when the bench is in the wanted arrangement; throws std::runtime_error when the person declines.
+  // Returns when the bench is in the wanted arrangement; throws Declined (asked_person.h) when the person declines.
   virtual void arrange(const Arrangement& wanted) = 0;
 };
 

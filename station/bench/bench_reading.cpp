@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
-#include <stdexcept>
 
+#include "station/bench/bench_fault.h"
 #include "station/documents/degree.h"
 
 namespace station {
@@ -54,9 +54,9 @@ void require_calibrated_bench(const RigCalibration& calibration, const BenchRead
                               const std::string& picture) {
   if (found.shift) {
     const auto problem = calibration::shift_problem(*found.shift, still_limit_px(calibration), picture);
-    if (problem) throw std::runtime_error(*problem);
+    if (problem) throw BenchFault(*problem);
   }
-  if (const auto problem = slip_problem(calibration, found, reading_rad, picture)) throw std::runtime_error(*problem);
+  if (const auto problem = slip_problem(calibration, found, reading_rad, picture)) throw BenchFault(*problem);
 }
 
 }  // namespace station

@@ -28,7 +28,7 @@ double still_limit_px(const RigCalibration& calibration);
 std::optional<std::string> slip_problem(const RigCalibration& calibration, const BenchReading& found,
                                         double reading_rad, const std::string& picture);
 
-// Throws std::runtime_error, naming the picture, when camera or table have moved since the calibration, or the platform
+// Throws BenchFault, naming the picture, when camera or table have moved since the calibration, or the platform
 // stands more than half a degree from what the turntable read.
 void require_calibrated_bench(const RigCalibration& calibration, const BenchReading& found, double reading_rad,
                               const std::string& picture);

@@ -4,6 +4,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "station/bench/bench_fault.h"
+
 namespace station {
 namespace {
 
@@ -38,8 +40,8 @@ rig::CameraSettings set_camera(rig::Camera& camera, const rig::CameraSettings& w
   asked.exposure_s = offered_time(camera, wanted.exposure_s);
   const rig::CameraSettings read = camera.configure(asked);
   if (!same_settings(asked, read)) {
-    throw std::runtime_error("the camera was asked for " + settings_text(asked) + " and stands at " +
-                             settings_text(read) + "; set its dial to M (manual) and resume");
+    throw BenchFault("the camera was asked for " + settings_text(asked) + " and stands at " + settings_text(read) +
+                     "; set its dial to M (manual) and resume");
   }
   return asked;
 }

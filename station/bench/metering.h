@@ -30,7 +30,7 @@ Metering meter_exposure(rig::Camera& camera, const PlanStep& step, const rig::Ca
                         const ChooseExposure& choose, int most_test_pictures, const std::function<void()>& between);
 
 // Sets the camera to the offered shutter time nearest to the wanted one; returns what was asked.
-// Errors: std::runtime_error when the camera reads back other settings (a dial, a mode that locks the shutter).
+// Errors: BenchFault when the camera reads back other settings (a dial, a mode that locks the shutter).
 rig::CameraSettings set_camera(rig::Camera& camera, const rig::CameraSettings& wanted);
 
 // Whether the ISO is equal, and shutter time and f-number agree within a sixth of a stop: cameras round what is engraved

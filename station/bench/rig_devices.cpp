@@ -11,6 +11,7 @@
 #include "rig/people/practice_operator.h"
 #include "rig/people/practice_turntable.h"
 #include "rig/turntables/serial_line.h"
+#include "station/bench/bench_fault.h"
 #include "station/bench/bench_picture.h"
 #include "station/bench/guarded_turntable.h"
 #include "station/bench/platform_memory.h"
@@ -88,6 +89,15 @@ std::unique_ptr<rig::Turntable> make_turntable(const RigFile& rig, RigDevices& d
                        : std::move(by_hand);
 }
 
+void connect_camera(const RigFile& rig, RigDevices& devices) {
+  devices.camera = on_bench([&] { return throwing_bench_faults(make_camera(rig, devices)); });
+}
+
+void connect_turntable(const RigFile& rig, RigDevices& devices, rig::AskedPerson* asked) {
+  devices.turntable =
+      guard_turntable(on_bench([&] { return throwing_bench_faults(make_turntable(rig, devices, asked)); }));
+}
+
 void require_person(const RigFile& rig, const rig::AskedPerson* asked) {
   if (asked || (rig.operator_driver != "console" && rig.turntable_driver != "manual")) return;
   throw std::runtime_error("rig \"" + rig.name + "\" needs a person (" +
@@ -154,8 +164,8 @@ RigDevices open_rig(const RigFile& rig, const std::optional<Spool>& spool, rig::
   devices.clock = make_clock(simulated);
   if (simulated)
     devices.bench = std::make_unique<rig::SimulatedBench>(rig.simulation->truth, make_bench_picture(rig, spool));
-  devices.camera = make_camera(rig, devices);
-  devices.turntable = guard_turntable(make_turntable(rig, devices, asked));
+  connect_camera(rig, devices);
+  connect_turntable(rig, devices, asked);
   if (rig.operator_driver == "console") devices.person = rig::make_console_operator(*asked);
   if (devices.bench) {
     auto hand = rig::make_simulated_operator(*devices.bench);
@@ -169,7 +179,7 @@ RigDevices open_turntable(const RigFile& rig, rig::AskedPerson* asked) {
   constexpr double kPace = 0.01;  // a check looks at it from another thread while it turns
   require_person(rig, asked);
   RigDevices devices = undrawn_bench(rig, turns_the_bench(rig), kPace);
-  devices.turntable = guard_turntable(make_turntable(rig, devices, asked));
+  connect_turntable(rig, devices, asked);
   return devices;
 }
 
@@ -184,7 +194,7 @@ TurntableLine open_turntable_line(const RigFile& rig) {
 
 RigDevices open_camera(const RigFile& rig) {
   RigDevices devices = undrawn_bench(rig, photographs_the_bench(rig));
-  devices.camera = make_camera(rig, devices);
+  connect_camera(rig, devices);
   return devices;
 }
 

@@ -35,8 +35,9 @@ struct RigDevices {
   std::unique_ptr<rig::Operator> person;
 };
 
-// Connects all devices. The clock is the machine's as soon as a device is real, and a simulated one otherwise. Errors: std::runtime_error, of
-// the devices; when the pictures would be of another bench than the turntable turns.
+// Connects all devices. The clock is the machine's as soon as a device is real, and a simulated one otherwise. Errors:
+// BenchFault, of camera and turntable, also in all that they are asked later; std::runtime_error when the pictures would
+// be of another bench than the turntable turns.
 // `spool` is what is wrapped on the holder; a simulated bench needs it to draw the holder.
 // `asked` is asked where the rig needs a person, and must outlive the devices; without one such a rig is refused. On a
 // simulated bench the simulated hand then does what the person was asked.

@@ -25,20 +25,36 @@ bool ask_for_spool(const QueuedSpool& spool, rig::AskedPerson& asked) {
          rig::kDone;
 }
 
+std::string outcome_text(const QueueResult& result) {
+  switch (result.outcome) {
+    case QueueOutcome::captured:
+      return "captured";
+    case QueueOutcome::resumed:
+      return "captured to its end";
+    case QueueOutcome::kept:
+      return "was complete already";
+    case QueueOutcome::failed:
+      return "failed: " + result.problem;
+    case QueueOutcome::bench_fault:
+      return "waits, the bench has a fault: " + result.problem;
+    case QueueOutcome::waiting:
+      break;
+  }
+  return "waits";
+}
+
 void run_queue(const Arguments& arguments) {
   const CaptureRequest& request = arguments.request;
   std::function<bool(const QueuedSpool&)> next;
   if (request.asked && read_rig(request.new_session->rig).operator_driver == "console")
     next = [&](const QueuedSpool& spool) { return ask_for_spool(spool, *request.asked); };
   std::string first_problem;
-  for (const QueueResult& result : capture_queue(arguments.queue, request, next)) {
-    const char* outcome = result.outcome == QueueOutcome::captured  ? "captured"
-                          : result.outcome == QueueOutcome::resumed ? "captured to its end"
-                          : result.outcome == QueueOutcome::kept    ? "was complete already"
-                                                                    : "failed: ";
-    std::cout << result.spool.session << ": " << outcome << result.problem << "\n";
+  const std::vector<QueueResult> results = capture_queue(arguments.queue, request, next);
+  for (const QueueResult& result : results) {
+    std::cout << result.spool.session << ": " << outcome_text(result) << "\n";
     if (first_problem.empty() && !result.problem.empty()) first_problem = result.spool.session + ": " + result.problem;
   }
+  if (const auto paused = pause_line(results)) throw std::runtime_error(*paused);
   if (!first_problem.empty()) throw std::runtime_error(first_problem + "; the same command goes on from here");
 }
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "station/bench/bench_fault.h"
 #include "station/bench/calibration_validity.h"
 #include "station/bench/drawing_operator.h"
 #include "station/bench/platform_memory.h"
@@ -25,10 +26,9 @@ namespace {
 void require_same_sensor(rig::Camera& camera, const calibration::Lens& lens) {
   const rig::CameraIdentity found = camera.identity();
   if (found.width_px != lens.width_px || found.height_px != lens.height_px)
-    throw std::runtime_error("the calibration is for pictures of " + std::to_string(lens.width_px) + " x " +
-                             std::to_string(lens.height_px) + " pixels, this camera makes " +
-                             std::to_string(found.width_px) + " x " + std::to_string(found.height_px) +
-                             "; calibrate the rig with this camera");
+    throw BenchFault("the calibration is for pictures of " + std::to_string(lens.width_px) + " x " +
+                     std::to_string(lens.height_px) + " pixels, this camera makes " + std::to_string(found.width_px) +
+                     " x " + std::to_string(found.height_px) + "; calibrate the rig with this camera");
 }
 
 StopWish wish() {
@@ -127,7 +127,7 @@ RunState begin_session(const CaptureRequest& request, const NewSession& made_of)
   }
   const RigFile rig = parse_rig(rig_document, made_of.rig.string());
   const Spool spool = parse_spool(spool_document, made_of.spool.string());
-  const RigCalibration calibration = read_calibration(made_of.calibration);
+  const RigCalibration calibration = on_bench([&] { return read_calibration(made_of.calibration); });
   if (is_session(request.session))
     throw std::runtime_error(request.session.string() +
                              " is a session already; choose another folder, or go on with capture --resume");
@@ -135,13 +135,13 @@ RunState begin_session(const CaptureRequest& request, const NewSession& made_of)
       made_of.plan.empty() ? plan_of(rig, spool) : plan_from_json(read_json_file(made_of.plan), made_of.plan.string());
   require_space(request.session, plan, calibration.lens.lens);
   RigDevices devices = open_rig(rig, spool, request.asked);
-  require_valid(calibration, rig, devices.clock->utc(), made_of.accept_calibration);
+  on_bench([&] { require_valid(calibration, rig, devices.clock->utc(), made_of.accept_calibration); });
   require_same_sensor(*devices.camera, calibration.lens.lens);
   FileSystem disk;
   SessionFolder session = SessionFolder::create(
       request.session,
       make_session_document(devices.clock->utc(), rig_document, spool_document, plan, made_of.person, made_of.sample),
-      calibration_files(made_of.calibration, calibration), *devices.clock, disk);
+      on_bench([&] { return calibration_files(made_of.calibration, calibration); }), *devices.clock, disk);
   return run(session, devices, read_session_file(request.session), calibration, request);
 }
 

@@ -1,12 +1,14 @@
 #include "station/session/spool_queue.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <initializer_list>
 #include <map>
 #include <stdexcept>
 
+#include "station/bench/bench_fault.h"
 #include "station/documents/disk/file_name.h"
 #include "station/documents/text_table.h"
-#include "station/session/capture_session.h"
 #include "station/session/record/session_folder.h"
 #include "station/session/record/verify.h"
 
@@ -24,6 +26,30 @@ unsigned code_point(const std::string& text, std::size_t& at) {
   unsigned code = more == 0 ? first : first & (0x3FU >> more);
   for (; more > 0 && at < text.size(); --more) code = code << 6 | (static_cast<unsigned char>(text[at++]) & 0x3FU);
   return code;
+}
+
+constexpr const char* kNone = "none";
+
+// A new session, or the one that is in its folder goes on.
+CaptureRequest request_for(const CaptureRequest& queue, const QueuedSpool& spool) {
+  CaptureRequest request = queue;
+  request.session /= spool.session;
+  if (is_session(request.session)) {
+    request.new_session.reset();
+  } else {
+    request.new_session->spool = spool.spool;
+    request.new_session->sample = spool.sample;
+  }
+  return request;
+}
+
+// The sessions with one of these outcomes.
+std::string names_of(const std::vector<QueueResult>& results, std::initializer_list<QueueOutcome> outcomes) {
+  std::string names;
+  for (const QueueResult& result : results)
+    if (std::ranges::find(outcomes, result.outcome) != outcomes.end())
+      names += (names.empty() ? "" : ", ") + result.spool.session;
+  return names.empty() ? kNone : names;
 }
 
 std::runtime_error bad_row(const std::filesystem::path& file, std::size_t line, const std::string& problem) {
@@ -86,40 +112,48 @@ std::vector<QueuedSpool> read_queue(const std::filesystem::path& file) {
 }
 
 std::vector<QueueResult> capture_queue(const std::filesystem::path& table, const CaptureRequest& request,
-                                       const std::function<bool(const QueuedSpool&)>& next) {
+                                       const std::function<bool(const QueuedSpool&)>& next,
+                                       const std::function<RunState(const CaptureRequest&)>& capture) {
   std::vector<QueueResult> results;
+  bool sound = true, stopped = false;  // the bench; the queue, by somebody
   for (const QueuedSpool& spool : read_queue(table)) {
-    QueueResult result{.spool = spool, .outcome = QueueOutcome::captured, .problem = {}};
-    CaptureRequest capture = request;
-    capture.session /= spool.session;
+    QueueResult result{.spool = spool, .outcome = QueueOutcome::waiting, .problem = {}};
+    const CaptureRequest one = request_for(request, spool);
     try {
-      if (is_session(capture.session) && verify_session(capture.session).complete) {
+      if (is_session(one.session) && verify_session(one.session).complete) {
         result.outcome = QueueOutcome::kept;
-        results.push_back(result);
-        continue;
+      } else if (sound) {
+        if (next && !next(spool)) break;
+        result.outcome = one.new_session ? QueueOutcome::captured : QueueOutcome::resumed;
+        if (const RunState state = capture(one); state != RunState::complete) {
+          result.outcome = QueueOutcome::failed;
+          result.problem = "was " + state_name(state);
+          stopped = true;
+        }
       }
-      if (next && !next(spool)) break;
-      if (is_session(capture.session)) {
-        result.outcome = QueueOutcome::resumed;
-        capture.new_session.reset();
-      } else {
-        capture.new_session->spool = spool.spool;
-        capture.new_session->sample = spool.sample;
-      }
-      const RunState state = capture_session(capture);
-      if (state != RunState::complete) {
-        result.outcome = QueueOutcome::failed;
-        result.problem = "was " + state_name(state);
-        results.push_back(result);
-        break;
-      }
+    } catch (const BenchFault& fault) {
+      result.outcome = QueueOutcome::bench_fault;
+      result.problem = fault.what();
+      sound = false;
     } catch (const std::exception& error) {
       result.outcome = QueueOutcome::failed;
       result.problem = error.what();
     }
     results.push_back(result);
+    if (stopped) break;
   }
   return results;
+}
+
+std::optional<std::string> pause_line(const std::vector<QueueResult>& results) {
+  const auto paused = std::ranges::find(results, QueueOutcome::bench_fault, &QueueResult::outcome);
+  if (paused == results.end()) return std::nullopt;
+  using enum QueueOutcome;
+  std::string line = "the queue is paused by a fault of the bench: " + paused->problem;
+  line += "; done: " + names_of(results, {captured, resumed, kept});
+  if (const std::string lost = names_of(results, {failed}); lost != kNone) line += "; failed: " + lost;
+  return line + "; waiting: " + names_of(results, {bench_fault, waiting}) +
+         "; when the bench is put right, the same command goes on from here";
 }
 
 }  // namespace station

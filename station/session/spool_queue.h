@@ -3,11 +3,13 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "station/documents/sample.h"
 #include "station/session/capture_request.h"
+#include "station/session/capture_session.h"
 
 namespace station {
 
@@ -28,18 +30,26 @@ std::vector<QueuedSpool> read_queue(const std::filesystem::path& file);
 // code ("u00e9"), and others between them become one -.
 std::string safe_name(const std::string& text);
 
-enum class QueueOutcome { captured, resumed, kept, failed };  // kept: it was complete already
+// kept: it was complete already. failed: the next spool is taken all the same. bench_fault: it is not, and the spools
+// that are not complete wait.
+enum class QueueOutcome { captured, resumed, kept, failed, bench_fault, waiting };
 
 struct QueueResult {
   QueuedSpool spool;
   QueueOutcome outcome = QueueOutcome::captured;
-  std::string problem;  // why it failed; the next spool is taken all the same
+  std::string problem;  // why it failed
 };
 
 // `request` is made for each spool of the table: it asks for a new session without spool and sample, and its `session`
 // is the folder that holds all sessions. `next` asks the person for the next spool and says whether to go on; empty:
-// nobody is asked. Ends early when a session is paused or aborted, or `next` says so. Errors: those of read_queue.
+// nobody is asked. `capture` takes one spool. Ends early when a session is paused or aborted, or `next` says so; after
+// a BenchFault nobody is asked for another spool. The same call goes on where it ended. Errors: those of read_queue.
 std::vector<QueueResult> capture_queue(const std::filesystem::path& table, const CaptureRequest& request,
-                                       const std::function<bool(const QueuedSpool&)>& next);
+                                       const std::function<bool(const QueuedSpool&)>& next,
+                                       const std::function<RunState(const CaptureRequest&)>& capture = capture_session);
+
+// Which bench fault paused a queue, what is done, failed and waiting, and how it goes on: one line. Nothing when none
+// paused it.
+std::optional<std::string> pause_line(const std::vector<QueueResult>& results);
 
 }  // namespace station

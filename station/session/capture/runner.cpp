@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "calibration/sensor/median.h"
+#include "station/bench/bench_fault.h"
 #include "station/documents/degree.h"
 #include "station/session/capture/delivered_pictures.h"
 #include "station/session/capture/open_steps.h"
@@ -25,6 +26,17 @@ struct Stopped {  // thrown by poll(), caught in run_plan only
 
 // Findings (verdict.h) of what may have been wrong before it was seen.
 constexpr std::array kLasting = {"angle", "bench", "lamp", "focus"};
+
+// Findings of what is no spool's: the platform slipped, camera or table were moved.
+constexpr std::array kOfTheBench = {"angle", "bench"};
+
+[[noreturn]] void give_up(const Verdict& verdict) {
+  const auto of_the_bench = [](const Finding& finding) {
+    return finding.grade == Grade::bad && std::ranges::find(kOfTheBench, finding.check) != kOfTheBench.end();
+  };
+  if (std::ranges::any_of(verdict.findings, of_the_bench)) throw BenchFault(verdict.reason());
+  throw std::runtime_error(verdict.reason());
+}
 
 std::string degrees(double angle_rad) {
   return std::to_string(angle_rad / kDegree) + " deg";
@@ -123,8 +135,7 @@ class CaptureRun {
       ahead_.wait();
       if (settle_place(record.verdict)) continue;
       withdraw_doubted(record.verdict);
-      if (!record.verdict.may_pass_again() || attempt >= options_.most_attempts)
-        throw std::runtime_error(record.verdict.reason());
+      if (!record.verdict.may_pass_again() || attempt >= options_.most_attempts) give_up(record.verdict);
       poll();
     }
   }
@@ -224,8 +235,8 @@ class CaptureRun {
     poll();
     const double read_rad = devices_.turntable.angle_rad();
     if (!(std::abs(read_rad - asked_rad) <= options_.angle_tolerance_rad)) {
-      throw std::runtime_error("the platform was asked to turn to " + degrees(asked_rad) + " and reads " +
-                               degrees(read_rad) + "; see that nothing blocks it, then resume");
+      throw BenchFault("the platform was asked to turn to " + degrees(asked_rad) + " and reads " + degrees(read_rad) +
+                       "; see that nothing blocks it, then resume");
     }
     return read_rad;
   }

@@ -15,6 +15,7 @@
 #include "calibration/develop/polygon_mask.h"
 #include "calibration/sensor/median.h"
 #include "calibration/sensor/sensor_maps.h"
+#include "station/bench/bench_fault.h"
 #include "station/bench/bench_reading.h"
 #include "station/bench/calibration_validity.h"
 #include "station/bench/camera_adapter.h"
@@ -87,7 +88,7 @@ class CaptureChecks::Work {
   // Views are metered on the threads; pose pictures on the whole frame, for the tags.
   ExposureChoice choose(const PlanStep& step, const rig::Picture& test) {
     const calibration::SensorPicture picture = calibration::read_sensor_bytes(test.bytes, "test picture of " + step.id);
-    require_same_camera(calibration_, picture, "test picture of " + step.id);
+    on_bench([&] { require_same_camera(calibration_, picture, "test picture of " + step.id); });
     date_time_ = picture.date_time;
     const cv::Mat1b region = step.kind == StepKind::view ? window(step) : cv::Mat1b();
     const auto next = next_exposure_s(picture, region, {.level = asked_.rig.target_level});

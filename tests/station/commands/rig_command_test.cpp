@@ -5,6 +5,7 @@
 #include "station/documents/reader.h"
 #include "tests/places.h"
 #include "tests/station/commands/program.h"
+#include "tests/station/commands/simulated_hardware.h"
 
 namespace {
 
@@ -150,19 +151,13 @@ TEST_F(RigCommands, SimulatedHardwareServesAnotherProgramAndEndsWithCtrlC) {
   json wire = station::read_json_file(fixture("simulated_wire_grbl"));
   wire["simulation"]["turntable"]["speed_deg_s"] = 300;  // in real time
   const std::string faults = std::string(FIXTURES_DIR) + "/faults/example.json";
-  const std::string ports = folder / "ports", program = THREADSTATION_PROGRAM;
-  const ProgramResult started = station_test::run_shell(
-      program + " simulate-hardware --json --rig " + rig_file(wire) + " --faults " + faults + " > " + ports +
-      " & echo $!; while [ ! -s " + ports + " ]; do kill -0 $! || exit 1; sleep 0.05; done");
-  ASSERT_EQ(started.status, 0) << started.error;
-  const json found = station::read_json_file(ports);
+  const station_test::SimulatedHardware hardware(wire, faults);
   json rig = station::read_json_file(fixture("grbl_sony_network"));
   rig["turntable_setup"]["line"] = "pty";
   rig["turntable_setup"]["home"] = "switch";
   rig["turntable_setup"].erase("baud");
-  rig["turntable_setup"]["port"] = found["turntable"]["port"];
-  rig["camera_connection"]["port"] = found["camera"]["port"];
+  rig["turntable_setup"]["port"] = hardware.turntable_port();
+  rig["camera_connection"]["port"] = hardware.camera_port();
   const ProgramResult result = run_threadstation({"check", "--rig", rig_file(rig)});
   EXPECT_EQ(result.status, 0) << result.error << result.out;
-  EXPECT_EQ(station_test::run_shell("kill -INT " + started.out).status, 0);
 }

@@ -194,19 +194,41 @@ TEST_F(TechnicianPage, AThreadOfTheLibraryIsShownWithItsCurves) {
   EXPECT_EQ(get("/api/state").at("threads")[0].at("number"), 1);
 }
 
-TEST_F(TechnicianPage, AQueueIsShownRowByRowAndABadOneSaysWhy) {
-  post("/api/control", {{"client", "me"}});
-  std::filesystem::copy(std::string(FIXTURES_DIR) + "/sessions/silk_red", folder_ / "bench/sessions/4006381333931-A-12",
+// Three spools, of which the first one is captured already.
+void write_week(const std::filesystem::path& workspace) {
+  std::filesystem::copy(std::string(FIXTURES_DIR) + "/sessions/silk_red", workspace / "sessions/4006381333931-A-12",
                         std::filesystem::copy_options::recursive);
   const std::string spool = std::string(FIXTURES_DIR) + "/spools/silk_red.json";
-  std::ofstream(folder_ / "bench/queues/week.csv")
+  std::ofstream(workspace / "queues/week.csv")
       << "barcode,name,lot,material,colour,note,spool\n4006381333931,red,A 12,silk,,," << spool
-      << "\n4006381333948,blue,B 3,silk,,,\n";
+      << "\n4006381333948,blue,B 3,silk,,,\n4006381333955,green,,silk,,,\n";
+}
+
+TEST_F(TechnicianPage, AQueueThatTheBenchPausesSaysWhyAndWhatIsDoneAndWhatWaits) {
+  post("/api/control", {{"client", "me"}});
+  write_week(folder_ / "bench");
+  const HttpResponse started = post(
+      "/api/job", {{"client", "me"}, {"kind", "queue"}, {"name", "week"}, {"calibration", "none"}, {"person", "me"}});
+  EXPECT_EQ(started.status, 200) << started.body;
+  ASSERT_TRUE(eventually([&] { return !job().at("question").is_null(); })) << job().dump(1);
+  EXPECT_EQ(answer(job().at("question"), "done").status, 200);
+  ASSERT_TRUE(eventually([&] { return job().at("running") == false || !job().at("question").is_null(); }));
+  ASSERT_TRUE(job().at("question").is_null()) << "the next spool is asked for: " << job().dump(1);
+  EXPECT_EQ(job().at("status"), 1);
+  const std::string last = job().at("lines").back();
+  for (const char* words : {"the queue is paused by a fault of the bench: ", "done: 4006381333931-A-12;",
+                            "waiting: 4006381333948-B-3, 4006381333955;", "the same command goes on"})
+    EXPECT_NE(last.find(words), std::string::npos) << last;
+}
+
+TEST_F(TechnicianPage, AQueueIsShownRowByRowAndABadOneSaysWhy) {
+  post("/api/control", {{"client", "me"}});
+  write_week(folder_ / "bench");
   std::ofstream(folder_ / "bench/queues/bad.csv") << "barcode,name,lot,material,colour,note,spool\n,,,,,,x.json\n";
   const json queues = get("/api/state").at("queues");
   ASSERT_EQ(queues.size(), 2U);
   EXPECT_NE(queues[0].at("problem").get<std::string>().find("neither barcode nor name"), std::string::npos);
-  ASSERT_EQ(queues[1].at("spools").size(), 2U);
+  ASSERT_EQ(queues[1].at("spools").size(), 3U);
   EXPECT_EQ(queues[1]["spools"][0].at("state"), "complete");
   EXPECT_EQ(queues[1]["spools"][1].at("sample").at("name"), "blue");
   EXPECT_TRUE(queues[1]["spools"][1].at("state").is_null());

@@ -6,12 +6,14 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <thread>
 
 #include "rig/devices/clock.h"
 #include "station/documents/reader.h"
 #include "tests/places.h"
 #include "tests/station/commands/program.h"
+#include "tests/station/commands/simulated_hardware.h"
 #include "tests/station/session/hasty_bench.h"
 
 namespace {
@@ -102,6 +104,80 @@ TEST_F(QueueCapture, KilledInASpoolItCapturesThatOneToItsEndAndTheRest) {
   EXPECT_EQ(rest.status, 0) << rest.error;
   EXPECT_THAT(rest.out, HasSubstr("4711-A-1: captured to its end\n4712: captured\n4713: captured\n"));
   for (const char* session : {"4711-A-1", "4712", "4713"}) EXPECT_TRUE(verifies(session)) << session;
+}
+
+std::size_t count(const std::string& text, const std::string& word) {
+  std::size_t found = 0;
+  for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; ++at) ++found;
+  return found;
+}
+
+// A technician at a rig whose turntable and camera are other programs, with a table of three spools.
+struct QueueOnAWire : QueueCapture {
+  QueueOnAWire() {
+    write_queue(fixture("spools/silk_gold"));
+    json calibration = station::read_json_file(fixture("calibrations/simulated"));
+    calibration["utc"] = rig::SystemClock().utc();
+    calibration.erase("sensor");
+    station::write_json_file(folder / "calibration/calibration.json", calibration);
+    json rig = station::read_json_file(fixture("rigs/simulated"));
+    const json wire = station::read_json_file(fixture("rigs/simulated_wire_grbl"));
+    for (const char* key : {"camera", "camera_connection", "turntable", "turntable_setup"}) rig[key] = wire[key];
+    rig["camera_connection"].update({{"port", camera.camera_port()}, {"width_px", 600}, {"height_px", 400}});
+    rig["turntable_setup"].update({{"line", "pty"}, {"port", (folder / "turntable").string()}});
+    rig["operator"] = "console";
+    station::write_json_file(folder / "rig.json", rig);
+  }
+  // One of the wire's two devices; the other one is in process, where nobody asks it.
+  static json with_one_device(const char* device, const char* setup) {
+    json rig = station::read_json_file(fixture("rigs/simulated_wire_grbl"));
+    rig[device] = "simulated";
+    rig.erase(setup);
+    rig["simulation"]["turntable"]["speed_deg_s"] = 300;  // in real time
+    return rig;
+  }
+  void plug_in_turntable(const std::string& faults = {}) {
+    turntable.emplace(with_one_device("camera", "camera_connection"), faults);
+    fs::remove(folder / "turntable");
+    fs::create_symlink(turntable->turntable_port(), folder / "turntable");
+  }
+  // Every question is answered with `answer` on a line of its own, often enough.
+  ProgramResult capture(const std::string& options, const std::string& answer) const {
+    std::string command = "yes '" + answer + "' | head -n 40 | " + THREADSTATION_PROGRAM;
+    for (const std::string& word : arguments())
+      if (word != "--unattended" && word != "--quiet") command += " '" + word + "'";
+    return station_test::run_shell(command + " " + options);
+  }
+  station_test::SimulatedHardware camera{with_one_device("turntable", "turntable_setup")};
+  std::optional<station_test::SimulatedHardware> turntable;
+};
+
+TEST_F(QueueOnAWire, ATurntableThatIsUnpluggedPausesTheQueueAndTheSameCommandGoesOn) {
+  const json unplugged{{"at_operation", 12}, {"fault", "unplug"}};
+  json faults = station::read_json_file(fixture("faults/example"));
+  faults.update({{"turntable", json::array({unplugged})}, {"camera", json::array()}});
+  station::write_json_file(folder / "faults.json", faults);
+  plug_in_turntable(folder / "faults.json");
+  const char* pause = "the queue is paused by a fault of the bench: ";
+  const char* waiting = "done: none; waiting: 4711-A-1, 4712, 4713; when the bench is put right, the same command";
+  const ProgramResult lost = capture("--quiet", "");
+  EXPECT_EQ(lost.status, 1);
+  EXPECT_EQ(lost.error_lines(), 1) << lost.error;
+  for (const char* words : {pause, "unplugged", waiting}) EXPECT_THAT(lost.error, HasSubstr(words));
+  EXPECT_EQ(count(lost.out, "Put it on the holder."), 1U) << lost.out;
+  EXPECT_THAT(lost.out, HasSubstr("4712: waits\n4713: waits\n"));
+
+  turntable.reset();  // and as the technician's page runs it
+  const ProgramResult gone = capture("--json", R"({"id": 1, "answer": "done"})");
+  EXPECT_EQ(gone.status, 1);
+  for (const char* words : {pause, "could not be opened", waiting}) EXPECT_THAT(gone.error, HasSubstr(words));
+  EXPECT_EQ(count(gone.out, "Put it on the holder."), 1U) << gone.out;
+
+  plug_in_turntable();  // the camera sees an empty bench: a fault of each spool
+  const ProgramResult refused = capture("--quiet", "");
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.error, testing::Not(HasSubstr("paused"))) << refused.error;
+  EXPECT_EQ(count(refused.out, "Put it on the holder."), 3U) << refused.out;
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
-// Tables of spools and the names of their sessions.
+// Tables of spools, the names of their sessions, and which faults a queue goes on after.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "station/bench/bench_fault.h"
 #include "station/documents/disk/file_name.h"
 #include "station/documents/text_table.h"
 #include "station/session/spool_queue.h"
@@ -79,6 +82,73 @@ TEST_F(Queue, EveryNameThatPeopleWriteBecomesASafeFileNameOrIsRefused) {
   EXPECT_THAT(refusal("name,spool\nCON,a.json\n"), HasSubstr("Windows"));
   EXPECT_THAT(refusal("name,spool\n...,a.json\n"), HasSubstr("empty"));
   EXPECT_THAT(refusal("name,spool\n" + std::string(300, 'x') + ",a.json\n"), HasSubstr("300 characters"));
+}
+
+// A queue of three spools on fake devices; what goes wrong is the test's.
+struct FakeQueue : Queue {
+  FakeQueue() {
+    write_text(folder / "spools.csv", "barcode,spool\n4711,a.json\n4712,\n4713,\n");
+    std::filesystem::create_directory(folder / "lab");
+  }
+  // Every spool is asked for, and captured with `on_move` on its turntable.
+  std::vector<QueueResult> run(const std::function<void(const std::string& session)>& on_move) {
+    asked.clear();
+    const auto next = [&](const QueuedSpool& spool) {
+      asked.push_back(spool.session);
+      return true;
+    };
+    const auto capture = [&](const CaptureRequest& request) {
+      FakeStation station;
+      station.turntable.on_move = [&](double) { on_move(request.session.filename()); };
+      return station.run(request.session, small_plan());
+    };
+    const CaptureRequest request{.session = folder / "lab", .new_session = NewSession{}};
+    return capture_queue(folder / "spools.csv", request, next, capture);
+  }
+  static std::vector<QueueOutcome> outcomes(const std::vector<QueueResult>& results) {
+    std::vector<QueueOutcome> found;
+    std::ranges::transform(results, std::back_inserter(found), &QueueResult::outcome);
+    return found;
+  }
+  std::vector<std::string> asked;
+};
+
+TEST_F(FakeQueue, AFaultOfTheBenchAsksForNoFurtherSpoolAndTheSameCallGoesOnFromThere) {
+  using enum QueueOutcome;
+  const auto lost = run([](const std::string& session) {
+    if (session == "4712") throw BenchFault("the turntable was unplugged; plug it in");
+  });
+  EXPECT_THAT(asked, testing::ElementsAre("4711", "4712"));
+  EXPECT_THAT(outcomes(lost), testing::ElementsAre(captured, bench_fault, waiting));
+  EXPECT_EQ(
+      pause_line(lost).value_or(""),
+      "the queue is paused by a fault of the bench: the turntable was unplugged; plug it in; done: 4711; waiting: "
+      "4712, 4713; when the bench is put right, the same command goes on from here");
+  const auto plugged_in = run([](const std::string&) {});
+  EXPECT_THAT(asked, testing::ElementsAre("4712", "4713"));
+  EXPECT_THAT(outcomes(plugged_in), testing::ElementsAre(kept, resumed, captured));
+  EXPECT_FALSE(pause_line(plugged_in));
+}
+
+TEST_F(FakeQueue, WhatIsCompleteAlreadyDoesNotWaitForTheBench) {
+  using enum QueueOutcome;
+  run([](const std::string& session) {
+    if (session != "4713") throw std::runtime_error("the picture is out of focus");
+  });
+  const auto lost = run([](const std::string&) { throw BenchFault("the camera is gone"); });
+  EXPECT_THAT(outcomes(lost), testing::ElementsAre(bench_fault, waiting, kept));
+  EXPECT_THAT(pause_line(lost).value_or(""), HasSubstr("done: 4713; waiting: 4711, 4712;"));
+}
+
+TEST_F(FakeQueue, AFaultOfOneSpoolHoldsUpNoOther) {
+  using enum QueueOutcome;
+  const auto one_refused = run([](const std::string& session) {
+    if (session == "4711") throw std::runtime_error("the picture is out of focus");
+    if (session == "4712") throw rig::Declined("the person declined");
+  });
+  EXPECT_THAT(asked, testing::ElementsAre("4711", "4712", "4713"));
+  EXPECT_THAT(outcomes(one_refused), testing::ElementsAre(failed, failed, captured));
+  EXPECT_FALSE(pause_line(one_refused));
 }
 
 }  // namespace

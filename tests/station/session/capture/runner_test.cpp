@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "station/bench/bench_fault.h"
 #include "station/session/record/verify.h"
 #include "tests/station/session/capture/runner_test.h"
 
@@ -143,6 +144,27 @@ TEST_F(RunnerTest, APlatformThatReadsAnotherAngleIsAnError) {
   EXPECT_THAT(message_of([&] { fake.run(path, small_plan()); }),
               HasSubstr("asked to turn to -35.000000 deg and reads -32.13"));
   EXPECT_EQ(count_events(path, "picture"), 0U);
+  EXPECT_THROW(fake.run(path, small_plan()), BenchFault);
+}
+
+TEST_F(RunnerTest, ACameraThatKeepsItsSettingsIsAFaultOfTheBench) {
+  fake.camera.stuck_shutter = true;
+  fake.camera.now.exposure_s = 8;
+  EXPECT_THROW(fake.run(path, small_plan()), BenchFault);
+}
+
+TEST_F(RunnerTest, APictureThatDoesNotServeIsAFaultOfTheBenchOnlyWhereItShowsThatTheBenchMoved) {
+  for (const char* check : {"angle", "bench", "exposure", "focus", "lamp", "orientation", "tags"}) {
+    fake.options.inspect = [&](const PlanStep&, const rig::Picture&, double) { return bad_verdict(check, "bad"); };
+    bool bench = false;
+    try {
+      fake.run(path, small_plan());
+    } catch (const BenchFault&) {
+      bench = true;
+    } catch (const std::runtime_error&) {
+    }
+    EXPECT_EQ(bench, check == std::string("angle") || check == std::string("bench")) << check;
+  }
 }
 
 TEST_F(RunnerTest, AStalePictureOfTheCameraIsRefused) {
