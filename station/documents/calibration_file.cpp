@@ -263,4 +263,9 @@ RigCalibration read_calibration(const std::filesystem::path& folder_or_file) {
   return parse_calibration(read_json_file(file), file.string());
 }
 
+void fill_in_sensor_maps(const std::filesystem::path& folder, RigCalibration& calibration) {
+  const calibration::Lens& lens = calibration.lens.lens;
+  if (calibration.sensor) fill_in_sensor_maps(folder, {lens.width_px, lens.height_px}, *calibration.sensor);
+}
+
 }  // namespace station

@@ -47,5 +47,7 @@ RigCalibration parse_calibration(const nlohmann::json& document, const std::stri
 // The path of a calibration's document: `folder_or_file` itself, or calibration.json in it when it is a folder.
 std::filesystem::path calibration_document(const std::filesystem::path& folder_or_file);
 RigCalibration read_calibration(const std::filesystem::path& folder_or_file);  // errors: those of reader.h
+// Fills in the maps of the calibration's sensor, if it has one, from `folder`. Errors: those of fill_in_sensor_maps.
+void fill_in_sensor_maps(const std::filesystem::path& folder, RigCalibration& calibration);
 
 }  // namespace station

@@ -26,27 +26,28 @@ json to_json(const SensorSection& sensor) {
   json shutter = json::array();
   for (const calibration::ShutterTime& time : response.shutter)
     shutter.push_back({{"nominal_s", time.nominal_s}, {"true_s", time.true_s}, {"sigma_s", time.sigma_s}});
-  return {{"iso", response.iso},
-          {"f_number", response.f_number},
-          {"bias_dn", sensor.bias_dn},
-          {"dark_dn_per_s", sensor.dark_dn_per_s},
-          {"gain_dn_per_e", response.gain_dn_per_e},
-          {"gain_sigma", response.gain_sigma},
-          {"read_noise_e", response.read_noise_e},
-          {"read_noise_sigma", response.read_noise_sigma},
-          {"nonlinearity", response.nonlinearity},
-          {"nonlinearity_sigma", response.nonlinearity_sigma},
-          {"linearity_residual", sensor.linearity_residual},
-          {"shutter", shutter},
-          {"bad_pixels", {{"hot", sensor.bad.hot}, {"noisy", sensor.bad.noisy}, {"dead", sensor.bad.dead}}},
-          {"dust_depth", sensor.dust_depth},
-          {"flat_noise", sensor.flat_noise},
-          {"lamp_flicker", sensor.lamp_flicker},
-          {"lamp_drift_per_min", sensor.lamp_drift_per_min},
-          {"lamp_drift_sigma_per_min", sensor.lamp_drift_sigma_per_min},
-          {"maps_sha256", sensor.maps_sha256},
-          {"bad_pixels_sha256", sensor.bad_pixels_sha256},
-          {"gates", to_json(sensor.gates)}};
+  json section{{"iso", response.iso},
+               {"f_number", response.f_number},
+               {"bias_dn", sensor.bias_dn},
+               {"dark_dn_per_s", sensor.dark_dn_per_s},
+               {"gain_dn_per_e", response.gain_dn_per_e},
+               {"gain_sigma", response.gain_sigma},
+               {"read_noise_e", response.read_noise_e},
+               {"read_noise_sigma", response.read_noise_sigma},
+               {"nonlinearity", response.nonlinearity},
+               {"nonlinearity_sigma", response.nonlinearity_sigma},
+               {"linearity_residual", sensor.linearity_residual},
+               {"shutter", shutter},
+               {"bad_pixels", {{"hot", sensor.bad.hot}, {"noisy", sensor.bad.noisy}, {"dead", sensor.bad.dead}}},
+               {"dust_depth", sensor.dust_depth},
+               {"flat_noise", sensor.flat_noise},
+               {"lamp_flicker", sensor.lamp_flicker},
+               {"lamp_drift_per_min", sensor.lamp_drift_per_min},
+               {"lamp_drift_sigma_per_min", sensor.lamp_drift_sigma_per_min},
+               {"gates", to_json(sensor.gates)}};
+  if (has_map_files(sensor))
+    section.update({{"maps_sha256", sensor.maps_sha256}, {"bad_pixels_sha256", sensor.bad_pixels_sha256}});
+  return section;
 }
 
 SensorSection parse_sensor_section(ObjectReader reader) {
@@ -79,8 +80,10 @@ SensorSection parse_sensor_section(ObjectReader reader) {
   sensor.lamp_flicker = reader.number("lamp_flicker", 0, kMost);
   sensor.lamp_drift_per_min = reader.number("lamp_drift_per_min", -kMost, kMost);
   sensor.lamp_drift_sigma_per_min = reader.number("lamp_drift_sigma_per_min", 0, kMost);
-  sensor.maps_sha256 = reader.text("maps_sha256");
-  sensor.bad_pixels_sha256 = reader.text("bad_pixels_sha256");
+  if (reader.has("maps_sha256") || reader.has("bad_pixels_sha256")) {  // both or none
+    sensor.maps_sha256 = reader.text("maps_sha256");
+    sensor.bad_pixels_sha256 = reader.text("bad_pixels_sha256");
+  }
   sensor.gates = parse_gates(reader, "gates");
   reader.finish();
   return sensor;
@@ -98,12 +101,23 @@ void write_sensor_maps(const std::filesystem::path& folder, SensorSection& senso
   sensor.bad_pixels_sha256 = sha256_of_file(folder / kBadPixelsFile);
 }
 
-void load_sensor_maps(const std::filesystem::path& folder, SensorSection& sensor) {
+bool has_map_files(const SensorSection& sensor) {
+  return !sensor.maps_sha256.empty();
+}
+
+void fill_in_sensor_maps(const std::filesystem::path& folder, const cv::Size& size, SensorSection& sensor) {
+  calibration::SensorMaps& maps = sensor.response.maps;
+  if (!has_map_files(sensor)) {
+    maps = {.bias_dn = cv::Mat1f(size, static_cast<float>(sensor.bias_dn)),
+            .dark_dn_per_s = cv::Mat1f(size, static_cast<float>(sensor.dark_dn_per_s)),
+            .flat = cv::Mat1f(size, 1.0F),
+            .bad = cv::Mat1b(size, uchar{0})};
+    return;
+  }
   require_same(folder / kSensorMapsFile, sensor.maps_sha256);
   require_same(folder / kBadPixelsFile, sensor.bad_pixels_sha256);
   std::array<cv::Mat1f, 3> planes;
   cv::split(renderer::read_exr(folder / kSensorMapsFile), planes.data());
-  calibration::SensorMaps& maps = sensor.response.maps;
   maps.bias_dn = planes[0];
   maps.dark_dn_per_s = planes[1];
   maps.flat = planes[2];

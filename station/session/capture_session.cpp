@@ -163,9 +163,9 @@ CalibrationFiles calibration_files(const std::filesystem::path& place, const Rig
   const std::string text = read_json_file(document).dump(2) + "\n";
   const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
   CalibrationFiles files{{"calibration.json", {bytes, bytes + text.size()}}};
-  if (calibration.sensor) {
-    SensorSection sensor = *calibration.sensor;
-    load_sensor_maps(folder, sensor);  // whole and of this calibration, or refused
+  if (calibration.sensor && has_map_files(*calibration.sensor)) {
+    RigCalibration whole = calibration;
+    fill_in_sensor_maps(folder, whole);  // whole and of this calibration, or refused
     for (const char* name : {kSensorMapsFile, kBadPixelsFile}) files[name] = bytes_of_file(folder / name);
   }
   return files;

@@ -80,7 +80,7 @@ class CaptureChecks::Work {
  public:
   Work(const SessionFolder& session, const SessionFile& asked, const RigCalibration& calibration, bool in_order)
       : session_(session), asked_(asked), calibration_(calibration), in_order_(in_order), lamp_(asked, calibration_) {
-    if (calibration_.sensor) load_sensor_maps(session.path() / "calibration", *calibration_.sensor);
+    fill_in_sensor_maps(session.path() / "calibration", calibration_);
     for (const auto& [id, record] : taken_pictures(session.records()))
       if (record.kind == StepKind::view) remember_sharpness(record.lamp, record.mounting, record.verdict);
   }

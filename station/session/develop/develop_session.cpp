@@ -315,7 +315,7 @@ DevelopedViews develop_session(const std::filesystem::path& session, ProgressSty
   make_folder(session / "linear");
   make_folder(session / "masks");
   RigCalibration calibration = read_calibration(session / "calibration");
-  if (calibration.sensor) load_sensor_maps(session / "calibration", *calibration.sensor);
+  fill_in_sensor_maps(session / "calibration", calibration);
   const Pictures pictures = taken_pictures(read_journal(session / "journal.jsonl").records);
   const std::map<rig::Mounting, MountedHolder> mounted = mounted_holders(session, asked, pictures, calibration);
   std::vector<PlanStep> views;

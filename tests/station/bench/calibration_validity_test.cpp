@@ -118,12 +118,17 @@ TEST(CalibrationValidity, AFailedGateIsRefusedWithItsReasonUnlessItIsAccepted) {
   EXPECT_EQ(refusal(c, "2026-11-21T08:00:00Z", true), "");
 }
 
+// The simulated bench does not age.
+TEST(CalibrationValidity, TheReadyCalibrationIsOfTheReadyRigForYears) {
+  EXPECT_NO_THROW(require_valid(read_calibration(std::string(FIXTURES_DIR) + "/calibrations/simulated.json"),
+                                read_rig(std::string(FIXTURES_DIR) + "/rigs/simulated.json"), "2036-01-01T00:00:00Z",
+                                false));
+}
+
 // Not always called calibration.json.
 TEST(CalibrationFiles, AreThoseOfTheDocumentThatWasGiven) {
   const std::string document = std::string(FIXTURES_DIR) + "/calibrations/simulated.json";
-  RigCalibration calibration = read_calibration(document);
-  calibration.sensor.reset();  // its maps are not beside the document
-  const CalibrationFiles files = calibration_files(document, calibration);
+  const CalibrationFiles files = calibration_files(document, read_calibration(document));
   ASSERT_EQ(files.size(), 1U);
   const auto& bytes = files.at("calibration.json");
   const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());

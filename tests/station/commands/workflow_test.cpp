@@ -61,7 +61,7 @@ TEST_F(Workflow, CalibrationFindsTheBenchAsItIs) {
 TEST_F(Workflow, CalibrationFindsTheSensorAsItIs) {
   station::RigCalibration found = station::read_calibration(path("calibration"));
   ASSERT_TRUE(found.sensor);
-  station::load_sensor_maps(path("calibration"), *found.sensor);
+  station::fill_in_sensor_maps(path("calibration"), found);
   const rig::BenchTruth truth = station::read_rig(path("rig.json")).simulation->truth;
   const calibration::SensorResponse& response = found.sensor->response;
   EXPECT_NEAR(response.gain_dn_per_e / (15871 / truth.sensor.full_well_e), 1, 0.01);
