@@ -25,9 +25,10 @@ class PtyLine final : public ByteLine {
     if (!opened || flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
       const std::string why = opened ? "is used by another program; close that one"
                                      : std::string("could not be opened (") + std::strerror(errno) +
-                                           "); start \"threadstation simulate-hardware\" and use the port it prints";
+                                           "); start the program behind it and use the port that it prints "
+                                           "(\"threadstation simulate-hardware\" is one with a simulated turntable)";
       if (opened) ::close(descriptor_);
-      throw std::runtime_error("the simulated turntable's port " + path_ + " " + why);
+      throw std::runtime_error("the pseudo-terminal " + path_ + " " + why);
     }
     termios settings{};
     if (tcgetattr(descriptor_, &settings) == 0) {
@@ -54,8 +55,8 @@ class PtyLine final : public ByteLine {
     const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
     if (written < 0 && errno != EAGAIN) throw Unplugged(unplugged());
     if (written != static_cast<ssize_t>(bytes.size())) {
-      throw std::runtime_error("the simulated turntable on " + path_ +
-                               " takes no more commands; start it again, then home it");
+      throw std::runtime_error("the turntable on the pseudo-terminal " + path_ +
+                               " takes no more commands; start the program behind it again, then home it");
     }
   }
 
@@ -72,8 +73,8 @@ class PtyLine final : public ByteLine {
   }
 
   std::string unplugged() const {
-    return "the turntable on " + path_ +
-           " was unplugged or switched off; plug it in, put its mark to the front and home it again";
+    return "the turntable on the pseudo-terminal " + path_ +
+           " was unplugged or switched off; start the program behind it again, put its mark to the front and home it";
   }
 
   std::string path_;

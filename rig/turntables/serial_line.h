@@ -1,5 +1,6 @@
 // The two kinds of line to a device file: a serial port, opened through libserialport, and a pseudo-terminal with
-// simulated firmware behind it, which that library refuses. Both are opened for this program alone.
+// another program behind it (simulated firmware, say), which that library refuses. Both are opened for this program
+// alone.
 #pragma once
 
 #include <memory>

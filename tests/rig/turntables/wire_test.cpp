@@ -163,6 +163,24 @@ TEST_P(Wire, ItIsTakenForOneProgramAlone) {
   EXPECT_THAT(refusal([this] { open_line(line(), server->path()); }), HasSubstr("used by another program; close"));
 }
 
+// Whatever program is behind a pseudo-terminal: only what threadstation itself starts is known to be simulated.
+TEST(PtyLine, IsCalledAPseudoTerminalAndNotWhatMayBeBehindIt) {
+  Rig rig(Protocol::grbl);
+  const auto server = rig::serve_on_pty(rig.port);
+  const auto open = rig::open_pty_line(server->path());
+  const std::string used = refusal([&] { rig::open_pty_line(server->path()); });
+  const std::string missing = refusal([] { rig::open_pty_line("/dev/pts/none"); });
+  const std::string full = refusal([&] { open->write(std::string(1 << 20, '?')); });
+  rig.port->unplug();
+  const std::string gone = refusal([&] {
+    while (true) open->read(3600);
+  });
+  for (const std::string& said : {used, missing, full, gone}) {
+    EXPECT_THAT(said, HasSubstr("pseudo-terminal /dev/pts/"));
+    EXPECT_THAT(said, testing::Not(HasSubstr("the simulated turntable")));
+  }
+}
+
 TEST_P(Wire, APlugPulledInTheMiddleOfAMoveIsSaidAndAnotherPortIsFoundForHoming) {
   const auto table = rig.make_turntable();
   table->home();
