@@ -87,6 +87,7 @@ TEST(BenchFaults, AreNotWhatThePersonDeclinesWhoTurnsThePlatform) {
 // One that is not there when it is opened, and one that refuses what it is asked.
 TEST(BenchFaults, AreThoseOfTheDevicesThatARigFileNames) {
   RigFile wired = read_rig(std::string(FIXTURES_DIR) + "/rigs/grbl_sony_usb.json");
+  wired.operator_driver = "simulated";
   wired.turntable_wire->line = TurntableWire::Line::pty;
   wired.turntable_wire->port.port = "/dev/pts/none";
   EXPECT_THROW(open_turntable(wired, nullptr), BenchFault);

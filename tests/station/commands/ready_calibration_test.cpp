@@ -50,10 +50,10 @@ void add_calibrated(const Words& command, std::set<std::string>& found) {
 
 struct ReadyCalibration : testing::Test {
   ReadyCalibration() {
-    json rig = station::read_json_file(kFixtures + "/rigs/simulated.json");
-    rig["simulation"]["samples_per_pixel"] = 1;
-    rig["simulation"]["target_samples_per_pixel"] = 4;
-    station::write_json_file(folder / "rig.json", rig);
+    json document = station::read_json_file(kFixtures + "/rigs/simulated.json");
+    document["simulation"]["samples_per_pixel"] = 1;
+    document["simulation"]["target_samples_per_pixel"] = 4;
+    station::write_json_file(folder / "rig.json", document);
   }
   void run(const Words& words) {
     const ProgramResult result = run_threadstation(words);

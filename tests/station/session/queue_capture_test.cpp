@@ -124,10 +124,11 @@ struct QueueOnAWire : QueueCapture {
     const json wire = station::read_json_file(fixture("rigs/simulated_wire_grbl"));
     for (const char* key : {"camera", "camera_connection", "turntable", "turntable_setup"}) rig[key] = wire[key];
     rig["camera_connection"].update({{"port", camera.camera_port()}, {"width_px", 600}, {"height_px", 400}});
-    rig["turntable_setup"].update({{"line", "pty"}, {"port", (folder / "turntable").string()}});
+    rig["turntable_setup"].update({{"line", "pty"}, {"port", port.string()}});
     rig["operator"] = "console";
     station::write_json_file(folder / "rig.json", rig);
   }
+  ~QueueOnAWire() override { fs::remove(port); }
   // One of the wire's two devices; the other one is in process, where nobody asks it.
   static json with_one_device(const char* device, const char* setup) {
     json rig = station::read_json_file(fixture("rigs/simulated_wire_grbl"));
@@ -138,8 +139,8 @@ struct QueueOnAWire : QueueCapture {
   }
   void plug_in_turntable(const std::string& faults = {}) {
     turntable.emplace(with_one_device("camera", "camera_connection"), faults);
-    fs::remove(folder / "turntable");
-    fs::create_symlink(turntable->turntable_port(), folder / "turntable");
+    fs::remove(port);
+    fs::create_symlink(turntable->turntable_port(), port);
   }
   // Every question is answered with `answer` on a line of its own, often enough.
   ProgramResult capture(const std::string& options, const std::string& answer) const {
@@ -150,6 +151,8 @@ struct QueueOnAWire : QueueCapture {
   }
   station_test::SimulatedHardware camera{with_one_device("turntable", "turntable_setup")};
   std::optional<station_test::SimulatedHardware> turntable;
+  // It stays the turntable's when that one comes back at another port; rig files name ports below /dev.
+  const fs::path port = fs::path("/dev/shm") / folder.path().filename();
 };
 
 TEST_F(QueueOnAWire, ATurntableThatIsUnpluggedPausesTheQueueAndTheSameCommandGoesOn) {
