@@ -43,8 +43,9 @@ FamilyUnknowns unknowns_of(const ScatteringFamily& family);
 
 renderer::ScatteringModel model_at(const ScatteringFamily& family, const Eigen::VectorXd& unknowns);
 
-// Adds what the loss asks for besides agreement with the views; `unknowns` is the problem's only parameter block. Threads
-// pay for lobes' energies whose sum exceeds 1 at some angle, and for lambda_0(1) > lambda_0(0) [Xia 2025, eq. 6].
+// Adds what the loss asks for besides agreement with the views; `unknowns` is the problem's only parameter block.
+// Threads pay for lobes' energies whose sum exceeds 1 at some angle, and for lambda_0(1) > lambda_0(0) [Xia 2025,
+// eq. 6].
 void add_penalties(const ScatteringFamily& family, ceres::Problem& problem, double* unknowns);
 
 // A family's model at some unknowns, prepared to shade blocks.
@@ -65,7 +66,8 @@ renderer::ThreadParameters starting_thread();
 // width, a darker one with a narrow reflection.
 std::vector<renderer::ThreadParameters> other_starting_threads();
 
-// The numbers of fibers that a yarn is fitted with; the best fit is kept [Xia 2025, section 6: the model needs one given].
+// The numbers of fibers that a yarn is fitted with; the best fit is kept [Xia 2025, section 6: the model needs one
+// given].
 inline constexpr std::array<int, 5> kYarnFiberCounts{5, 10, 20, 40, 80};
 // The share of a yarn's cross-section that its fibers fill.
 inline constexpr double kYarnPacking = 0.45;

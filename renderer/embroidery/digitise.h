@@ -1,8 +1,10 @@
 // Line art as stitches, each line in its colour and in the order of drawing.
 //
-//   narrower than 0.8 mm | running stitches along the line, up to 2.5 mm long, shorter where it bends, a needle point at every
+//   narrower than 0.8 mm | running stitches along the line, up to 2.5 mm long, shorter where it bends, a needle point
+//                        | at every
 //                        | corner
-//   wider                | satin: to and fro across the line, as wide as the stroke, 0.35 mm from one thread to the next
+//   wider                | satin: to and fro across the line, as wide as the stroke, 0.35 mm from one thread to the
+//                        | next
 #pragma once
 
 #include <string>
@@ -12,8 +14,8 @@
 
 namespace renderer {
 
-// Neighbouring lines of one colour share a thread. Errors: std::runtime_error, one line naming `source`, when there would be
-// more than kMostStitches (stitch_curves.h).
+// Neighbouring lines of one colour share a thread. Errors: std::runtime_error, one line naming `source`, when there
+// would be more than kMostStitches (stitch_curves.h).
 Motif digitise(const LineArt& art, const std::string& source);
 
 }  // namespace renderer

@@ -16,7 +16,8 @@ struct EnvironmentLight {
   bool visible = true;   // seen by camera rays
 };
 
-// Errors: std::runtime_error with one line for a picture that is empty, or has values below zero or that are not numbers.
+// Errors: std::runtime_error with one line for a picture that is empty, or has values below zero or that are not
+// numbers.
 void check_radiances(const cv::Mat3f& picture);
 
 class EnvironmentMap {

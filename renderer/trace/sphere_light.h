@@ -1,5 +1,5 @@
-// One spherical light: where a direction meets it, and how to choose directions towards it, uniformly inside its cone. A
-// light that surrounds the point is seen in all directions.
+// One spherical light: where a direction meets it, and how to choose directions towards it, uniformly inside its cone.
+// A light that surrounds the point is seen in all directions.
 #pragma once
 
 #include <optional>

@@ -29,7 +29,8 @@ struct CameraLost : std::runtime_error {
 };
 
 // Connects to the camera, checks that it is ready (mode dial at M, manual focus, battery, card) and sets RAW. Errors:
-// std::runtime_error that names the menu entry or the cable to look at, or says what the camera lacks. The program must ignore SIGPIPE.
+// std::runtime_error that names the menu entry or the cable to look at, or says what the camera lacks. The program must
+// ignore SIGPIPE.
 std::unique_ptr<Camera> make_gphoto_camera(const GphotoSetup& setup);
 
 }  // namespace rig

@@ -24,9 +24,9 @@ struct FoundDevice {
 std::vector<FoundDevice> find_cameras();
 std::vector<FoundDevice> find_serial_ports();
 
-// Gives each port its links below `folder`/by-id (named for the adapter) and `folder`/by-path (named for the socket that
-// it is plugged into), and recommends one name: the first link that leads to no other port, whatever is plugged in. An
-// adapter without a serial number shares its by-id link with every other one of its kind.
+// Gives each port its links below `folder`/by-id (named for the adapter) and `folder`/by-path (named for the socket
+// that it is plugged into), and recommends one name: the first link that leads to no other port, whatever is plugged
+// in. An adapter without a serial number shares its by-id link with every other one of its kind.
 void name_for_good(std::vector<FoundDevice>& ports, const std::filesystem::path& folder = "/dev/serial");
 
 // Both, cameras first.

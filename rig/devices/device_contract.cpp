@@ -116,8 +116,8 @@ Stop stop_on_the_way(Turntable& turntable) {
   return stop;
 }
 
-// A very quick device may arrive before the stop reaches it, so there are several tries. A platform that a hand turns is
-// never seen on its way.
+// A very quick device may arrive before the stop reaches it, so there are several tries. A platform that a hand turns
+// is never seen on its way.
 Verdict stopping(Turntable& turntable, double tolerance_rad) {
   Stop stop;
   bool seen_turning = false;

@@ -36,8 +36,8 @@ class AskedPerson {
   // ended before anybody answered.
   virtual std::optional<std::string> ask(const Question& question) = 0;
 
-  // What the next questions are about. A terminal shows `drawing` at once. A program finds the members of `context` in every
-  // later question, until another call replaces them or makes them null: "step" and "of" (this is step n of m),
+  // What the next questions are about. A terminal shows `drawing` at once. A program finds the members of `context` in
+  // every later question, until another call replaces them or makes them null: "step" and "of" (this is step n of m),
   // "arrangement" (how the bench should stand).
   virtual void prepare(const nlohmann::json& context, const std::string& drawing) = 0;
 };
@@ -51,13 +51,13 @@ class Declined : public std::runtime_error {
 // Asks, and throws Declined when the person declines or the input ends.
 std::string ask_or_end(AskedPerson& asked, const Question& question);
 
-// The streams must outlive the person. At a terminal a line that is no choice's key is the text typed, or the first choice
-// where nothing may be typed; keys are read in either case.
+// The streams must outlive the person. At a terminal a line that is no choice's key is the text typed, or the first
+// choice where nothing may be typed; keys are read in either case.
 std::unique_ptr<AskedPerson> make_person_at_terminal(std::istream& in, std::ostream& out);
 
 // One line each way. A question, on `out`:
-//   {"question": {"id": 3, "text": ..., "choices": [{"answer": "done", "label": "Done"}, ...], "typed": ..., "remark": ...,
-//    "step": 2, "of": 17, "arrangement": {...}}}
+//   {"question": {"id": 3, "text": ..., "choices": [{"answer": "done", "label": "Done"}, ...], "typed": ...,
+//    "remark": ..., "step": 2, "of": 17, "arrangement": {...}}}
 // with "typed" and "remark" where the question has them, and the context that was prepared. Its answer, on `in`:
 //   {"id": 3, "answer": "done"}
 // Every question has an id of its own. A line that does not answer the open question is not taken, and `out` says so:

@@ -1,7 +1,8 @@
 // The part of a session that a person does: what stands on the bench, where the flashlight is, the room's light.
 //
 // World frame: +z up along the platform's axis, +x towards the camera, so +y is to the right as the camera sees it.
-// Frame of the board, the Spectralon target and the colour chart: +z out of the face, +x right and +y up for who looks at the face.
+// Frame of the board, the Spectralon target and the colour chart: +z out of the face, +x right and +y up for who looks
+// at the face.
 #pragma once
 
 #include <Eigen/Geometry>

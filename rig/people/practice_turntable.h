@@ -1,5 +1,5 @@
-// A platform that a person practises to turn on a simulated bench: the person is asked as on a real one, and the simulated
-// platform then turns to where the person says that it stands.
+// A platform that a person practises to turn on a simulated bench: the person is asked as on a real one, and the
+// simulated platform then turns to where the person says that it stands.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// What simulated camera bodies of every make have: dials, a shutter, a memory for pictures, a live view, and the answers
-// of plain PTP.
+// What simulated camera bodies of every make have: dials, a shutter, a memory for pictures, a live view, and the
+// answers of plain PTP.
 #pragma once
 
 #include <array>

@@ -20,7 +20,8 @@ class PtpipServer {
 };
 
 // A server that serves one host at a time from a thread of its own until it is destroyed, and turns others away; a
-// connection that says nothing keeps nobody waiting. `port` 0 takes a free one. Throws std::runtime_error when the port cannot be had.
+// connection that says nothing keeps nobody waiting. `port` 0 takes a free one. Throws std::runtime_error when the port
+// cannot be had.
 std::unique_ptr<PtpipServer> serve_on_ptpip(SimulatedBody& camera, int port = 0, CameraFaultPlan plan = {});
 
 }  // namespace rig

@@ -1,10 +1,11 @@
-// The writer of the simulated camera's files: uncompressed TIFF-based raw files, 14 bits in 16, which raw readers take for
-// those of an ILCE-7M2, or DNG files with the name of a Canon or Nikon camera, whose own formats hold compressed pixels.
-// A reader returns the mosaic and the levels exactly as they were given here.
+// The writer of the simulated camera's files: uncompressed TIFF-based raw files, 14 bits in 16, which raw readers take
+// for those of an ILCE-7M2, or DNG files with the name of a Canon or Nikon camera, whose own formats hold compressed
+// pixels. A reader returns the mosaic and the levels exactly as they were given here.
 //
-// Layout: little endian; directory 0 names the camera and points to a sub-directory with the colour filter array and its
-// levels (Sony's own: 0x7310 black, 0x7313 white balance, 0x787f white; or DNG's) and to an EXIF directory with the exposure. A
-// genuine camera writes compressed rows, masked margins and a maker note as well; none of these is imitated.
+// Layout: little endian; directory 0 names the camera and points to a sub-directory with the colour filter array and
+// its levels (Sony's own: 0x7310 black, 0x7313 white balance, 0x787f white; or DNG's) and to an EXIF directory with the
+// exposure. A genuine camera writes compressed rows, masked margins and a maker note as well; none of these is
+// imitated.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// A simulated camera body that answers PTP operations as its make does: identity, settings, release, pictures waiting in
-// its memory, live view. Its pictures come from a camera of the simulated bench.
+// A simulated camera body that answers PTP operations as its make does: identity, settings, release, pictures waiting
+// in its memory, live view. Its pictures come from a camera of the simulated bench.
 //
 // Sony (ILCE-7M2): shutter, aperture and ISO are set by relative steps, as in cameras of that generation; the shutter
 // steps through libgphoto2's own table, which has the order of the real dial. Canon (EOS 6D): settings and pictures are

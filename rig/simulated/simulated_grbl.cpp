@@ -17,9 +17,10 @@ constexpr std::size_t kLongestLine = 80;
 constexpr int kOffsetEvery = 10, kOverridesEvery = 20;  // the offset is in every tenth report, for example
 
 struct Block {
-  double target_steps;
+  double from_steps, target_steps;
   double speed_deg_s;
   bool jog;
+  double way_steps() const { return target_steps - from_steps; }
 };
 
 enum class State { idle, run, hold, jog, alarm, home };
@@ -216,18 +217,13 @@ class SimulatedGrbl final : public SimulatedController {
   // How many blocks from the first on lead in one direction: the motor runs through them without slowing down.
   std::size_t joined_blocks() const {
     std::size_t joined = 1;
-    double way = planner_[0].target_steps - motor_.counted_steps();
-    for (; joined < planner_.size(); ++joined) {
-      const double next = planner_[joined].target_steps - planner_[joined - 1].target_steps;
-      if (way * next <= 0) break;
-      way = next;
-    }
+    while (joined < planner_.size() && planner_[0].way_steps() * planner_[joined].way_steps() > 0) ++joined;
     return joined;
   }
 
   // Whether the motor has left a block that it ran through behind.
   bool passed(const Block& block) const {
-    return (*going_to_ - block.target_steps) * (motor_.counted_steps() - block.target_steps) >= 0;
+    return block.way_steps() * (motor_.counted_steps() - block.target_steps) >= 0;
   }
 
   void answer(const std::string& line) {
@@ -345,7 +341,8 @@ class SimulatedGrbl final : public SimulatedController {
       return std::nullopt;
     }
     const double limit_deg_s = settings_.at(110) / 60;
-    planner_.push_back({.target_steps = std::round(target_deg * settings_.at(100)),
+    planner_.push_back({.from_steps = std::round(planned_deg() * settings_.at(100)),
+                        .target_steps = std::round(target_deg * settings_.at(100)),
                         .speed_deg_s = code.rapid ? limit_deg_s : std::min(limit_deg_s, code.feed_deg_min / 60),
                         .jog = jog});
     return 0;

@@ -181,8 +181,8 @@ class Nikon final : public SimulatedBody {
     return {};
   }
 
-  // What happened since the last question: properties that changed, and a picture that is ready. The next picture is told
-  // of when this one was fetched.
+  // What happened since the last question: properties that changed, and a picture that is ready. The next picture is
+  // told of when this one was fetched.
   std::string events() {
     std::uint16_t count = 0;
     PtpWriter list;

@@ -1,6 +1,7 @@
 // GRBL 1.1 as a motion controller. Moves are "G53 G1": absolute in machine coordinates whatever the modal state is, so
-// the position survives the reset that ends a stop (a work offset would not), and no faster than a stop allows. The "ok" of a move only says that it was
-// planned, so nothing is concluded from it: only the reported position tells whether the platform has arrived.
+// the position survives the reset that ends a stop (a work offset would not), and no faster than a stop allows. The
+// "ok" of a move only says that it was planned, so nothing is concluded from it: only the reported position tells
+// whether the platform has arrived.
 
 #include <algorithm>
 #include <array>

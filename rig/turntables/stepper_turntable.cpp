@@ -50,8 +50,7 @@ class StepperTurntable final : public Turntable {
         return;
       }
       controller()->start_home();
-      wait_until_idle();
-      zero_steps_ = standing_steps();
+      zero_steps_ = wait_until_idle();
       if (setup_.home_by == HomeBy::here && setup_.memory) return_from_where_it_was_left(zero_steps_);
       zero_known_ = true;
     });
@@ -259,10 +258,18 @@ class StepperTurntable final : public Turntable {
         true);
   }
 
-  void wait_until_idle() {
+  // The place where the platform stands after homing, read twice.
+  std::int64_t wait_until_idle() {
+    std::optional<std::int64_t> before;
     try {
-      watch([](const MotionStatus& status) { return status.motion == Motion::idle; }, false);
+      const std::int64_t steps = watch(
+          [&](const MotionStatus& status) {
+            if (status.motion != Motion::idle) before.reset();
+            return status.motion == Motion::idle && std::exchange(before, status.steps) == status.steps;
+          },
+          false);
       state_ = TurntableState::idle;
+      return steps;
     } catch (const Stopped&) {
       throw PositionLost(kStoppedHoming);
     } catch (const PositionLost&) {

@@ -2,11 +2,12 @@
 // moves.
 //
 // An angle that is not finite or out of limits is refused before anything is sent. The platform stands at the nearest
-// whole step, which angle_rad() reads back. No place counts that the controller has not reported twice in a row. A move is
-// sent in pieces, the next one while the platform turns, so that the motor never has more than a second's way before it: a
-// program that is killed leaves a platform that stops by itself. A piece that got lost is repeated, three times at most. With backlash, every position is approached by
-// turning counter-clockwise. After silence, an alarm or a reset the position is unknown, and home() connects anew; with
-// `HomeBy::here` the platform is turned back from where its memory says that it was left.
+// whole step, which angle_rad() reads back. No place counts that the controller has not reported twice in a row. A move
+// is sent in pieces, the next one while the platform turns, so that the motor never has more than a second's way before
+// it: a program that is killed leaves a platform that stops by itself. A piece that got lost is repeated, three times
+// at most. With backlash, every position is approached by turning counter-clockwise. After silence, an alarm or a reset
+// the position is unknown, and home() connects anew; with `HomeBy::here` the platform is turned back from where its
+// memory says that it was left.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Whether a rig calibration may be used: it must be of this rig, lens, focus, camera body and aperture, young enough, and
-// have passed every gate.
+// Whether a rig calibration may be used: it must be of this rig, lens, focus, camera body and aperture, young enough,
+// and have passed every gate.
 //
 // Each function throws std::runtime_error with one line that says what was asked, what was found and what to do.
 #pragma once
@@ -12,8 +12,8 @@
 
 namespace station {
 
-// Checks everything that needs no picture. `utc_now` is written as "2026-11-21T10:20:30.123Z". With `accept_failed_gates`
-// the operator takes the responsibility for gates that failed; the rest is checked all the same.
+// Checks everything that needs no picture. `utc_now` is written as "2026-11-21T10:20:30.123Z". With
+// `accept_failed_gates` the operator takes the responsibility for gates that failed; the rest is checked all the same.
 void require_valid(const RigCalibration& calibration, const RigFile& rig, const std::string& utc_now,
                    bool accept_failed_gates);
 

@@ -22,16 +22,17 @@ renderer::Camera camera_of(const calibration::Lens& lens, const Eigen::Isometry3
 // The simulated bench's lens as calibration describes lenses.
 calibration::Lens lens_of(const rig::TrueLens& lens);
 
-// The grey of a raw picture: the mean of its demosaiced colours, linear, with the lens's distortion, nothing below zero.
+// The grey of a raw picture: the mean of its demosaiced colours, linear, with the lens's distortion, nothing below
+// zero.
 cv::Mat1f linear_grey(const calibration::SensorPicture& picture);
 
-// The calibrated lamp at one of its places, as the fit of the threads sees it. In front on the left its place is the rig
-// file's, and all else is calibrated.
+// The calibrated lamp at one of its places, as the fit of the threads sees it. In front on the left its place is the
+// rig file's, and all else is calibrated.
 inversion::NearLight lamp_in_holder(const RigCalibration& calibration, const RigFile& rig, rig::Lamp place,
                                     const Eigen::Isometry3d& holder_from_world);
 
-// The f-number that a picture was taken at: the file's own, or the one that every camera is asked for when the file does
-// not tell it, because the lens has no electronic aperture.
+// The f-number that a picture was taken at: the file's own, or the one that every camera is asked for when the file
+// does not tell it, because the lens has no electronic aperture.
 double f_number_of(const calibration::SensorPicture& picture);
 
 // True when the file's name ends as those of raw pictures do, in capitals or not.

@@ -1,5 +1,5 @@
-// Cloth wrapped on the black cylinder: what is seen of it, and what it is predicted to look like. The cylinder's frame (mm)
-// has its origin in the middle of its foot, and z up along its axis.
+// Cloth wrapped on the black cylinder: what is seen of it, and what it is predicted to look like. The cylinder's frame
+// (mm) has its origin in the middle of its foot, and z up along its axis.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,8 +21,8 @@ void add_cloth_on_cylinder(renderer::Scene& scene, const renderer::CylinderShape
 // anywhere. `camera` is in the cylinder's frame.
 int comparable_block_px(const renderer::YarnPatch& patch, const renderer::Camera& camera);
 
-// A mask that is 255 where the cylinder's side is seen and lit at angles of at least 15 degrees to its surface, away from
-// its rims; all of a highlight lies inside. Camera and light are in the cylinder's frame.
+// A mask that is 255 where the cylinder's side is seen and lit at angles of at least 15 degrees to its surface, away
+// from its rims; all of a highlight lies inside. Camera and light are in the cylinder's frame.
 cv::Mat1b lit_side(const renderer::CylinderShape& cylinder, const renderer::Camera& camera,
                    const Eigen::Vector3d& light_mm);
 

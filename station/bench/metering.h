@@ -23,9 +23,9 @@ struct Metering {
   bool converged = false;  // false: the most test pictures were taken and the choice still moved
 };
 
-// Takes test pictures until `choose` says done or the camera's nearest shutter time is the one just tested (its longest, for
-// example). `between` is called before each test picture and may throw to end the run. Errors: those of the camera;
-// std::runtime_error when `choose` asks for a time that is not finite and positive.
+// Takes test pictures until `choose` says done or the camera's nearest shutter time is the one just tested (its
+// longest, for example). `between` is called before each test picture and may throw to end the run. Errors: those of
+// the camera; std::runtime_error when `choose` asks for a time that is not finite and positive.
 Metering meter_exposure(rig::Camera& camera, const PlanStep& step, const rig::CameraSettings& first,
                         const ChooseExposure& choose, int most_test_pictures, const std::function<void()>& between);
 
@@ -33,8 +33,8 @@ Metering meter_exposure(rig::Camera& camera, const PlanStep& step, const rig::Ca
 // Errors: BenchFault when the camera reads back other settings (a dial, a mode that locks the shutter).
 rig::CameraSettings set_camera(rig::Camera& camera, const rig::CameraSettings& wanted);
 
-// Whether the ISO is equal, and shutter time and f-number agree within a sixth of a stop: cameras round what is engraved
-// (1/30 is 1/32 s). An f-number of 0, of a file whose lens does not tell it, agrees with any.
+// Whether the ISO is equal, and shutter time and f-number agree within a sixth of a stop: cameras round what is
+// engraved (1/30 is 1/32 s). An f-number of 0, of a file whose lens does not tell it, agrees with any.
 bool same_settings(const rig::CameraSettings& a, const rig::CameraSettings& b);
 
 std::string settings_text(const rig::CameraSettings& settings);  // "0.25 s, ISO 100, f/8"

@@ -29,8 +29,8 @@ long tags_of_holder(const PosePicture& picture, const calibration::TagLayout& ho
 // Whether enough of the holder's tags are in the picture for measure_holder.
 bool shows_holder(const PosePicture& picture, const calibration::TagLayout& holder);
 
-// The holder's place, from all pictures at once. Throws std::runtime_error when fewer than two of the holder's tags are seen in a picture, a tag is out of place, or
-// the bench does not stand as it was calibrated.
+// The holder's place, from all pictures at once. Throws std::runtime_error when fewer than two of the holder's tags are
+// seen in a picture, a tag is out of place, or the bench does not stand as it was calibrated.
 MountedHolder measure_holder(const std::vector<PosePicture>& pictures, const RigCalibration& calibration,
                              const RigFile& rig);
 

@@ -1,8 +1,8 @@
 // The place where a turntable without a home switch was left, in a file that the next program reads.
 //
-// A platform stays where it is whoever starts the next program, so the file belongs to the turntable and not to a folder
-// of sessions: $XDG_STATE_HOME/threadstation (~/.local/state/threadstation), one file for each port. Its key "turning" is true
-// when the program was ended in the middle of a move.
+// A platform stays where it is whoever starts the next program, so the file belongs to the turntable and not to a
+// folder of sessions: $XDG_STATE_HOME/threadstation (~/.local/state/threadstation), one file for each port. Its key
+// "turning" is true when the program was ended in the middle of a move.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,8 @@
 
 namespace station {
 
-// Whether a rig's turntable has no other way to know where it stands: one at a port of its own and without a home switch.
+// Whether a rig's turntable has no other way to know where it stands: one at a port of its own and without a home
+// switch.
 bool remembers_its_place(const RigFile& rig);
 
 // The file for a rig's turntable. Throws std::runtime_error when the rig names no port or there is no home folder.

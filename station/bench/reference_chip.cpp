@@ -14,9 +14,9 @@ constexpr double kUsedFraction = 0.7;     // of the chip's edge: away from its b
 constexpr double kBesideThreads_mm = 20;  // the upright edge carries the threads' turns in its middle
 constexpr int kFewestPixels = 30;
 
-// The factor of the place that views[first] is the first to be lit from. The mean of its series is taken to stand on the
-// straight line in time between the views before and after it, under the lamp's other place; without one after it, its
-// first to be as the one before.
+// The factor of the place that views[first] is the first to be lit from. The mean of its series is taken to stand on
+// the straight line in time between the views before and after it, under the lamp's other place; without one after it,
+// its first to be as the one before.
 double reading_at_strength_one(const std::vector<ChipView>& views, std::size_t first, double before, double before_s,
                                double other_at_strength_one) {
   double sum = 0, sum_s = 0;

@@ -16,8 +16,8 @@ struct SimulatedPorts {
 };
 
 // Starts what the rig file names with "line": "simulated" and "port": "simulated", hands over the ports, and serves
-// until `should_stop`. The pictures are of an empty bench in plain grey, with a mark that turns with the platform. Throws
-// std::runtime_error when the rig file names nothing of that kind.
+// until `should_stop`. The pictures are of an empty bench in plain grey, with a mark that turns with the platform.
+// Throws std::runtime_error when the rig file names nothing of that kind.
 void simulate_hardware(const RigFile& rig, const Faults& faults,
                        const std::function<void(const SimulatedPorts&)>& started,
                        const std::function<bool()>& should_stop);

@@ -25,7 +25,8 @@ Eigen::Array3d even_light_reflectance(const renderer::YarnPatch& patch, const re
 using AbsorptionCurves = std::array<inversion::AbsorptionCurve, 3>;  // one for each of the camera\'s channels
 
 // The curves through the colours (camera RGB) that the thread has at `count` absorptions, alike in all channels.
-// `colour_of` measures the thread with one of them. `done` is told the finished part. Errors: std::runtime_error when ctrl-C stops it.
+// `colour_of` measures the thread with one of them. `done` is told the finished part. Errors: std::runtime_error when
+// ctrl-C stops it.
 AbsorptionCurves absorption_curves(const renderer::ThreadParameters& thread, int count,
                                    const std::function<Eigen::Array3d(const renderer::ThreadParameters&)>& colour_of,
                                    const std::function<void(double)>& done);

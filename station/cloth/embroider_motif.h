@@ -1,5 +1,5 @@
-// A motif embroidered in a digitized thread: each colour keeps all of the thread but its absorption [Xia 2025, section 6,
-// figure 13], and is rendered on plain cloth under even light.
+// A motif embroidered in a digitized thread: each colour keeps all of the thread but its absorption [Xia 2025, section
+// 6, figure 13], and is rendered on plain cloth under even light.
 #pragma once
 
 #include <Eigen/Core>
@@ -48,9 +48,10 @@ struct Embroidery {
   std::string image;
 };
 
-// With a scene the picture is render_scene's, and the scene that it is of can be rendered again. Threads whose colour neither file nor request says keep the digitized thread's own. Ctrl-C stops it. Errors:
-// std::runtime_error with one line: those of motif_file.h, thread_file.h, stitch_curves.h and picture_destination.h, those of
-// render_scene, a picture of more than 100 million pixels.
+// With a scene the picture is render_scene's, and the scene that it is of can be rendered again. Threads whose colour
+// neither file nor request says keep the digitized thread's own. Ctrl-C stops it. Errors: std::runtime_error with one
+// line: those of motif_file.h, thread_file.h, stitch_curves.h and picture_destination.h, those of render_scene, a
+// picture of more than 100 million pixels.
 Embroidery embroider(const EmbroiderRequest& request);
 
 std::string describe(const Embroidery& embroidery);

@@ -7,8 +7,8 @@
 
 namespace station {
 
-// Errors: std::runtime_error, one line: no such file, another ending, more than 64 MiB, those of dst_file.h, pes_file.h,
-// svg_file.h and renderer::digitise.
+// Errors: std::runtime_error, one line: no such file, another ending, more than 64 MiB, those of dst_file.h,
+// pes_file.h, svg_file.h and renderer::digitise.
 renderer::Motif read_motif(const std::filesystem::path& file);
 
 }  // namespace station

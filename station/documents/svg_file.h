@@ -1,10 +1,9 @@
-// Drawings (SVG) as line art: what a drawing strokes in its stroke's colour, or what it only fills as the outline in the fill's
-// colour, in the drawing's order.
+// Drawings (SVG) as line art: what a drawing strokes in its stroke's colour, or what it only fills as the outline in
+// the fill's colour, in the drawing's order.
 //
-// Sizes are those of the page (width and height with their unit over the viewBox; without a unit 96 to the inch). Read are
-// path, line, polyline, polygon, rect, circle, ellipse in groups with transforms; presentation attributes, style attributes
-// and rules of single classes.
-// Format: w3.org/TR/SVG11
+// Sizes are those of the page (width and height with their unit over the viewBox; without a unit 96 to the inch). Read
+// are path, line, polyline, polygon, rect, circle, ellipse in groups with transforms; presentation attributes, style
+// attributes and rules of single classes. Format: w3.org/TR/SVG11
 #pragma once
 
 #include <string>
@@ -14,9 +13,9 @@
 
 namespace station {
 
-// Errors: std::runtime_error, one line naming `source`: no drawing, a length, transform, path or colour that cannot be read,
-// text, images and references (which have no lines of their own), gradients, nothing to sew, lines outside of 10 m, more
-// than 2 km of lines.
+// Errors: std::runtime_error, one line naming `source`: no drawing, a length, transform, path or colour that cannot be
+// read, text, images and references (which have no lines of their own), gradients, nothing to sew, lines outside of 10
+// m, more than 2 km of lines.
 renderer::LineArt parse_svg(std::string_view text, const std::string& source);
 
 }  // namespace station

@@ -10,8 +10,8 @@ namespace station {
 // all pixels count.
 double display_scale(const cv::Mat3f& linear, const cv::Mat1b& mask = {});
 
-// The mask's bounding box, grown by `margin_px` and then to the picture's own aspect ratio, inside the picture; the whole
-// picture when the mask is empty.
+// The mask's bounding box, grown by `margin_px` and then to the picture's own aspect ratio, inside the picture; the
+// whole picture when the mask is empty.
 cv::Rect threads_box(const cv::Mat1b& mask, int margin_px);
 
 // The picture as a screen shows it: sRGB, after multiplication by `scale`.

@@ -1,4 +1,5 @@
-// Pieces of a self-contained HTML page, which opens offline and runs no script: escaped text, embedded pictures, tables.
+// Pieces of a self-contained HTML page, which opens offline and runs no script: escaped text, embedded pictures,
+// tables.
 #pragma once
 
 #include <opencv2/core.hpp>

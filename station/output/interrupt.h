@@ -1,5 +1,5 @@
-// Ctrl-C, SIGTERM and SIGHUP (a closed terminal, a lost connection): long work asks between its steps whether they came,
-// and a moving platform is stopped by them. "Ctrl-C" stands for all three here.
+// Ctrl-C, SIGTERM and SIGHUP (a closed terminal, a lost connection): long work asks between its steps whether they
+// came, and a moving platform is stopped by them. "Ctrl-C" stands for all three here.
 #pragma once
 
 #include <functional>
@@ -15,9 +15,9 @@ int interrupts();  // how many came since then
 bool interrupted();
 
 // While it lives, the first ctrl-C calls `stop` at once from a thread of its own, whatever the rest of the
-// program is doing or waiting for, and the second one `stop_now`. The last of the two that is given is called again every
-// 50 ms: a move that was begun at the very moment is stopped as well. Needs watch_interrupts() before. What they throw
-// is dropped: they are called where nobody waits for it.
+// program is doing or waiting for, and the second one `stop_now`. The last of the two that is given is called again
+// every 50 ms: a move that was begun at the very moment is stopped as well. Needs watch_interrupts() before. What they
+// throw is dropped: they are called where nobody waits for it.
 class StopOnInterrupt {
  public:
   explicit StopOnInterrupt(std::function<void()> stop, std::function<void()> stop_now = {});

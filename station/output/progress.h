@@ -17,8 +17,8 @@ class ProgressDisplay {
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
-  // `done` of `total` units are finished; `label` says what comes now. The time left is guessed from the pace since the first
-  // call (what goes on from an earlier run does not begin at 0) unless it is given.
+  // `done` of `total` units are finished; `label` says what comes now. The time left is guessed from the pace since the
+  // first call (what goes on from an earlier run does not begin at 0) unless it is given.
   void show(int done, int total, const std::string& label, double seconds_left = -1);
   // A line that stays, from any thread.
   void note(const std::string& text);

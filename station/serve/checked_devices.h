@@ -8,8 +8,8 @@
 
 namespace station {
 
-// {"devices": [{"device", "passed" (null: never checked), "rows": [{"name", "passed", "what"}]}], "checked_ms": when, since
-// 1970; null: never}.
+// {"devices": [{"device", "passed" (null: never checked), "rows": [{"name", "passed", "what"}]}], "checked_ms": when,
+// since 1970; null: never}.
 nlohmann::json checked_devices(const Workspace& workspace, const RigFile& rig);
 
 }  // namespace station

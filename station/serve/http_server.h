@@ -33,8 +33,8 @@ class HttpServer {
   using Urgent = std::function<std::optional<HttpResponse>(const HttpRequest&)>;  // none: `handle` is to answer
   using Handle = std::function<HttpResponse(const HttpRequest&)>;  // what it throws becomes a 500 with the message
 
-  // Listens from now on; port 0: a free one. Errors: std::runtime_error with one line for an address or port that cannot
-  // be had.
+  // Listens from now on; port 0: a free one. Errors: std::runtime_error with one line for an address or port that
+  // cannot be had.
   HttpServer(const std::string& address, std::uint16_t port, Urgent urgent, Handle handle,
              const HttpLimits& limits = {});
   ~HttpServer();

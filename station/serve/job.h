@@ -1,8 +1,8 @@
-// One command of the program that the page has started: a process of its own, so that neither the page nor this server can
-// hold it up, and so that it goes on when both are gone. What it says is kept in two files.
+// One command of the program that the page has started: a process of its own, so that neither the page nor this server
+// can hold it up, and so that it goes on when both are gone. What it says is kept in two files.
 //
-// It speaks JSON: its questions come on its output and are answered on its input (rig/people/asked_person.h). Ctrl-C is a
-// signal.
+// It speaks JSON: its questions come on its output and are answered on its input (rig/people/asked_person.h). Ctrl-C is
+// a signal.
 #pragma once
 
 #include <filesystem>
@@ -25,8 +25,8 @@ struct JobRequest {
 
 class Job {
  public:
-  // Starts it. `changed` is called from another thread after each change. Errors: std::runtime_error when the process or
-  // its files cannot be made.
+  // Starts it. `changed` is called from another thread after each change. Errors: std::runtime_error when the process
+  // or its files cannot be made.
   Job(const JobRequest& request, std::function<void()> changed);
   ~Job();  // leaves the process alone; a question of its is then declined
   Job(const Job&) = delete;
@@ -37,8 +37,8 @@ class Job {
   // one that is open, as the process asked it; null when there is none), "lines" (the last that were said to people)}
   nlohmann::json state() const;
 
-  // Answers the question with this id. False, and nothing is done, when another question is open or none (a second click
-  // on the same button must not answer the next one), or when the question does not take this answer.
+  // Answers the question with this id. False, and nothing is done, when another question is open or none (a second
+  // click on the same button must not answer the next one), or when the question does not take this answer.
   bool answer(int id, const std::string& answer);
   void pause();     // ctrl-C: at the next safe point
   void stop_now();  // both ctrl-C: the platform stops at once, whatever is under way is given up

@@ -21,8 +21,8 @@ struct JobCommand {
   std::vector<std::string> arguments;  // of this program
 };
 
-// Every name is whitelisted before it becomes a part of a path, and no argument is anything but a name, a number or a text
-// behind its option's "=". Throws Refused for what may not be asked.
+// Every name is whitelisted before it becomes a part of a path, and no argument is anything but a name, a number or a
+// text behind its option's "=". Throws Refused for what may not be asked.
 JobCommand job_command(const nlohmann::json& asked, const Workspace& workspace, const std::filesystem::path& rig);
 
 // In what forms a thread of the library may be exported.

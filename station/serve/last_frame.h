@@ -1,5 +1,5 @@
-// The last picture that the rig's camera made, by whichever job, and what it shows of the bench: histogram, exposure, focus,
-// tags, and the lamp through the session.
+// The last picture that the rig's camera made, by whichever job, and what it shows of the bench: histogram, exposure,
+// focus, tags, and the lamp through the session.
 #pragma once
 
 #include <filesystem>
@@ -18,8 +18,8 @@ namespace station {
 // one of raw/.
 std::optional<std::filesystem::path> picture_of_step(const std::filesystem::path& session, const std::string& step);
 
-// A raw file for people: half as wide as the sensor, brightness of its own. The last ones are remembered. Errors: those of
-// read_sensor_file.
+// A raw file for people: half as wide as the sensor, brightness of its own. The last ones are remembered. Errors: those
+// of read_sensor_file.
 cv::Mat3b shown_sensor_file(const std::filesystem::path& file);
 
 class LastFrame {
@@ -31,7 +31,8 @@ class LastFrame {
   //  "histogram": {"r", "g", "b": 64 parts of the pixels from black to white},
   //  "exposure": {"exposure_s", "level": 0 to 1 that the brightest reach, "aim", "saturated": part} (raw only),
   //  "focus": {"blur_px", "doubtful_px", "bad_px"} (absent: no tag's edge to read it by),
-  //  "tags": [{"where", "seen", "printed"}], "lamp": [{"step", "percent" of the calibrated lamp}]}; null without any picture.
+  //  "tags": [{"where", "seen", "printed"}], "lamp": [{"step", "percent" of the calibrated lamp}]}; null without any
+  //  picture.
   nlohmann::json document();
   // The picture itself, for people. Throws Refused (404) when there is none.
   cv::Mat3b picture() const;

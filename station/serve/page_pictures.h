@@ -1,5 +1,5 @@
-// Pictures for the technician's page, as PNG or SVG files that a browser shows: small ones of raw files, photographs beside
-// their fitted twins, cloth, drafts.
+// Pictures for the technician's page, as PNG or SVG files that a browser shows: small ones of raw files, photographs
+// beside their fitted twins, cloth, drafts.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// A digitized thread as the result and library screens show it: its unknowns with their deviations, the energies of its lobes
-// over the angle with bands from the covariance, agreement view by view, colour.
+// A digitized thread as the result and library screens show it: its unknowns with their deviations, the energies of its
+// lobes over the angle with bands from the covariance, agreement view by view, colour.
 #pragma once
 
 #include <filesystem>
@@ -9,9 +9,11 @@
 
 namespace station {
 
-// {"name", "diameter_mm", "relative_rmse" (null: unknown), "unknowns": [{"name", "value", "sigma", "at_bound"}], "curves":
-// [{"cosine", "lambda": [R, TT, TRT], "sigma" (absent where the file has no covariance)}], "views": [{"id", "relative_rmse",
-// "relative_bias"}], "doubts", "colour": "#rrggbb"}; colour: the albedo under light from all sides, sRGB.
+// {"name", "diameter_mm", "relative_rmse" (null: unknown), "unknowns": [{"name", "value", "sigma", "at_bound"}],
+// "curves":
+// [{"cosine", "lambda": [R, TT, TRT], "sigma" (absent where the file has no covariance)}], "views": [{"id",
+// "relative_rmse", "relative_bias"}], "doubts", "colour": "#rrggbb"}; colour: the albedo under light from all sides,
+// sRGB.
 nlohmann::json thread_document(const ThreadFile& thread);
 
 // The thread of a session's result, and "cloth": what of its preview is there, with what it was made of.

@@ -16,8 +16,8 @@ struct ServeRequest {
   std::vector<std::string> hosts;
 };
 
-// Prints the address, and answers until ctrl-C; a run that the page started goes on. Errors: std::runtime_error with one
-// line: lan without a token or a name, a short token, a port that is taken, those of TechnicianPage.
+// Prints the address, and answers until ctrl-C; a run that the page started goes on. Errors: std::runtime_error with
+// one line: lan without a token or a name, a short token, a port that is taken, those of TechnicianPage.
 void serve(const ServeRequest& request);
 
 }  // namespace station

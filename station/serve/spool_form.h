@@ -9,10 +9,10 @@
 
 namespace station {
 
-// {"barcode", "name" (one of the two filled in), "lot", "material", "colour", "note": texts; "turns", "diameter_mm": numbers;
-// "sheets"; "simulated": on a simulated rig the ready spool whose fibers stand on the bench}. The holder is the ready one.
-// Writes both files under one name, which it returns; a spool of the same barcode (or name) and lot is written anew. Throws
-// Refused (400) with the line of the code that reads spool files when they would be refused.
+// {"barcode", "name" (one of the two filled in), "lot", "material", "colour", "note": texts; "turns", "diameter_mm":
+// numbers; "sheets"; "simulated": on a simulated rig the ready spool whose fibers stand on the bench}. The holder is
+// the ready one. Writes both files under one name, which it returns; a spool of the same barcode (or name) and lot is
+// written anew. Throws Refused (400) with the line of the code that reads spool files when they would be refused.
 std::string write_spool(const nlohmann::json& form, const Workspace& workspace);
 
 // Ready spools that a simulated bench can draw.

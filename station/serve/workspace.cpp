@@ -88,7 +88,8 @@ Workspace::Workspace(const fs::path& folder) : folder_(fs::absolute(folder)) {
   }
 }
 
-// A lab has hundreds of sessions, and the page asks after every change: journals are read again only when they have grown.
+// A lab has hundreds of sessions, and the page asks after every change: journals are read again only when they have
+// grown.
 json Workspace::session_line(const fs::path& folder) {
   const std::string name = folder.filename().string();
   const fs::path journal = folder / "journal.jsonl";

@@ -1,14 +1,14 @@
 // A second simulation of GRBL 1.1, for tests: written from the documentation of its interface alone (gnea/grbl,
-// doc/markdown: interface, commands, settings, jogging), it shares nothing with rig/simulated but the interfaces of line
-// and clock. A driver that works on both does not lean on the peculiarities of either.
+// doc/markdown: interface, commands, settings, jogging), it shares nothing with rig/simulated but the interfaces of
+// line and clock. A driver that works on both does not lean on the peculiarities of either.
 //
 // It turns a platform by its X axis; Y and Z have no motor that matters. Time is the clock's: the board comes up to it
 // whenever somebody reads, writes or asks. A line that arrives is obeyed when time has gone on, real-time characters at
 // once, so that a hold may overtake the line before it. Every function may be called from any thread.
 //
-// Not here: arcs, probing, work coordinates but G92, overrides, the safety door, sleep, check mode, startup lines. Where
-// the documents leave something open, it does what is worse for a driver: status questions while it homes are never
-// answered, and a reset in motion makes the platform coast on uncounted.
+// Not here: arcs, probing, work coordinates but G92, overrides, the safety door, sleep, check mode, startup lines.
+// Where the documents leave something open, it does what is worse for a driver: status questions while it homes are
+// never answered, and a reset in motion makes the platform coast on uncounted.
 #pragma once
 
 #include <map>

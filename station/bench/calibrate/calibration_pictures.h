@@ -1,7 +1,7 @@
 // The pictures of a rig calibration: taken step by step into a folder, listed with their hashes, read back.
 //
-// The folder has pictures/<id>.arw as delivered, and pictures.json ("threadstation/calibration_pictures"), which is written
-// anew after each picture, so that an interrupted calibration goes on where it stood.
+// The folder has pictures/<id>.arw as delivered, and pictures.json ("threadstation/calibration_pictures"), which is
+// written anew after each picture, so that an interrupted calibration goes on where it stood.
 #pragma once
 
 #include <filesystem>
@@ -30,13 +30,14 @@ struct CalibrationPicture {
 
 using StepProgress = std::function<void(int done, int total, const std::string& label)>;
 
-// Takes the pictures that `plan` asks for and the folder does not hold yet. `should_stop` is polled between steps; when it
-// is true the platform is stopped and std::runtime_error thrown.
+// Takes the pictures that `plan` asks for and the folder does not hold yet. `should_stop` is polled between steps; when
+// it is true the platform is stopped and std::runtime_error thrown.
 std::vector<CalibrationPicture> record_calibration(const std::vector<CalibrationStep>& plan, RigDevices& devices,
                                                    const std::filesystem::path& folder, const StepProgress& progress,
                                                    const std::function<bool()>& should_stop);
 
-// Takes pictures of these roles off the list, so that record_calibration takes them again. Does nothing when there is no list.
+// Takes pictures of these roles off the list, so that record_calibration takes them again. Does nothing when there is
+// no list.
 void forget_calibration_pictures(const std::filesystem::path& folder,
                                  const std::function<bool(CalibrationRole)>& forget);
 

@@ -68,10 +68,10 @@ void add_platform_steps(std::vector<CalibrationStep>& plan) {
   }
 }
 
-// With 0.3 % noise, 0.5 % drift of the lamp and panels held to 0.1 degree, simulated (tests/calibration): 12 poses put the
-// front lamp within 2.5 mm and the back lamp within 2.1 mm (rms), 16 within 2.2 and 2.0; with a reference chip read to
-// 0.1 %, 12 do within 1.4. Behind, too, the panel alone is used: the back lamp stands some 29 degrees off the camera's axis
-// and its field of view ends at 7, so that tags on the lamp are in no picture.
+// With 0.3 % noise, 0.5 % drift of the lamp and panels held to 0.1 degree, simulated (tests/calibration): 12 poses put
+// the front lamp within 2.5 mm and the back lamp within 2.1 mm (rms), 16 within 2.2 and 2.0; with a reference chip read
+// to 0.1 %, 12 do within 1.4. Behind, too, the panel alone is used: the back lamp stands some 29 degrees off the
+// camera's axis and its field of view ends at 7, so that tags on the lamp are in no picture.
 constexpr int kFrontPoses = 16, kBackPoses = 12;
 
 void add_panel_steps(const RigFile& rig, std::vector<CalibrationStep>& plan) {

@@ -11,8 +11,9 @@
 
 namespace station {
 
-// The cells of the panel; those that leave the picture or are saturated are left out. `light` is 0 for the lamp in front
-// and 1 for the one behind, `number` counts the pictures of both. `picture` is not flat-fielded and has the distortion.
+// The cells of the panel; those that leave the picture or are saturated are left out. `light` is 0 for the lamp in
+// front and 1 for the one behind, `number` counts the pictures of both. `picture` is not flat-fielded and has the
+// distortion.
 std::vector<calibration::PanelSpot> panel_spots(const calibration::Developed& picture, const calibration::Lens& lens,
                                                 const Eigen::Isometry3d& world_from_camera,
                                                 const Eigen::Isometry3d& camera_from_panel,

@@ -24,7 +24,8 @@ Eigen::Isometry3d panel_pose(const RigFile& rig) {
   return pose;
 }
 
-// Before the lens, facing it; shifted and turned a little, so that a mark on the panel is not taken for one on the sensor.
+// Before the lens, facing it; shifted and turned a little, so that a mark on the panel is not taken for one on the
+// sensor.
 Eigen::Isometry3d white_field_pose(const RigFile& rig, double across_mm, double up_mm, double turned_rad) {
   const Eigen::Isometry3d& camera = rig.world_from_camera_by_tape;
   const Eigen::Vector3d forward = camera.linear().col(2);

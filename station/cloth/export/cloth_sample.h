@@ -1,5 +1,5 @@
-// A woven cloth as it is exported: flat, endless, of digitized threads. Frame: x along the weft, y along the warp, z towards
-// the face; one period is [-width / 2, width / 2] x [-height / 2, height / 2].
+// A woven cloth as it is exported: flat, endless, of digitized threads. Frame: x along the weft, y along the warp, z
+// towards the face; one period is [-width / 2, width / 2] x [-height / 2, height / 2].
 #pragma once
 
 #include <array>
@@ -21,20 +21,21 @@ struct ClothSample {
   std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // the first thread's
 };
 
-// The cloth of a scene file. Errors: those of scene_file.h and of woven_cloth; std::runtime_error, one line, when it has not exactly one cloth, or
-// one on anything but a flat swatch in two scales.
+// The cloth of a scene file. Errors: those of scene_file.h and of woven_cloth; std::runtime_error, one line, when it
+// has not exactly one cloth, or one on anything but a flat swatch in two scales.
 ClothSample cloth_of_scene(const std::filesystem::path& scene);
-// Woven of two threads; ends and picks that the draft has of further threads are not known. Errors: those of draft_file.h and
-// thread_file.h; std::runtime_error, one line, when yarns and threads differ in diameter by more than a tenth.
+// Woven of two threads; ends and picks that the draft has of further threads are not known. Errors: those of
+// draft_file.h and thread_file.h; std::runtime_error, one line, when yarns and threads differ in diameter by more than
+// a tenth.
 ClothSample cloth_of_draft(const std::filesystem::path& draft, const std::filesystem::path& warp,
                            const std::filesystem::path& weft);
 
 // A swatch about the origin, so large that its border is not seen; without lights.
 renderer::Scene endless_cloth(const ClothSample& cloth);
 
-// Sees exactly `periods` periods both ways along direction `to_view` from so far away that its rays are parallel. Picture up is +y, seen from
-// above or below straight; otherwise the picture is upright with regard to +z. The azimuth of a slanted direction must be a
-// multiple of 90 degrees: the period then is a rectangle.
+// Sees exactly `periods` periods both ways along direction `to_view` from so far away that its rays are parallel.
+// Picture up is +y, seen from above or below straight; otherwise the picture is upright with regard to +z. The azimuth
+// of a slanted direction must be a multiple of 90 degrees: the period then is a rectangle.
 renderer::Camera camera_of_period(const ClothSample& cloth, const Eigen::Vector3d& to_view, int width_px, int height_px,
                                   int periods = 1);
 

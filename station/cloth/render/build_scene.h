@@ -1,4 +1,5 @@
-// From what a scene file says (documents/scene_file.h) to what is rendered: drafts are woven, garments draped, motifs sewn on.
+// From what a scene file says (documents/scene_file.h) to what is rendered: drafts are woven, garments draped, motifs
+// sewn on.
 #pragma once
 
 #include <vector>
@@ -20,7 +21,8 @@ struct BuiltCloth {
 // All cloths of the scene, in their order. Errors: those of woven_cloth and renderer::garment_mesh.
 std::vector<BuiltCloth> build_cloths(const SceneFile& file);
 
-// `cloths`: those of the same file. Errors: those of renderer::surface_of, explicit_curves, stitch_curves and sewn_curves.
+// `cloths`: those of the same file. Errors: those of renderer::surface_of, explicit_curves, stitch_curves and
+// sewn_curves.
 renderer::Scene build_scene(const SceneFile& file, const std::vector<BuiltCloth>& cloths);
 
 }  // namespace station

@@ -16,8 +16,8 @@
 
 namespace station {
 
-// `layers`: none, or those of the same picture. `cloths`: those of the scene. With `half`, all but depth and ids are stored in
-// 16 bit.
+// `layers`: none, or those of the same picture. `cloths`: those of the scene. With `half`, all but depth and ids are
+// stored in 16 bit.
 std::vector<renderer::ExrChannel> render_channels(const cv::Mat3f& image, const renderer::PictureLayers* layers,
                                                   const SceneFile& scene, const std::vector<BuiltCloth>& cloths,
                                                   bool half);

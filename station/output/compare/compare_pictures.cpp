@@ -37,9 +37,9 @@ void check(const cv::Mat3f& photograph, const cv::Mat3f& rendering, const cv::Ma
   if (cv::countNonZero(mask) == 0) throw std::runtime_error("the mask is empty; give one that shows the cloth");
 }
 
-// Least squares over pixels would divide by the mean square of the rendering, which noise of few samples, and yarns that lie
-// elsewhere, make several times that of what is rendered: a cloth of 16 samples a pixel came out at a fifth of its brightness,
-// and 16 CIEDE2000 off.
+// Least squares over pixels would divide by the mean square of the rendering, which noise of few samples, and yarns
+// that lie elsewhere, make several times that of what is rendered: a cloth of 16 samples a pixel came out at a fifth of
+// its brightness, and 16 CIEDE2000 off.
 double fitted_scale(const cv::Mat3f& photograph, const cv::Mat3f& rendering, const cv::Mat1b& mask) {
   double photographed = 0, rendered = 0;
   for (int row = 0; row < mask.rows; ++row)

@@ -32,15 +32,17 @@ struct CompareOptions {
   std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};
 };
 
-// Compares linear pictures of one size where `mask` is 255, or everywhere when it is empty. White is the photograph's 99th
-// percentile inside the mask. Errors: std::runtime_error for other sizes, an empty mask, or pictures without light.
+// Compares linear pictures of one size where `mask` is 255, or everywhere when it is empty. White is the photograph's
+// 99th percentile inside the mask. Errors: std::runtime_error for other sizes, an empty mask, or pictures without
+// light.
 Comparison compare_pictures(const cv::Mat3f& photograph, const cv::Mat3f& rendering, const cv::Mat1b& mask,
                             const CompareOptions& options);
 
 // The comparison as a document, with both profiles; colour differences are CIEDE2000.
 nlohmann::json to_json(const Comparison& comparison);
 
-// A picture of photograph, rendering (scaled) and their difference (black: none, white: a CIEDE2000 of 20), side by side.
+// A picture of photograph, rendering (scaled) and their difference (black: none, white: a CIEDE2000 of 20), side by
+// side.
 cv::Mat3b comparison_picture(const cv::Mat3f& photograph, const cv::Mat3f& rendering, const cv::Mat1b& mask,
                              const CompareOptions& options);
 

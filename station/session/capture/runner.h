@@ -77,13 +77,13 @@ struct RunOptions {
 //
 // A picture that does not serve goes to refused/; where the next one may, it is taken again. When what was found (the
 // platform slipped, camera or table were moved, the lamp changed, the focus is lost) may have happened earlier, the
-// views since the last one that showed the contrary are withdrawn and taken again by the next run. A platform that stands
-// elsewhere than its turntable believes from the beginning is no slip: see settle_place.
+// views since the last one that showed the contrary are withdrawn and taken again by the next run. A platform that
+// stands elsewhere than its turntable believes from the beginning is no slip: see settle_place.
 //
 // Errors: those of devices and operator, BenchFault where a device answers and does not do what it was asked or a
 // picture shows that the bench moved, and those of pictures that do not serve: the session is suspended and says so (as
-// far as the disk lets it); RecordingFailed of the disk: failed. std::runtime_error for a plan or camera other than this
-// session was started with, and for a step to be taken again that the plan does not have.
+// far as the disk lets it); RecordingFailed of the disk: failed. std::runtime_error for a plan or camera other than
+// this session was started with, and for a step to be taken again that the plan does not have.
 RunState run_plan(const Plan& plan, const RunDevices& devices, SessionFolder& session, const RunOptions& options);
 
 }  // namespace station

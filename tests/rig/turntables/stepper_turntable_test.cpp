@@ -210,7 +210,7 @@ TEST_P(StepperTurntable, AProgramThatIsKilledLeavesAPlatformThatStopsWithinASeco
   std::cout << "seed " << kSeed << "\n";
   std::mt19937 random(kSeed);
   for (int i = 0; i < 50; ++i) {
-    const double after_s = std::uniform_real_distribution(0.0, 16.0)(random);
+    const double after_s = std::uniform_real_distribution(0.0, 15.0)(random);
     SCOPED_TRACE("killed after " + std::to_string(after_s) + " s");
     Rig own(GetParam());
     std::atomic<bool> killed = false;
