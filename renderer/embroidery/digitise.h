@@ -1,8 +1,7 @@
 // Line art as stitches, each line in its colour and in the order of drawing.
 //
 //   narrower than 0.8 mm | running stitches along the line, up to 2.5 mm long, shorter where it bends, a needle point
-//                        | at every
-//                        | corner
+//                        | at every corner
 //   wider                | satin: to and fro across the line, as wide as the stroke, 0.35 mm from one thread to the
 //                        | next
 #pragma once

@@ -3,12 +3,17 @@
 //
 //   GET  /                     the page; its other files by their names
 //   GET  /api/state            {"rig", "job", "control", "drafts", "export_formats", "simulated_spools", and the
-//   workspace's contents} GET  /api/events           event stream: a line when something has changed GET  /api/bench
-//   {"frame": last_frame.h, "devices": as `check` found them last, "checked_ms": when} GET  /api/session?name=
-//   workspace.h GET  /api/result?name=     result_document.h, of a session GET  /api/thread?number= result_document.h,
-//   of a thread in the library GET  /picture?of=...       page_pictures.h GET  /report?name=         the session's
-//   report.html POST /api/control {"client", "take"}          one browser controls, the others watch POST /api/job
-//   {"client", "kind", ...}         job_command.h; a live view ends for it POST /api/spool {"client", ...} spool_form.h
+//                              workspace's contents}
+//   GET  /api/events           event stream: a line when something has changed
+//   GET  /api/bench            {"frame": last_frame.h, "devices": as `check` found them last, "checked_ms": when}
+//   GET  /api/session?name=    workspace.h
+//   GET  /api/result?name=     result_document.h, of a session
+//   GET  /api/thread?number=   result_document.h, of a thread in the library
+//   GET  /picture?of=...       page_pictures.h
+//   GET  /report?name=         the session's report.html
+//   POST /api/control {"client", "take"}          one browser controls, the others watch
+//   POST /api/job {"client", "kind", ...}         job_command.h; a live view ends for it
+//   POST /api/spool {"client", ...}               spool_form.h
 //   POST /api/answer {"client", "question", "answer"}  to the question with this id that the job asks (job.h)
 //   POST /api/pause {"client"}
 //   POST /api/stop                                 emergency stop: any browser's, at once
