@@ -2,8 +2,10 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdio>
 #include <stdexcept>
+#include <thread>
 
 #include "station/bench/bench_fault.h"
 #include "station/bench/calibration_validity.h"
@@ -35,8 +37,8 @@ StopWish wish() {
   return interrupts() == 0 ? StopWish::none : interrupts() == 1 ? StopWish::pause : StopWish::now;
 }
 
-// Ends the process at the second ctrl-C. The stop is on the disk before anything else, and nobody waits for a device
-// that hangs.
+// Ends the process at the second ctrl-C. The stop is on the disk before anything else. A platform that turns is given a
+// second to stand and to say where; nobody waits longer for a device that hangs.
 [[noreturn]] void stop_now(SessionFolder& session, RigDevices& devices) {
   try {
     session.append_last("stop", {{"outcome", state_name(RunState::aborted)}});
@@ -44,6 +46,8 @@ StopWish wish() {
   }
   try {
     devices.turntable->stop();
+    for (int looks = 0; looks < 50 && devices.turntable->state() == rig::TurntableState::moving; ++looks)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
   } catch (...) {
   }
   std::fputs("threadstation: capture was stopped at once; go on with capture --resume\n", stderr);

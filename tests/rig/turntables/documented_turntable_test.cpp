@@ -5,14 +5,16 @@
 
 #include "rig/devices/device_contract.h"
 #include "rig/turntables/grbl_settings.h"
+#include "tests/rig/turntables/documented_bench.h"
 #include "tests/rig/turntables/wired_bench.h"
-#include "tests/support/documented_grbl.h"
 
 namespace {
 
 using rig::kDegree;
 using testing::AllOf;
 using testing::HasSubstr;
+
+constexpr double kStepRad = kDegree / 40;
 
 std::string refusal(const std::function<void()>& action) {
   try {
@@ -22,44 +24,6 @@ std::string refusal(const std::function<void()>& action) {
   }
   return "(accepted)";
 }
-
-constexpr double kStepRad = kDegree / 40;
-
-// A documented board, right in every way unless a test says otherwise, with the driver on it.
-struct DocumentedBench {
-  explicit DocumentedBench(DocumentedGrblOptions options = right(), const std::map<int, double>& others = {})
-      : board(clock, with(std::move(options), others)) {
-    setup.steps_per_deg = 40;
-    setup.home_by = stepper.home_by = rig::HomeBy::home_switch;
-    stepper.move_timeout_s = 200;
-  }
-  static DocumentedGrblOptions with(DocumentedGrblOptions options, const std::map<int, double>& others) {
-    for (const auto& [number, value] : others) options.eeprom[number] = value;
-    return options;
-  }
-  static DocumentedGrblOptions right() {
-    DocumentedGrblOptions options;
-    options.homes_single_axis = true;
-    options.homing = DocumentedGrblOptions::Homing::z_first;
-    options.eeprom = documented_turntable_settings();
-    return options;
-  }
-  static DocumentedGrblOptions as_it_comes() {
-    DocumentedGrblOptions options;
-    options.homing = DocumentedGrblOptions::Homing::z_first;
-    return options;
-  }
-  std::unique_ptr<rig::Turntable> make_turntable() {
-    return rig::make_stepper_turntable([this] { return rig::connect_grbl(board.open(), clock, setup); }, clock,
-                                       stepper);
-  }
-  double at_rad() { return (board.platform_deg() - 361) * kDegree; }  // the pull-off ends at 361 deg
-
-  EventfulClock clock;
-  DocumentedGrbl board;
-  rig::ControllerSetup setup;
-  rig::StepperSetup stepper;
-};
 
 // One bench of either simulation.
 struct EitherGrbl : testing::TestWithParam<bool> {

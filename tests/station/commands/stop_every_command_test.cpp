@@ -25,6 +25,7 @@
 #include "station/bench/rig_devices.h"
 #include "station/documents/degree.h"
 #include "station/documents/reader.h"
+#include "station/serve/technician_page.h"
 #include "tests/places.h"
 #include "tests/station/commands/program.h"
 
@@ -233,6 +234,36 @@ int wanted_stops() {
 
 TEST(StopEveryCommand, TheProgramListsThoseThatTurnThePlatform) {
   EXPECT_THAT(turning_commands(), testing::IsSupersetOf({"calibrate", "capture", "check", "home", "preview"}));
+}
+
+// Whoever presses Escape in a browser posts this.
+TEST(StopEveryCommand, ThePagesEmergencyStopEndsACheckThatTurns) {
+  for (const Board board : {Board::grbl_with_switch, Board::zaber}) {
+    const Lab lab(board);
+    station::TechnicianPage page(
+        lab.rig_file(), lab.in("workspace"), [] {}, THREADSTATION_PROGRAM);
+    const auto post = [&](const std::string& path, const json& fields) {
+      const station::HttpRequest request{.method = "POST", .path = path, .body = fields.dump()};
+      const auto urgent = page.urgent(request);
+      return urgent ? *urgent : page.handle(request);
+    };
+    ASSERT_EQ(post("/api/control", {{"client", "me"}}).status, 200);
+    ASSERT_EQ(post("/api/job", {{"client", "me"}, {"kind", "check"}}).status, 200);
+    const auto patience = std::chrono::steady_clock::now() + 60s;
+    while (lab.angle_deg() == kLeftAtDeg && std::chrono::steady_clock::now() < patience)
+      std::this_thread::sleep_for(2ms);
+    std::this_thread::sleep_for(1s);
+    const double told_deg = lab.angle_deg();
+    ASSERT_NE(told_deg, kLeftAtDeg) << "it never turned";
+    EXPECT_EQ(post("/api/stop", {{"client", "a watcher"}}).status, 200);
+    EXPECT_LE(std::abs(wait_until_it_stands(lab) - told_deg), kMostWayDeg) << name_of(board);
+    const auto state = [&] { return json::parse(page.handle({.method = "GET", .path = "/api/state"}).body).at("job"); };
+    while (state().at("running") == true && std::chrono::steady_clock::now() < patience)
+      std::this_thread::sleep_for(20ms);
+    EXPECT_EQ(state().at("running"), false);
+    EXPECT_NE(state().at("status"), 0);
+    EXPECT_THAT(state().at("lines").dump(), testing::HasSubstr("the check was stopped"));
+  }
 }
 
 TEST(StopEveryCommand, AtRandomMomentsNeverGoesOnForMoreThanFiveDegrees) {
