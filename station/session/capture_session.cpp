@@ -135,8 +135,10 @@ RunState begin_session(const CaptureRequest& request, const NewSession& made_of)
   if (is_session(request.session))
     throw std::runtime_error(request.session.string() +
                              " is a session already; choose another folder, or go on with capture --resume");
-  const Plan plan =
-      made_of.plan.empty() ? plan_of(rig, spool) : plan_from_json(read_json_file(made_of.plan), made_of.plan.string());
+  const Plan plan = on_bench([&] {
+    return made_of.plan.empty() ? plan_of(rig, spool)
+                                : plan_from_json(read_json_file(made_of.plan), made_of.plan.string());
+  });
   require_space(request.session, plan, calibration.lens.lens);
   RigDevices devices = open_rig(rig, spool, request.asked);
   on_bench([&] { require_valid(calibration, rig, devices.clock->utc(), made_of.accept_calibration); });

@@ -22,8 +22,8 @@ Plan plan_of(const RigFile& rig, const Spool& spool);
 CalibrationFiles calibration_files(const std::filesystem::path& calibration_path, const RigCalibration& calibration);
 
 // Ctrl-C stops the platform and pauses at the next safe point; a second one records the stop and ends the process.
-// Errors: BenchFault for devices and calibration, which every spool shares; std::runtime_error for files, pictures and
-// disk. The session then says so in its journal and can be resumed.
+// Errors: BenchFault for devices, calibration and plan, which every spool shares; std::runtime_error for files, pictures
+// and disk. The session then says so in its journal and can be resumed.
 RunState capture_session(const CaptureRequest& request);
 
 }  // namespace station

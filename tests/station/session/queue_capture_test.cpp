@@ -112,10 +112,11 @@ std::size_t count(const std::string& text, const std::string& word) {
   return found;
 }
 
-// A technician at a rig whose turntable and camera are other programs, with a table of three spools.
+// A technician at a rig whose turntable and camera are other programs, with a table of three spools: the second one has
+// no spool file. Short exposures, because all this is in real time.
 struct QueueOnAWire : QueueCapture {
   QueueOnAWire() {
-    write_queue(fixture("spools/silk_gold"));
+    write_queue(folder / "nowhere.json");
     json calibration = station::read_json_file(fixture("calibrations/simulated"));
     calibration["utc"] = rig::SystemClock().utc();
     calibration.erase("sensor");
@@ -126,6 +127,7 @@ struct QueueOnAWire : QueueCapture {
     rig["camera_connection"].update({{"port", camera.camera_port()}, {"width_px", 600}, {"height_px", 400}});
     rig["turntable_setup"].update({{"line", "pty"}, {"port", port.string()}});
     rig["operator"] = "console";
+    rig["capture"].update({{"target_level", 0.05}, {"bracket_stops", json::array()}});
     station::write_json_file(folder / "rig.json", rig);
   }
   ~QueueOnAWire() override { fs::remove(port); }
@@ -176,11 +178,14 @@ TEST_F(QueueOnAWire, ATurntableThatIsUnpluggedPausesTheQueueAndTheSameCommandGoe
   for (const char* words : {pause, "could not be opened", waiting}) EXPECT_THAT(gone.error, HasSubstr(words));
   EXPECT_EQ(count(gone.out, "Put it on the holder."), 1U) << gone.out;
 
-  plug_in_turntable();  // the camera sees an empty bench: a fault of each spool
-  const ProgramResult refused = capture("--quiet", "");
-  EXPECT_EQ(refused.status, 1);
-  EXPECT_THAT(refused.error, testing::Not(HasSubstr("paused"))) << refused.error;
-  EXPECT_EQ(count(refused.out, "Put it on the holder."), 3U) << refused.out;
+  plug_in_turntable();
+  const ProgramResult rest = capture("--quiet", "");
+  EXPECT_EQ(rest.status, 1);
+  EXPECT_THAT(rest.error, HasSubstr("nowhere.json"));
+  EXPECT_THAT(rest.error, testing::Not(HasSubstr("paused"))) << "a fault of one spool";
+  EXPECT_THAT(rest.out, HasSubstr("4711-A-1: captured to its end\n4712: failed: "));
+  EXPECT_THAT(rest.out, HasSubstr("4713: captured\n"));
+  EXPECT_EQ(count(rest.out, "Put it on the holder."), 3U) << rest.out;
 }
 
 }  // namespace
