@@ -57,6 +57,7 @@ class Server final : public PtyServer {
       ::poll(&watched, 1, kLookEveryMs);
       if ((watched.revents & POLLHUP) != 0) {
         open = false;
+        port_->transmit();  // the firmware lives on, and nobody hears what it says
         std::this_thread::sleep_for(std::chrono::milliseconds(kLookEveryMs));
         continue;
       }

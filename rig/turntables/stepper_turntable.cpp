@@ -7,6 +7,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "rig/devices/degree.h"
@@ -84,6 +85,7 @@ class StepperTurntable final : public Turntable {
   }
 
   void stop() override {
+    const StopUnderWay here(stops_under_way_);
     stop_asked_ = true;
     if (const auto found = controller()) found->stop();
     auto standing = TurntableState::idle;  // while it moves, the moving thread sets `stopped`; unknown stays unknown
@@ -107,6 +109,14 @@ class StepperTurntable final : public Turntable {
  private:
   struct Stopped : std::runtime_error {
     using std::runtime_error::runtime_error;
+  };
+
+  struct StopUnderWay {
+    explicit StopUnderWay(std::atomic<int>& counted) : count(counted) { ++count; }
+    ~StopUnderWay() { --count; }
+    StopUnderWay(const StopUnderWay&) = delete;
+    StopUnderWay& operator=(const StopUnderWay&) = delete;
+    std::atomic<int>& count;
   };
 
   std::shared_ptr<MotionController> controller() {
@@ -308,7 +318,9 @@ class StepperTurntable final : public Turntable {
     }
   }
 
+  // A stop() that is still being written would end the next move, too.
   [[noreturn]] void end_at_stop() {
+    while (stops_under_way_ > 0) std::this_thread::yield();
     stop_asked_ = false;
     controller()->clear_stop();
     const std::int64_t steps = standing_steps();
@@ -329,6 +341,7 @@ class StepperTurntable final : public Turntable {
   std::atomic<double> passing_rad_ = 0;  // the last reading of a platform that turns
   std::atomic<TurntableState> state_ = TurntableState::unknown_position;
   std::atomic<bool> stop_asked_ = false;
+  std::atomic<int> stops_under_way_ = 0;
 };
 
 }  // namespace

@@ -58,11 +58,10 @@ class DocumentedGrbl::Board {
     const std::lock_guard hold(mutex_);
     update();
     plugged_ = in;
-    if (in) {
+    if (in)
       boot(0);
-    } else {
+    else
       halt();
-    }
   }
 
   std::string take() {
@@ -126,11 +125,10 @@ class DocumentedGrbl::Board {
     const double before_deg = machine_.platform_deg();
     axis().advance(slice_s);
     note(before_deg);
-    if (state_ == State::home) {
+    if (state_ == State::home)
       go_on_homing();
-    } else if (settings_.is_on(21) && machine_.passes_switch(before_deg, machine_.platform_deg())) {
+    else if (settings_.is_on(21) && machine_.passes_switch(before_deg, machine_.platform_deg()))
       run_into_switch();
-    }
     settle();
     if (std::exchange(report_asked_, false) && state_ != State::home) report();
     while (takes_lines() && answer_next_line()) settle();
@@ -433,11 +431,10 @@ class DocumentedGrbl::Board {
     const std::optional<int> code = homing_.go_on(now_s_);
     if (!code) return;
     state_ = State::idle;
-    if (*code == 0) {
+    if (*code == 0)
       say("ok");
-    } else {
+    else
       alarm(*code);
-    }
   }
 
   std::mutex mutex_;
