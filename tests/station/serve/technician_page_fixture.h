@@ -61,7 +61,7 @@ class TechnicianPage : public testing::Test {
 
   template <class Condition>
   bool eventually(const Condition& condition) {
-    for (int i = 0; i < 600; ++i) {
+    for (int i = 0; i < 2400; ++i) {
       if (condition()) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }

@@ -73,9 +73,8 @@ TEST_F(TechnicianPage, ASecondClickDoesNotAnswerTheNextQuestion) {
 class TurnedByHand : public TechnicianPage {
  protected:
   TurnedByHand()
-      : TechnicianPage({{"turntable", "manual"},
-                        {"capture", {{"reflection_angles_deg", {0}}, {"transmission_angles_deg", {0}}}},
-                        {"simulation", {{"samples_per_pixel", 2}, {"target_samples_per_pixel", 6}}}}) {
+      : TechnicianPage(
+            {{"turntable", "manual"}, {"simulation", {{"samples_per_pixel", 2}, {"target_samples_per_pixel", 6}}}}) {
     post("/api/control", {{"client", "me"}});
   }
 
