@@ -50,7 +50,10 @@ std::optional<double> stopped_way(Bench& bench, std::mt19937& random) {
 TEST(RandomStops, AThousandOfThemEndWithinFiveDegreesAndKeepThePosition) {
   std::cout << "seed " << kSeed << "\n";
   std::mt19937 random(kSeed);
-  WiredBench<EventfulClock> grbl(Protocol::grbl), zaber(Protocol::zaber);
+  // At full speed these would need 12 degrees to stand.
+  constexpr double kFastDegS = 120;
+  WiredBench<EventfulClock> grbl(Protocol::grbl, rig::HomeBy::home_switch, {}, kFastDegS),
+      zaber(Protocol::zaber, rig::HomeBy::home_switch, {}, kFastDegS);
   DocumentedBench documented;
   std::vector<Bench> benches;
   benches.push_back({"GRBL", grbl.clock, grbl.make_turntable(), [&] { return grbl.true_angle_rad(); }});

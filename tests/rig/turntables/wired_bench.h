@@ -26,9 +26,10 @@ struct WiredBench {
   static constexpr double kStepsPerDeg = 40;
   static constexpr double kStepRad = rig::kDegree / kStepsPerDeg;
 
-  explicit WiredBench(Protocol which, rig::HomeBy home_by = rig::HomeBy::home_switch, rig::LineFaultPlan faults = {})
+  explicit WiredBench(Protocol which, rig::HomeBy home_by = rig::HomeBy::home_switch, rig::LineFaultPlan faults = {},
+                      double speed_deg_s = 30)
       : protocol(which),
-        bench({.turntable = {.scale = 1, .step_rad = kStepRad, .speed_rad_s = 30 * rig::kDegree}},
+        bench({.turntable = {.scale = 1, .step_rad = kStepRad, .speed_rad_s = speed_deg_s * rig::kDegree}},
               [](const rig::BenchState& state) {
                 return cv::Mat3f(state.lens.height_px, state.lens.width_px, cv::Vec3f::all(0.1F));
               }) {
