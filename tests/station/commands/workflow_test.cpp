@@ -152,7 +152,7 @@ TEST_F(Workflow, ACameraThatWasBumpedATagThatWasMovedAndAnotherLensAreNoticedBef
       "tag 402 on the table moved");
   expect_one_line(captured_with("other_lens", [](json& calibration) { calibration["camera"]["lens"] = "90 mm"; }),
                   "lens \"90 mm\"");
-  expect_one_line(captured_with("old", [](json& calibration) { calibration["utc"] = "2020-01-01T00:00:00Z"; }),
+  expect_one_line(captured_with("old", [](json& calibration) { calibration["utc"] = "2010-01-01T00:00:00Z"; }),
                   "days old");
   expect_one_line(
       captured_with("failed", [](json& calibration) { calibration["platform"]["gates"][0]["passed"] = false; }),
