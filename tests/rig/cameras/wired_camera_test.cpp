@@ -1,4 +1,5 @@
-// The real camera driver, in its own process, against the simulated ILCE-7M2 by PTP/IP.
+// The real camera driver, in its own process, against the simulated ILCE-7M2 by PTP/IP. What every make has to do is in
+// camera_makes_test.cpp.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -7,7 +8,6 @@
 #include <thread>
 
 #include "rig/cameras/camera_process.h"
-#include "rig/devices/device_contract.h"
 #include "tests/rig/cameras/gphoto_camera_fixture.h"
 
 namespace {
@@ -15,12 +15,6 @@ namespace {
 using testing::HasSubstr;
 
 }  // namespace
-
-TEST_F(GphotoCamera, KeepsTheContractOfCameras) {
-  const auto camera = open();
-  for (const rig::ContractRow& row : rig::check_camera(*camera))
-    EXPECT_TRUE(row.passed) << row.name << ": " << row.what;
-}
 
 TEST_F(GphotoCamera, SaysWhoItIsAndWhichTimesItHas) {
   const auto camera = open();
@@ -30,29 +24,6 @@ TEST_F(GphotoCamera, SaysWhoItIsAndWhichTimesItHas) {
   EXPECT_EQ(found.serial, "SIM1");
   const auto times_s = camera->shutter_times_s();
   EXPECT_EQ(times_s, wired.camera->shutter_times_s());
-}
-
-TEST_F(GphotoCamera, DeliversTheBytesThatTheCameraMade) {
-  const auto camera = open();
-  for (const double exposure_s : {1 / 60.0, 0.5, 2.5}) {
-    const rig::CameraSettings wanted{.exposure_s = exposure_s, .iso = 200, .f_number = 5.6};
-    camera->configure(wanted);
-    const rig::Picture picture = camera->capture();
-    EXPECT_EQ(picture.extension, "arw");
-    const rig::Picture made = wired.recorded.last();
-    EXPECT_EQ(picture.bytes, made.bytes);
-    EXPECT_DOUBLE_EQ(made.settings.exposure_s, exposure_s);
-    EXPECT_EQ(made.settings.iso, 200);
-    EXPECT_EQ(made.settings.f_number, 5.6);
-  }
-}
-
-TEST_F(GphotoCamera, APreflightThatFailsNamesWhatToSet) {
-  EXPECT_THAT(said_with({.exposure_program = 3}), HasSubstr("mode dial on its top to M"));
-  EXPECT_THAT(said_with({.focus_mode = 2}), HasSubstr("MENU > Focus Mode > MF"));
-  EXPECT_THAT(said_with({.battery_percent = 4}), HasSubstr("charge it"));
-  EXPECT_THAT(said_with({.store_full = true}), HasSubstr("empty the card"));
-  EXPECT_EQ(said_with({}), "(accepted)");
 }
 
 TEST_F(GphotoCamera, ASettingThatIsAcceptedAndNotDoneIsSeen) {
