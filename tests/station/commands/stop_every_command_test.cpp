@@ -8,6 +8,7 @@
 #include <signal.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -20,6 +21,7 @@
 #include <regex>
 #include <sstream>
 #include <thread>
+#include <utility>
 
 #include "station/bench/platform_memory.h"
 #include "station/bench/rig_devices.h"
@@ -78,6 +80,32 @@ std::vector<std::string> turning_commands() {
   return names;
 }
 
+// The time of a board that this process plays. It passes as real time does, but while the thread that plays the board
+// gets no processor it stands still: a real board has a processor of its own, and turns no platform while it is not
+// listening.
+class BoardClock final : public rig::Clock {
+ public:
+  double monotonic_s() override {
+    constexpr double kMostAtOnceS = 0.02;
+    const std::lock_guard hold(mutex_);
+    const double now_s = real_.monotonic_s();
+    passed_s_ += std::min(now_s - std::exchange(seen_s_, now_s), kMostAtOnceS);
+    return passed_s_;
+  }
+  std::string utc() override { return real_.utc(); }
+  void sleep_s(double duration_s) override { real_.sleep_s(duration_s); }
+  // What has passed for the board when it last looked.
+  double passed_s() const {
+    const std::lock_guard hold(mutex_);
+    return passed_s_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  rig::SystemClock real_;
+  double seen_s_ = real_.monotonic_s(), passed_s_ = 0;
+};
+
 // A bench in real time, whose devices are found at ports, and the rig file that names them.
 class Lab {
  public:
@@ -93,7 +121,7 @@ class Lab {
       return cv::Mat3f(state.lens.height_px, state.lens.width_px, cv::Vec3f::all(0.1F));
     });
     devices_.bench->turn_platform(kLeftAtDeg * kDegree);
-    port_ = station::start_firmware(served, *devices_.bench, *devices_.clock);
+    port_ = station::start_firmware(served, *devices_.bench, *board_clock_);
     devices_.simulated_wire = rig::serve_on_pty(port_);
     station::start_simulated_camera(served, devices_);
     const std::string camera = std::to_string(devices_.simulated_camera.network->port());
@@ -117,6 +145,7 @@ class Lab {
     port_->plugged();
     return devices_.bench->state().platform_angle_rad / kDegree;
   }
+  double board_time_s() const { return board_clock_->passed_s(); }
   std::map<std::string, std::string> environment() const { return {{"XDG_STATE_HOME", in("state")}}; }
 
   // The angle at which the memory says that the platform stands; nothing when it says that it was turning.
@@ -135,6 +164,7 @@ class Lab {
   Board board_;
   station_test::TemporaryFolder folder_;
   json document_;
+  std::unique_ptr<BoardClock> board_clock_ = std::make_unique<BoardClock>();
   station::RigDevices devices_;
   std::shared_ptr<rig::SimulatedPort> port_;
 };
@@ -168,10 +198,11 @@ bool has_ended(pid_t process) {
 }
 
 double wait_until_it_stands(const Lab& lab) {
+  constexpr double kStandsS = 0.4;
   double before = lab.angle_deg();
-  for (auto since = std::chrono::steady_clock::now(); std::chrono::steady_clock::now() - since < 400ms;) {
+  for (double since_s = lab.board_time_s(); lab.board_time_s() - since_s < kStandsS;) {
     std::this_thread::sleep_for(20ms);
-    if (std::exchange(before, lab.angle_deg()) != before) since = std::chrono::steady_clock::now();
+    if (std::exchange(before, lab.angle_deg()) != before) since_s = lab.board_time_s();
   }
   return before;
 }
