@@ -353,7 +353,7 @@ ViewFit fit_views(const WrappedSpool& spool, const std::vector<View>& views, con
   std::vector<VectorXd> starts{unknowns_of(options.start)};
   if (options.held.empty())
     for (const renderer::ThreadParameters& start : options.other_starts) starts.emplace_back(unknowns_of(start));
-  return fit_family(spool, views, options, ThreadFamily{}, starts);
+  return fit_family(spool, views, options, ThreadFamily{options.start.exit}, starts);
 }
 
 IndependentLoss independent_loss(const WrappedSpool& spool, const std::vector<View>& views, const ViewFit& fit,

@@ -32,7 +32,7 @@ enum class Solver { levenberg_marquardt, adam };
 struct FitOptions {
   ModelKind model = ModelKind::thread;
   Solver solver = Solver::levenberg_marquardt;
-  // The start of the thread model; the baselines have starts of their own.
+  // The start of the thread model, with the rule by which light leaves threads; the baselines have starts of their own.
   renderer::ThreadParameters start = starting_thread();
   std::vector<renderer::ThreadParameters> other_starts = other_starting_threads();  // may be empty
   // Paths per block in each round, of which there is at least one. Every start goes through all rounds but the last,

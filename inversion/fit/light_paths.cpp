@@ -26,7 +26,6 @@ class PathRecorder {
       : rays_(rays),
         traced_with_(traced_with),
         model_(renderer::prepare_curve_models({traced_with}).front()),
-        far_side_(renderer::leaves_on_far_side(model_)),
         lights_({.lights = {unit_lamp(view.light)}}) {}
 
   void record(renderer::CameraRay camera_ray, renderer::Sampler& sampler, std::vector<PathEvent>& events) const {
@@ -56,14 +55,11 @@ class PathRecorder {
                              renderer::Sampler& sampler, float& throughput, std::vector<PathEvent>& events) const {
     const Eigen::Matrix3f frame = renderer::local_from_world(curve);
     const Vector3f wo = frame * -arriving;
-    const float h = renderer::viewing_offset(wo);
-    const CurveLobes<float> lobes = std::visit([&](const auto& model) { return model.lobes_at(h, wo); }, model_);
+    const CurveLobes<float> lobes = renderer::lobes_at(model_, curve, frame, -arriving);
+    const renderer::ThreadExits exits(renderer::exit_of(model_), curve, -arriving);
     PathEvent event{};
-    event.point = point_at(h, wo);
-    const auto start_toward = [&](const Vector3f& direction) {
-      return far_side_ ? renderer::far_side_position(curve, direction, sampler.next_1d()) : curve.position;
-    };
-    event.light_weight = record_light(curve.position, start_toward, frame, lobes, sampler.next_2d(), event.light);
+    event.point = point_at(renderer::viewing_offset(wo), wo);
+    event.light_weight = record_light(curve.position, exits, frame, lobes, sampler, event.light);
 
     const Eigen::Vector2f u = sampler.next_2d(), u_angles = sampler.next_2d();
     const Vector3f next = lobes.sample(u.x(), u.y(), u_angles.x(), u_angles.y());
@@ -83,7 +79,7 @@ class PathRecorder {
     throughput *= weight;
     events.push_back(event);
     const Vector3f onwards = (frame.transpose() * next).normalized();
-    return {start_toward(onwards), onwards};
+    return exits.ray(exits.toward(onwards, sampler), onwards).ray;
   }
 
   renderer::ThreadPoint<float> point_at(float h, const Vector3f& wo) const {
@@ -96,23 +92,24 @@ class PathRecorder {
     return {cosine, renderer::InnerChord<float>(h, wo.x(), cosine, eta).length};
   }
 
-  template <class StartToward>
-  float record_light(const Vector3f& position, const StartToward& start_toward, const Eigen::Matrix3f& frame,
-                     const CurveLobes<float>& lobes, const Eigen::Vector2f& u, PathDirection& direction) const {
-    const Vector3f start = start_toward(lights_.sample(position.cast<double>(), 0, u)->cast<float>());
-    const Vector3d origin = start.cast<double>();
+  float record_light(const Vector3f& position, const renderer::ThreadExits& exits, const Eigen::Matrix3f& frame,
+                     const CurveLobes<float>& lobes, renderer::Sampler& sampler, PathDirection& direction) const {
+    const Eigen::Vector2f u = sampler.next_2d();
+    const renderer::LightExit exit = exits.near(lights_.sample(position.cast<double>(), 0, u)->cast<float>(), sampler);
+    const Vector3d origin = exit.place.cast<double>();
     const std::optional<Vector3d> wi = lights_.sample(origin, 0, u);
     const std::optional<renderer::LightHit> light = lights_.intersect(origin, *wi, false);
     if (!light) return 0;  // rounding at the rim of the cone
     direction = stored(lobes.angles(frame * wi->cast<float>()));
-    if (rays_.occluded({start, wi->cast<float>()}, static_cast<float>(light->distance))) return 0;
-    return light->radiance[0] / static_cast<float>(lights_.pdf(origin, *wi));
+    const float share = exits.share(exit, wi->cast<float>());
+    const auto [ray, lead] = exits.ray(exit, wi->cast<float>());
+    if (!(share > 0) || rays_.occluded(ray, lead + static_cast<float>(light->distance))) return 0;
+    return share * light->radiance[0] / static_cast<float>(lights_.pdf(origin, *wi));
   }
 
   const renderer::RayScene& rays_;
   renderer::ScatteringModel traced_with_;
   renderer::CurveModel model_;
-  bool far_side_;
   renderer::Lights lights_;
 };
 

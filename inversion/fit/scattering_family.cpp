@@ -77,8 +77,10 @@ FamilyUnknowns unknowns(const YarnFamily&) {
           .starts = {vector_of({0.3, 0.3, 0.3, 0.3, 0.3, 0.3}), vector_of({1, 1, 1, 0.5, 0.2, 0.6})}};
 }
 
-renderer::ThreadParameters parameters(const ThreadFamily&, const VectorXd& u) {
-  return parameters_of(u);
+renderer::ThreadParameters parameters(const ThreadFamily& family, const VectorXd& u) {
+  renderer::ThreadParameters p = parameters_of(u);
+  p.exit = family.exit;
+  return p;
 }
 
 renderer::FiberParameters parameters(const FiberFamily&, const VectorXd& u) {
@@ -139,7 +141,7 @@ RgbByUnknowns by_unknowns_of(const Model&, const renderer::ThreadSlopes<double>&
 ScatteringFamily family_of(const renderer::ScatteringModel& model) {
   if (std::holds_alternative<renderer::FiberParameters>(model)) return FiberFamily{};
   if (const auto* yarn = std::get_if<renderer::YarnParameters>(&model)) return YarnFamily{yarn->fiber_count};
-  return ThreadFamily{};
+  return ThreadFamily{std::get<renderer::ThreadParameters>(model).exit};
 }
 
 FamilyUnknowns unknowns_of(const ScatteringFamily& family) {

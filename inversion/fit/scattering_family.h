@@ -24,7 +24,9 @@ class Problem;
 
 namespace inversion {
 
-struct ThreadFamily {};
+struct ThreadFamily {
+  renderer::ThreadExit exit = renderer::ThreadParameters{}.exit;  // no unknown: where light leaves is given
+};
 struct FiberFamily {};
 struct YarnFamily {
   int fiber_count;

@@ -72,7 +72,7 @@ class CrossingRecorder {
       }
       events.push_back(
           event_at(std::get<CurvePoint>(hit->point), -ray.direction, scattering.lobe_densities(next), weight, from));
-      ray = {scattering.start_toward(next, sampler), next};
+      ray = scattering.ray_toward(next, sampler).ray;
     }
     return false;
   }
@@ -82,7 +82,7 @@ class CrossingRecorder {
                         float weight, const Eigen::Vector2i& from) const {
     const renderer::BasicThreadParameters<float>& thread = threads_[curve.curve_set];
     const Vector3f wo = renderer::local_from_world(curve) * wo_world;
-    const float cosine = std::hypot(wo.y(), wo.z()), h = renderer::viewing_offset(wo);
+    const float cosine = std::hypot(wo.y(), wo.z()), h = renderer::offset_in_section(curve, wo_world);
     const std::array<float, 3> lambda = renderer::thread_lobe_energies(thread, cosine);
     const float chord = renderer::InnerChord<float>(h, wo.x(), cosine, static_cast<float>(renderer::kThreadEta)).length;
     const auto [first, second] = thread.transmittance_powers;

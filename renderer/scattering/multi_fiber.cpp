@@ -28,13 +28,17 @@ constexpr double kSteepest = 89.9 * kDegree;
 // What the rays of one block did; energies are sums over rays.
 struct Tally {
   std::vector<double> energy;  // per bin of azimuth
+  std::vector<double> exits;   // as MultiFiberScattering::exits
   std::array<double, MultiFiberScattering::kRefractionBins> by_fibers_passed{};
   double entered = 0, length = 0;
   std::uint64_t met = 0;
 
-  explicit Tally(int bins) : energy(static_cast<std::size_t>(bins)) {}
+  explicit Tally(const MultiFiberOptions& options)
+      : energy(static_cast<std::size_t>(options.bins)),
+        exits(energy.size() * static_cast<std::size_t>(options.offset_bins * options.offset_bins)) {}
   void add(const Tally& other) {
     for (std::size_t i = 0; i < energy.size(); ++i) energy[i] += other.energy[i];
+    for (std::size_t i = 0; i < exits.size(); ++i) exits[i] += other.exits[i];
     for (std::size_t i = 0; i < by_fibers_passed.size(); ++i) by_fibers_passed[i] += other.by_fibers_passed[i];
     entered += other.entered, length += other.length, met += other.met;
   }
@@ -93,7 +97,7 @@ class Simulation {
 
   // Rays first..last of the configuration whose fibers `grid` holds (unit radius).
   Tally trace(const CircleGrid& grid, double reach, int first, int last, std::uint64_t stream) const {
-    Tally tally(options_.bins);
+    Tally tally(options_);
     RandomStream random(options_.seed, stream);
     for (int ray = first; ray < last; ++ray) {
       const double h = 2 * (ray + random.uniform()) / options_.rays - 1;
@@ -106,9 +110,10 @@ class Simulation {
   void trace_ray(const CircleGrid& grid, Vector2d position, RandomStream& random, Tally& tally) const {
     Vector2d direction(-1, 0);
     CircleHit hit = grid.nearest(position, direction, -1);
-    if (hit.circle < 0) return;
-    ++tally.met;
+    const double offset_in = offset_of(position, direction);
     double energy = 1;
+    if (hit.circle < 0) return count_exit(offset_in, position, direction, energy, tally);
+    ++tally.met;
     std::size_t passed = 0;
     while (hit.circle >= 0) {
       const Vector2d& center = grid.center(hit.circle);
@@ -129,9 +134,29 @@ class Simulation {
       }
       hit = grid.nearest(position, direction, hit.circle);
     }
-    const auto bin = static_cast<int>((std::atan2(direction.y(), direction.x()) + std::numbers::pi) * bins_per_radian_);
-    tally.energy[static_cast<std::size_t>(std::min(bin, options_.bins - 1))] += energy;
+    tally.energy[static_cast<std::size_t>(azimuth_bin(direction))] += energy;
+    count_exit(offset_in, position, direction, energy, tally);
     tally.by_fibers_passed[std::min(passed, tally.by_fibers_passed.size() - 1)] += energy;
+  }
+
+  int azimuth_bin(const Vector2d& direction) const {
+    const double azimuth = std::atan2(direction.y(), direction.x());
+    return std::min(static_cast<int>((azimuth + std::numbers::pi) * bins_per_radian_), options_.bins - 1);
+  }
+
+  double offset_of(const Vector2d& position, const Vector2d& direction) const {
+    return (direction.x() * position.y() - direction.y() * position.x()) * options_.fiber_radius /
+           options_.thread_radius;
+  }
+
+  void count_exit(double offset_in, const Vector2d& position, Vector2d direction, double energy, Tally& tally) const {
+    const int bins = options_.offset_bins;
+    if (bins == 0) return;
+    double offset_out = offset_of(position, direction);
+    if (offset_in < 0) offset_in = -offset_in, offset_out = -offset_out, direction.y() = -direction.y();
+    const int in = std::clamp(static_cast<int>(offset_in * bins), 0, bins - 1);
+    const int out = std::clamp(static_cast<int>((offset_out + 1) / 2 * bins), 0, bins - 1);
+    tally.exits[static_cast<std::size_t>((in * options_.bins + azimuth_bin(direction)) * bins + out)] += energy;
   }
 
   const MultiFiberOptions& options_;
@@ -157,6 +182,7 @@ void check(const MultiFiberOptions& o) {
   require(o.rays >= 1 && o.configurations >= 1, "at least one ray and one configuration are needed");
   require(o.bins >= 4 && o.bins <= 100000 && o.bins % 4 == 0,
           "the number of bins must be a multiple of 4 up to 100000, so that none lies across front and back");
+  require(o.offset_bins >= 0 && o.offset_bins <= 1000, "the number of bins of offsets must lie between 0 and 1000");
 }
 
 // Runs independent pieces of work on the cores asked for; `progress` is called as MultiFiberOptions says.
@@ -194,7 +220,7 @@ struct Accumulator {
   std::vector<double> squares;  // of each configuration's fractions
   std::size_t fibers = 0;
 
-  explicit Accumulator(int bins) : sum(bins), squares(static_cast<std::size_t>(bins)) {}
+  explicit Accumulator(const MultiFiberOptions& options) : sum(options), squares(sum.energy.size()) {}
   void add(const Tally& configuration, std::size_t its_fibers) {
     sum.add(configuration);
     fibers += its_fibers;
@@ -218,6 +244,7 @@ MultiFiberScattering summary(const Accumulator& all, const MultiFiberOptions& op
   result.mean_length = sum.length / met;
   for (std::size_t i = 0; i < sum.by_fibers_passed.size(); ++i)
     result.by_fibers_passed[i] = sum.by_fibers_passed[i] / met;
+  for (double energy : sum.exits) result.exits.push_back(energy / (options.rays * configurations));
   const std::size_t quarter = sum.energy.size() / 4;
   for (std::size_t i = 0; i < sum.energy.size(); ++i) {
     const double fraction = sum.energy[i] / met;
@@ -245,13 +272,14 @@ MultiFiberScattering simulate_multi_fiber(const MultiFiberOptions& options) {
   // Pieces of work are blocks of rays, so that few rays in many configurations and many in one both share out evenly;
   // tallies of one wave of configurations are kept at a time.
   constexpr int kLeastBlock = 1 << 14, kMostKept = 1 << 22;  // rays; bins in all tallies
-  const int most_blocks = std::max(1, kMostKept / options.bins);
+  const int most_blocks =
+      std::max(1, kMostKept / (options.bins * std::max(1, options.offset_bins * options.offset_bins)));
   const int block = std::max(kLeastBlock, options.rays / most_blocks + 1);
   const int blocks = (options.rays - 1) / block + 1;
   const int wave = std::min(options.configurations, std::max(1, most_blocks / blocks));
 
   Workers workers(options, static_cast<std::int64_t>(options.configurations) * (blocks + 1));
-  Accumulator all(options.bins);
+  Accumulator all(options);
   for (int start = 0; start < options.configurations; start += wave) {
     const int count = std::min(wave, options.configurations - start);
     std::vector<CircleGrid> grids(static_cast<std::size_t>(count));
@@ -260,7 +288,7 @@ MultiFiberScattering simulate_multi_fiber(const MultiFiberOptions& options) {
       for (Vector2d& center : centers) center /= options.fiber_radius;
       grids[static_cast<std::size_t>(i)] = CircleGrid(centers, 1, reach);
     });
-    std::vector<Tally> tallies(static_cast<std::size_t>(count * blocks), Tally(options.bins));
+    std::vector<Tally> tallies(static_cast<std::size_t>(count * blocks), Tally(options));
     workers.for_each(count * blocks, [&](int i) {
       const int first = i % blocks * block;
       tallies[static_cast<std::size_t>(i)] = simulation.trace(
@@ -268,7 +296,7 @@ MultiFiberScattering simulate_multi_fiber(const MultiFiberOptions& options) {
           static_cast<std::uint64_t>(start) * static_cast<std::uint64_t>(blocks) + static_cast<std::uint64_t>(i));
     });
     for (int i = 0; i < count; ++i) {
-      Tally configuration(options.bins);
+      Tally configuration(options);
       for (int k = 0; k < blocks; ++k) configuration.add(tallies[static_cast<std::size_t>(i * blocks + k)]);
       all.add(configuration, grids[static_cast<std::size_t>(i)].size());
     }

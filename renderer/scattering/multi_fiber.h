@@ -30,6 +30,7 @@ struct MultiFiberOptions {
   int rays = 4000;       // per configuration, spread evenly over the thread's width, each with a jitter
   int configurations = 1000;
   int bins = 180;
+  int offset_bins = 0;  // of MultiFiberScattering::exits; 0: not counted
   std::uint64_t seed = 1;
   int threads = 0;  // 0 = all cores; the result does not depend on it
   // Called now and then from one thread with the finished fraction; returning false stops the simulation.
@@ -54,6 +55,13 @@ struct MultiFiberScattering {
   // albedo.
   std::array<double, kRefractionBins> by_fibers_passed{};
   std::uint64_t rays = 0;  // rays that met a fiber
+
+  // Where the energy leaves, as shares of the energy of all rays, those that met no fiber among them. A ray's offset is
+  // the distance of its line from the thread's axis in thread radii, positive where the axis lies to its right, as it
+  // flies; what flies straight on keeps it. Entry (in * bins + azimuth) * offset_bins + out holds what came in at
+  // |offset| in [in, in + 1] / offset_bins and leaves within the bin of `density` and at an offset in -1 + [out, out +
+  // 1] 2 / offset_bins. Rays that came in at a negative offset are counted as their mirror images.
+  std::vector<double> exits;
 };
 
 // Errors: std::invalid_argument with one line for options out of range; std::runtime_error when stopped by progress.

@@ -37,11 +37,12 @@ inline constexpr double kMostEnergy = 0.999;
 // The least probability with which each lobe is sampled, so that derivatives by a lobe without energy can be estimated.
 inline constexpr double kLobeFloor = 0.05;
 
-// Where scattered light leaves a thread (far_side_position in renderer/trace/path_vertex.h).
+// Where scattered light leaves a thread (renderer/trace/light_exit.h).
 //   entry_point | where it came in, as with curves that scatter like a single fiber
 //   far_side    | where it came in if it leaves on that side, otherwise anywhere across the far side, as light that
 //               | has wandered among many fibers does
-enum class ThreadExit { entry_point, far_side };
+//   wandering   | where it leaves simulated bundles of fibers, given where it came in and how far it turned
+enum class ThreadExit { entry_point, far_side, wandering };
 
 template <class S>
 struct BasicThreadParameters {

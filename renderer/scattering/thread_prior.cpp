@@ -18,17 +18,9 @@ LibraryFit fit_thread(const LibraryThread& thread, const PriorOptions& options) 
   for (std::size_t c = 0; c < thread.absorptions.size(); ++c) {
     if (c > 0 && thread.absorptions[c] == thread.absorptions[c - 1]) continue;  // grey: one colour says it all
     for (double theta_deg : kThetasDeg) {
-      MultiFiberOptions simulated{.thread_radius = 1 / thread.radius_ratio,
-                                  .fiber_radius = 1,
-                                  .min_gap = thread.gap,
-                                  .eta = thread.eta,
-                                  .sigma_a = thread.absorptions[c],
-                                  .theta_rad = theta_deg * kDegree,
-                                  .rays = options.rays,
-                                  .configurations = options.configurations,
-                                  .bins = options.bins,
-                                  .seed = options.seed};
-      simulated.max_attempts = static_cast<int>(10 / (thread.radius_ratio * thread.radius_ratio));
+      MultiFiberOptions simulated = simulation_of(thread, thread.absorptions[c], theta_deg * kDegree);
+      simulated.rays = options.rays, simulated.configurations = options.configurations;
+      simulated.bins = options.bins, simulated.seed = options.seed;
       const std::vector<double> density = simulate_multi_fiber(simulated).density;
       data.push_back({.theta_rad = simulated.theta_rad,
                       .eta = kThreadEta,
@@ -69,6 +61,16 @@ std::vector<LibraryThread> thread_library() {
              {std::array{0.0, 0.0, 0.0}, std::array{0.01, 0.03, 0.1}, std::array{0.05, 0.2, 0.4}})
           library.push_back({ratio, eta, gap, absorptions});
   return library;
+}
+
+MultiFiberOptions simulation_of(const LibraryThread& thread, double sigma_a, double theta_rad) {
+  return {.thread_radius = 1 / thread.radius_ratio,
+          .fiber_radius = 1,
+          .min_gap = thread.gap,
+          .max_attempts = static_cast<int>(10 / (thread.radius_ratio * thread.radius_ratio)),
+          .eta = thread.eta,
+          .sigma_a = sigma_a,
+          .theta_rad = theta_rad};
 }
 
 std::vector<LibraryFit> fit_library(const std::vector<LibraryThread>& library, const PriorOptions& options) {

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/scattering/multi_fiber.h"
 #include "renderer/scattering/thread_energies.h"
 
 namespace renderer {
@@ -38,6 +39,9 @@ struct LibraryThread {
 // The library: fibers of 1/20 to 1/5 of the thread's radius, refractive indices from viscose's to polyester's, packed
 // densely and loosely; each thread white, pale and strong in colour.
 std::vector<LibraryThread> thread_library();
+// The simulation of such a thread with fibers that absorb `sigma_a` per radius, at inclination `theta_rad`; rays,
+// configurations, bins and seed are left to the caller.
+MultiFiberOptions simulation_of(const LibraryThread& thread, double sigma_a, double theta_rad);
 
 struct PriorOptions {
   int rays = 1000, configurations = 150, bins = 60;  // per simulation

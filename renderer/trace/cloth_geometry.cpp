@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
@@ -141,6 +142,7 @@ CurvePoint ClothGeometry::point_at(const ClothHit& hit) const {
   point.position = world.cast<float>();
   point.tangent = frame * point.tangent;
   point.normal = frame * point.normal;
+  place_section(Eigen::Matrix3d(cell.patch_from_world.leftCols<3>().inverse()).cast<float>(), point);
   if (absorption_) {
     const Eigen::Vector2i texel = absorption_->texel_at(patch.head<2>());
     point.absorption = &absorption_->sigma_a(texel.y(), texel.x());

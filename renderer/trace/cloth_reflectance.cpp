@@ -52,8 +52,7 @@ Array3d ClothReflectance::sample(const Vector3d& wi, const Vector3d& wo, Sampler
     if (!hit) break;
     const PathVertex vertex(*hit, -ray.direction, models_);
     const Array3f lit = vertex.evaluate(light).f_cos;
-    if (lit.maxCoeff() > 0 && !rays_.occluded({vertex.start_toward(light, sampler), light}, kFar_mm))
-      sum += throughput * lit;
+    if (lit.maxCoeff() > 0 && !rays_.occluded(vertex.ray_toward(light, sampler).ray, kFar_mm)) sum += throughput * lit;
     const Vector3f onward = vertex.sample(sampler);
     const ScatteringValue<float> scattering = vertex.evaluate(onward);
     if (!(scattering.pdf > 0)) break;
@@ -64,7 +63,7 @@ Array3d ClothReflectance::sample(const Vector3d& wi, const Vector3d& wo, Sampler
       if (!(sampler.next_1d() < survival)) break;
       throughput /= survival;
     }
-    ray = {vertex.start_toward(onward, sampler), onward};
+    ray = vertex.ray_toward(onward, sampler).ray;
   }
   return sum.cast<double>() / wi.z();  // irradiance is the cosine
 }

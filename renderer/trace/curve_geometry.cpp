@@ -98,14 +98,21 @@ CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u
   const Vector3f from_center = local.origin + distance * local.direction - center.head<3>();
   if (const auto exact = cylinder_normal(from_center, local.direction, point.tangent, center.w()))
     point.normal = *exact;
-  point.radius = center.w() * (1 - kStartDepth);
-  point.position = center.head<3>() + point.radius * point.normal;
+  point.out = center.w() * (1 - kStartDepth) * point.normal;
+  point.side = point.out.cross(point.tangent);
+  point.position = center.head<3>() + point.out;
   if (in_place) return point;
   const Eigen::Matrix3f linear = curves.placed.linear();
   point.position = curves.placed * point.position;
   point.normal = (linear.inverse().transpose() * point.normal).normalized();
   point.tangent = (linear * point.tangent).normalized();
+  place_section(linear, point);
   return point;
+}
+
+void place_section(const Eigen::Matrix3f& linear, CurvePoint& point) {
+  point.side = across(linear * point.side, point.tangent);
+  point.out = across(linear * point.out, point.tangent);
 }
 
 }  // namespace renderer

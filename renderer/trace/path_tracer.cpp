@@ -51,19 +51,21 @@ Array3f PathTracer::Impl::direct_light(const PathVertex& vertex, Sampler& sample
   const float u_light = lights.size() > 1 ? sampler.next_1d() : 0.0f;
   const std::optional<Vector3d> about = lights.sample(vertex.position().cast<double>(), u_light, u);
   if (!about) return Array3f::Zero();
-  const Vector3f start = vertex.start_toward(about->cast<float>(), sampler);
-  const Vector3d origin = start.cast<double>();
-  const std::optional<Vector3d> direction = lights.sample(origin, u_light, u);  // hardly another direction
-  if (!direction) return Array3f::Zero();  // seen from the vertex, not from the start
+  const LightExit exit = vertex.exit_near(about->cast<float>(), sampler);
+  const Vector3d origin = exit.place.cast<double>();
+  const std::optional<Vector3d> direction = lights.sample(origin, u_light, u);
+  if (!direction) return Array3f::Zero();  // seen from the vertex, not from the place of exit
   const std::optional<LightHit> light = lights.intersect(origin, *direction, false);
   if (!light) return Array3f::Zero();  // rounding at the rim of the cone
   const Vector3f wi = direction->cast<float>();
-  const ScatteringValue<float> scattering = vertex.evaluate(wi);
+  ScatteringValue<float> scattering = vertex.evaluate(wi);
+  scattering.f_cos *= vertex.exit_share(exit, wi);
   if (!(scattering.f_cos.maxCoeff() > 0)) return Array3f::Zero();
   const float chance = vertex.is_curve() ? std::min(1.0f, scattering.f_cos.maxCoeff() / kFaintScattering) : 1.0f;
   if (!(sampler.next_1d() < chance)) return Array3f::Zero();
   ++traced;
-  if (rays.occluded({start, wi}, static_cast<float>(light->distance))) return Array3f::Zero();
+  const auto [ray, lead] = vertex.ray_from(exit, wi);
+  if (rays.occluded(ray, lead + static_cast<float>(light->distance))) return Array3f::Zero();
   const auto pdf = static_cast<float>(lights.pdf(origin, *direction));
   return scattering.f_cos * light->radiance * (mis_weight(pdf, scattering.pdf) / (pdf * chance));
 }
@@ -74,9 +76,9 @@ Array3f PathTracer::Impl::radiance(CameraRay camera_ray, Sampler& sampler, int m
   Array3f sum = Array3f::Zero(), throughput = Array3f::Ones();
   const bool may_hit = advance_to(rays.bounds(), camera_ray);
   Vector3d origin = camera_ray.origin, direction = camera_ray.direction;
-  float scattering_pdf = 0;
+  Ray ray{origin.cast<float>(), direction.cast<float>()};
+  float scattering_pdf = 0, lead = 0;  // the ray begins `lead` before the origin
   for (int vertices = 0;; ++vertices) {
-    const Ray ray{origin.cast<float>(), direction.cast<float>()};
     const bool last = vertices == max_vertices;
     const std::optional<LightHit> light = lights.intersect(origin, direction, vertices == 0);
     if ((last && !light) || (vertices == 0 && !may_hit && !light)) break;
@@ -85,7 +87,7 @@ Array3f PathTracer::Impl::radiance(CameraRay camera_ray, Sampler& sampler, int m
       hit = rays.intersect(ray);
       ++traced;
     }
-    if (light && (!hit || light->distance < static_cast<double>(hit->distance))) {
+    if (light && (!hit || light->distance < static_cast<double>(hit->distance - lead))) {
       const float weight =
           vertices == 0 ? 1.0f : mis_weight(scattering_pdf, static_cast<float>(lights.pdf(origin, direction)));
       sum += throughput * light->radiance * weight;
@@ -106,7 +108,10 @@ Array3f PathTracer::Impl::radiance(CameraRay camera_ray, Sampler& sampler, int m
       if (!(sampler.next_1d() < survival)) break;
       throughput /= survival;
     }
-    origin = vertex.start_toward(wi, sampler).cast<double>();
+    const LightExit exit = vertex.exit_toward(wi, sampler);
+    const LeavingRay leaving = vertex.ray_from(exit, wi);
+    ray = leaving.ray, lead = leaving.lead;
+    origin = exit.place.cast<double>();
     direction = wi.cast<double>();
   }
   return sum;

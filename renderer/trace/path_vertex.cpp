@@ -35,13 +35,6 @@ YarnModel<float> prepare(const YarnParameters& p) {
   return YarnModel<float>(in_scalar<float>(p));
 }
 
-CurveLobes<float> lobes_at(const CurveModel& model, const CurvePoint& curve, const Vector3f& wo) {
-  const float h = viewing_offset(wo);
-  if (const auto* thread = std::get_if<ThreadModel<float>>(&model); thread && curve.absorption)
-    return thread->lobes_at(h, wo, {(*curve.absorption)[0], (*curve.absorption)[1], (*curve.absorption)[2]});
-  return std::visit([&](const auto& of) { return of.lobes_at(h, wo); }, model);
-}
-
 }  // namespace
 
 std::vector<CurveModel> prepare_curve_models(const std::vector<ScatteringModel>& scattering) {
@@ -66,20 +59,19 @@ float viewing_offset(const Vector3f& wo) {
   return radial > 0 ? std::clamp(-wo.y() / radial, -1.0f, 1.0f) : 0.0f;
 }
 
-bool leaves_on_far_side(const CurveModel& model) {
+ThreadExit exit_of(const CurveModel& model) {
   const auto* thread = std::get_if<ThreadModel<float>>(&model);
-  return thread && thread->exit() == ThreadExit::far_side;
+  return thread ? thread->exit() : ThreadExit::entry_point;
 }
 
-Vector3f far_side_position(const CurvePoint& entry, const Vector3f& wi, float u) {
-  const Vector3f across = wi - wi.dot(entry.tangent) * entry.tangent;
-  const float length = across.norm();
-  if (!(entry.normal.dot(across) < 0) || !(length > 0)) return entry.position;
-  const Vector3f outward = across / length;
-  const float offset = 2 * u - 1;
-  const Vector3f normal =
-      std::sqrt(std::max(0.0f, 1 - offset * offset)) * outward + offset * entry.tangent.cross(outward);
-  return entry.position + entry.radius * (normal - entry.normal);
+CurveLobes<float> lobes_at(const CurveModel& model, const CurvePoint& curve, const Matrix3f& frame,
+                           const Vector3f& wo) {
+  const Vector3f wo_local = frame * wo;
+  const auto* thread = std::get_if<ThreadModel<float>>(&model);
+  const float h = thread ? offset_in_section(curve, wo) : viewing_offset(wo_local);
+  if (thread && curve.absorption)
+    return thread->lobes_at(h, wo_local, {(*curve.absorption)[0], (*curve.absorption)[1], (*curve.absorption)[2]});
+  return std::visit([&](const auto& of) { return of.lobes_at(h, wo_local); }, model);
 }
 
 PathVertex::PathVertex(const SurfaceHit& hit, const Vector3f& wo, const std::vector<CurveModel>& models) {
@@ -88,8 +80,8 @@ PathVertex::PathVertex(const SurfaceHit& hit, const Vector3f& wo, const std::vec
     position_ = curve->position;
     local_from_world_ = local_from_world(*curve);
     const CurveModel& model = models[curve->curve_set];
-    lobes_ = lobes_at(model, *curve, local_from_world_ * wo);
-    if (leaves_on_far_side(model)) far_side_of_ = curve;
+    lobes_ = lobes_at(model, *curve, local_from_world_, wo);
+    if (const ThreadExit rule = exit_of(model); rule != ThreadExit::entry_point) exits_.emplace(rule, *curve, wo);
   } else {
     const auto& mesh = std::get<MeshPoint>(hit.point);
     is_curve_ = false;

@@ -2,6 +2,7 @@
 // world directions. It is made once per hit; light sampling and scattering sampling share its state.
 #pragma once
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "renderer/scattering/fiber.h"
 #include "renderer/scattering/thread.h"
 #include "renderer/scattering/yarn.h"
+#include "renderer/trace/light_exit.h"
 #include "renderer/trace/ray_scene.h"
 
 namespace renderer {
@@ -30,15 +32,12 @@ Eigen::Matrix3f local_from_world(const CurvePoint& point);
 // direction wo back along the ray, in the normal plane, is gamma_o = asin h.
 float viewing_offset(const Eigen::Vector3f& wo_local);
 
-// Whether light leaves such a curve anywhere across its far side (ThreadExit).
-bool leaves_on_far_side(const CurveModel& model);
+// Where light leaves such a curve (ThreadExit); a single fiber sends it on from where it came in.
+ThreadExit exit_of(const CurveModel& model);
 
-// The place, just below the surface, where light that met a thread at `entry` leaves it along unit direction wi, in the
-// same cross-section; u in [0, 1) chooses the place across the far side. A single fiber sends light on from where it
-// came in. Among a thread's fibers light wanders: what comes back leaves near the place of entry; what goes on has
-// forgotten it and leaves anywhere across the width that is seen from direction wi. Between touching threads that
-// decides what light the neighbours catch.
-Eigen::Vector3f far_side_position(const CurvePoint& entry, const Eigen::Vector3f& wi, float u);
+// The lobes of a curve that is seen from unit direction wo (world); `frame` is local_from_world(curve).
+CurveLobes<float> lobes_at(const CurveModel& model, const CurvePoint& curve, const Eigen::Matrix3f& frame,
+                           const Eigen::Vector3f& wo);
 
 class PathVertex {
  public:
@@ -51,9 +50,22 @@ class PathVertex {
   // M_p N_p of a curve's lobes along wi.
   Lanes<float> lobe_densities(const Eigen::Vector3f& wi) const { return lobes_.lobe_densities(local_from_world_ * wi); }
   const Eigen::Vector3f& position() const { return position_; }
-  // Where light scattered along wi starts: `position`, or elsewhere on a thread (far_side_position).
-  Eigen::Vector3f start_toward(const Eigen::Vector3f& wi, Sampler& sampler) const {
-    return far_side_of_ ? far_side_position(*far_side_of_, wi, sampler.next_1d()) : position_;
+
+  // Where light leaves (light_exit.h); what is not a thread sends it on from `position`.
+  LightExit exit_toward(const Eigen::Vector3f& wi, Sampler& sampler) const {
+    return exits_ ? exits_->toward(wi, sampler) : LightExit{.place = position_};
+  }
+  LightExit exit_near(const Eigen::Vector3f& about, Sampler& sampler) const {
+    return exits_ ? exits_->near(about, sampler) : LightExit{.place = position_};
+  }
+  float exit_share(const LightExit& exit, const Eigen::Vector3f& wi) const {
+    return exits_ ? exits_->share(exit, wi) : 1.0f;
+  }
+  LeavingRay ray_from(const LightExit& exit, const Eigen::Vector3f& wi) const {
+    return exits_ ? exits_->ray(exit, wi) : LeavingRay{.ray = {position_, wi}};
+  }
+  LeavingRay ray_toward(const Eigen::Vector3f& wi, Sampler& sampler) const {
+    return ray_from(exit_toward(wi, sampler), wi);
   }
 
  private:
@@ -63,8 +75,8 @@ class PathVertex {
   const ReflectanceFactor* reflectance_factor_ = nullptr;
   Eigen::Vector3f wo_local_;  // of a surface that is not Lambertian
   bool is_curve_;
-  const CurvePoint* far_side_of_ = nullptr;
-  CurveLobes<float> lobes_;  // curves
+  std::optional<ThreadExits> exits_;  // of a thread
+  CurveLobes<float> lobes_;           // curves
 };
 
 }  // namespace renderer

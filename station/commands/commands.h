@@ -50,6 +50,7 @@ void add_scatter_eval_command(CLI::App& scatter);
 void add_scatter_fit_command(CLI::App& scatter);
 void add_scatter_plot_command(CLI::App& scatter);
 void add_scatter_prior_command(CLI::App& scatter);
+void add_scatter_exits_command(CLI::App& scatter);
 void add_scatter_simulate_command(CLI::App& scatter);
 void add_export_thread_command(CLI::App& exports);
 void add_export_cloth_command(CLI::App& exports);

@@ -2,6 +2,7 @@
 
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/documents/thread_file.h"
 #include "station/thread/invert/fit_document.h"
 #include "station/thread/invert/invert_session.h"
 
@@ -41,6 +42,8 @@ void add_invert_command(CLI::App& app) {
       ->transform(CLI::CheckedTransformer(names_of_models()));
   command->add_option("--solver", arguments->solver, "lm: Levenberg-Marquardt on recorded paths; adam: the paper's")
       ->check(CLI::IsMember({"lm", "adam"}));
+  command->add_option("--exit", arguments->request.fit.start.exit, "where light leaves the thread")
+      ->transform(CLI::CheckedTransformer(thread_exits()));
   std::vector<std::string> groups;
   for (inversion::ParameterGroup group : inversion::kParameterGroups) groups.push_back(inversion::name_of(group));
   command->add_option("--hold", arguments->held, "leave this group of parameters at its start")

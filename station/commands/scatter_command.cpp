@@ -10,6 +10,7 @@ void add_scatter_command(CLI::App& app) {
   add_scatter_eval_command(*scatter);
   add_scatter_plot_command(*scatter);
   add_scatter_prior_command(*scatter);
+  add_scatter_exits_command(*scatter);
 }
 
 }  // namespace station

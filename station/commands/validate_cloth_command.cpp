@@ -3,6 +3,7 @@
 
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/documents/thread_file.h"
 #include "station/thread/invert/fit_document.h"
 #include "station/thread/validate/validate_cloth.h"
 
@@ -25,6 +26,8 @@ void add_validate_cloth_command(CLI::App& app) {
   command->add_option("--out", request.out, "folder of photographs, pictures and results")->required();
   command->add_option("--model", request.models, "models to fit: thread, fiber, yarn; all without this")
       ->transform(CLI::CheckedTransformer(names_of_models()));
+  command->add_option("--exit", request.exit, "where light leaves the thread, in the thread model's fits and pictures")
+      ->transform(CLI::CheckedTransformer(thread_exits()));
   command
       ->add_option("--spp", request.samples_per_pixel, "samples per pixel of each of the two renderings of a picture")
       ->check(CLI::Range(1, 65536))

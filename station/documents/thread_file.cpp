@@ -13,8 +13,8 @@ using renderer::ThreadParameters;
 
 constexpr Range kR{-1e6, 1e6}, kTint{0, 1}, kPower{0, 10};
 constexpr double kRounding = 1e-9;
-constexpr const char* kFarSide = "far_side";
-constexpr const char* kEntryPoint = "entry_point";
+// Files that name no exit are from when there was this one.
+constexpr renderer::ThreadExit kExitWhenLeftOut = renderer::ThreadExit::far_side;
 
 std::array<double, 3> roughness(ObjectReader& reader, const std::string& key) {
   const std::vector<double> lobes = reader.numbers(key, 3, kRoughness);
@@ -30,9 +30,12 @@ void parse_options(ObjectReader& reader, ThreadParameters& p) {
   }
   if (reader.has("exit")) {
     const std::string exit = reader.text("exit");
-    if (exit != kFarSide && exit != kEntryPoint)
-      reader.refuse("exit", "is \"" + exit + "\"; light leaves a thread at \"far_side\" or \"entry_point\"");
-    p.exit = exit == kFarSide ? renderer::ThreadExit::far_side : renderer::ThreadExit::entry_point;
+    const auto found = thread_exits().find(exit);
+    if (found == thread_exits().end())
+      reader.refuse("exit", "is \"" + exit +
+                                "\"; light leaves a thread by \"wandering\", at its \"far_side\" or at the "
+                                "\"entry_point\"");
+    p.exit = found->second;
   }
 }
 
@@ -61,6 +64,7 @@ ThreadParameters parse_parameters(ObjectReader reader) {
   p.r0a = r0[0], p.r0b = r0[1], p.r0c = r0[2];
   p.r1a = r1[0];
   p.r2a = r2[0], p.r2b = r2[1], p.r2c = r2[2];
+  p.exit = kExitWhenLeftOut;
   check_lobe_energies(reader, p);
   parse_options(reader, p);
   reader.finish();
@@ -73,7 +77,8 @@ json parameters_json(const ThreadParameters& p) {
                   {"r0", {p.r0a, p.r0b, p.r0c}},   {"r1", {p.r1a}},    {"r2", {p.r2a, p.r2b, p.r2c}}};
   if (p.lambda0_rgb != plain.lambda0_rgb) parameters["lambda0_rgb"] = to_json(p.lambda0_rgb);
   if (p.transmittance_powers != plain.transmittance_powers) parameters["transmittance_powers"] = p.transmittance_powers;
-  if (p.exit != plain.exit) parameters["exit"] = p.exit == renderer::ThreadExit::far_side ? kFarSide : kEntryPoint;
+  for (const auto& [name, exit] : thread_exits())
+    if (p.exit == exit && exit != kExitWhenLeftOut) parameters["exit"] = name;
   return parameters;
 }
 
@@ -87,6 +92,13 @@ json units() {
 }
 
 }  // namespace
+
+const std::map<std::string, renderer::ThreadExit>& thread_exits() {
+  static const std::map<std::string, renderer::ThreadExit> names{{"entry_point", renderer::ThreadExit::entry_point},
+                                                                 {"far_side", renderer::ThreadExit::far_side},
+                                                                 {"wandering", renderer::ThreadExit::wandering}};
+  return names;
+}
 
 ThreadFile parse_thread(const json& document, const std::string& source) {
   ObjectReader reader(document, source, "thread", 1);

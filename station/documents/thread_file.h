@@ -6,6 +6,7 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -21,6 +22,9 @@ struct ThreadFile {
   nlohmann::json fit = nlohmann::json::object();         // how well it agrees with its views; may be empty
   nlohmann::json provenance = nlohmann::json::object();  // session, software, date; may be empty
 };
+
+// The rules by which light leaves a thread, by the names that files give them.
+const std::map<std::string, renderer::ThreadExit>& thread_exits();
 
 ThreadFile parse_thread(const nlohmann::json& document, const std::string& source);
 ThreadFile read_thread(const std::filesystem::path& file);

@@ -37,7 +37,7 @@ std::vector<Ray> rays_of(bool scattered) {
     Sampler sampler(1, static_cast<std::uint64_t>(pixel));
     const PathVertex vertex(*hit, -ray.direction, models);
     const Vector3f wi = vertex.sample(sampler);
-    all.push_back({vertex.start_toward(wi, sampler), wi});
+    all.push_back(vertex.ray_toward(wi, sampler).ray);
   }
   return all;
 }

@@ -35,7 +35,7 @@ FiberExport fiber_export(const ThreadFile& thread) {
   return {.thread = thread.name,
           .diameter_mm = thread.diameter_mm,
           .nearest = inversion::nearest_fiber(thread.parameters, srgb_scattering_from_camera(thread)),
-          .far_side = thread.parameters.exit == renderer::ThreadExit::far_side};
+          .wanders = thread.parameters.exit != renderer::ThreadExit::entry_point};
 }
 
 std::vector<std::string> approximation(const FiberExport& fiber) {
@@ -49,8 +49,8 @@ std::vector<std::string> approximation(const FiberExport& fiber) {
       of_channels("light sent back", found.thread_back, found.fiber_back)};
   if (fiber.nearest.fiber.eta > 0.999 * inversion::kMostFiberIndex)
     lines.push_back("its refractive index is as high as was allowed: the thread reflects more than fibers do");
-  if (fiber.far_side)
-    lines.push_back("the thread sends light on from its far side, the fiber from where it came in: cloth differs more");
+  if (fiber.wanders)
+    lines.push_back("light wanders inside the thread, the fiber sends it on from where it came in: cloth differs more");
   if (!fiber.nearest.converged) lines.push_back("the search for it ended before it had settled");
   return lines;
 }

@@ -19,7 +19,7 @@ struct FiberExport {
   std::string thread;  // the thread's name, for people
   double diameter_mm = 0;
   inversion::NearestFiber nearest;
-  bool far_side = false;  // light leaves the thread from its far side, which no fiber does
+  bool wanders = false;  // light leaves the thread elsewhere than it came in, which no fiber does
 };
 
 // The matrix from a thread's camera RGB to linear sRGB of the light that it scatters when light that is white in sRGB

@@ -151,7 +151,9 @@ RecoveredThread recover_thread(const RecoverRequest& request) {
 
   const auto started = std::chrono::steady_clock::now();
   const std::vector<View> first_views = draw_of(request.fit.seed);
-  const inversion::ViewFit first = fit_draw(0, request.fit, first_views);
+  inversion::FitOptions cold = request.fit;
+  cold.start.exit = thread.parameters.exit;
+  const inversion::ViewFit first = fit_draw(0, cold, first_views);
   RecoveredThread result{.thread = thread.name,
                          .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count(),
                          .loss_of_truth = {},
@@ -168,7 +170,7 @@ RecoveredThread recover_thread(const RecoverRequest& request) {
   result.loss_of_fit = loss_of(first);
   result.quantities = recovered_quantities(truth, first);
 
-  inversion::FitOptions again = fit_again(request.fit, first);
+  inversion::FitOptions again = fit_again(cold, first);
   std::vector<Reading> draws;
   for (int draw = 1; draw <= request.draws; ++draw) {
     again.seed = request.fit.seed + 100000 * static_cast<std::uint64_t>(draw);

@@ -162,6 +162,7 @@ class Study {
       if (sample.starts_with(file.stem().string() + "-")) words += read_json_file(file).dump();
     for (int number : {request_.samples_per_pixel, request_.photograph_samples, request_.width_px, request_.height_px})
       words += "/" + std::to_string(number);
+    if (what == name_of(ModelKind::thread)) words += "/" + std::to_string(static_cast<int>(request_.exit));
     return words + "/" + std::to_string(request_.seed);
   }
 
@@ -183,6 +184,7 @@ class Study {
                                             step)
                                .views;
     inversion::FitOptions options{.model = model, .seed = request_.seed};
+    options.start.exit = request_.exit;
     if (model == ModelKind::yarn) options.paths_per_block = {128, 512};
     options.progress = [&](const std::string& what, double share) {
       step(name_of(model) + ", " + what, share);

@@ -26,8 +26,9 @@ struct ValidateClothRequest {
   std::vector<std::filesystem::path> warps, drafts;
   std::vector<inversion::ModelKind> models{inversion::ModelKind::thread, inversion::ModelKind::fiber,
                                            inversion::ModelKind::yarn};
-  int samples_per_pixel = 64;   // in each of the two renderings of every picture
-  int photograph_samples = 96;  // in each of the two photographs of a spool's view
+  renderer::ThreadExit exit = renderer::ThreadParameters{}.exit;  // of the thread model
+  int samples_per_pixel = 64;                                     // in each of the two renderings of every picture
+  int photograph_samples = 96;                                    // in each of the two photographs of a spool's view
   int width_px = 256, height_px = 192;
   std::uint64_t seed = 1;
   ProgressStyle progress_style = ProgressStyle::automatic;

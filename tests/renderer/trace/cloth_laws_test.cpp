@@ -53,7 +53,7 @@ double walked_albedo(const Scene& lossless, const Camera& camera, double albedo,
         const ScatteringValue<float> value = at.evaluate(wi);
         if (!(value.pdf > 0)) break;
         weight *= albedo * static_cast<double>(value.f_cos[0] / value.pdf);
-        ray = {at.start_toward(wi, sampler), wi};
+        ray = at.ray_toward(wi, sampler).ray;
       }
     }
   }

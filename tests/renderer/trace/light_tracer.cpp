@@ -11,6 +11,7 @@
 #include <optional>
 #include <thread>
 
+#include "renderer/scattering/exit_offsets.h"
 #include "renderer/trace/path_vertex.h"
 #include "renderer/trace/ray_scene.h"
 
@@ -74,8 +75,8 @@ class ExitScene {
   // For light that leaves a curve at `start`, just below the curve's surface: how far along wo that surface is.
   float own_surface(const CurvePoint& start, const Vector3f& wo) const {
     const Vector3f across = wo - wo.dot(start.tangent) * start.tangent;
-    const float outer = start.radius / (1 - 1e-3f), b = start.radius * start.normal.dot(across);
-    const float a = across.squaredNorm(), c = start.radius * start.radius - outer * outer;
+    const float outer = start.out.norm() / (1 - 1e-3f), b = start.out.dot(across);
+    const float a = across.squaredNorm(), c = start.out.squaredNorm() - outer * outer;
     const float expected = (-b + std::sqrt(b * b - a * c)) / a;  // of a straight curve
     const std::optional<SurfaceHit> exit = first_exit({start.position, wo});
     return exit && exit->distance < 1.5f * expected ? exit->distance : 0;
@@ -92,8 +93,9 @@ class ExitScene {
         (-w * w * p[0] + u * (3 * u - 4) * p[1] - w * (3 * w - 4) * p[2] + u * u * p[3]).head<3>().normalized();
     const Vector3f from_center = ray.origin + query.ray.tfar * ray.direction - center.head<3>();
     point.normal = (from_center - from_center.dot(point.tangent) * point.tangent).normalized();
-    point.radius = center.w() * (1 - 1e-3f);
-    point.position = center.head<3>() + point.radius * point.normal;
+    point.out = center.w() * (1 - 1e-3f) * point.normal;
+    point.side = point.out.cross(point.tangent);
+    point.position = center.head<3>() + point.out;
     return point;
   }
 
@@ -245,8 +247,99 @@ class LightTracer {
     return sum / static_cast<double>(hits.size());
   }
 
+  // A place of the thread that a particle has met at `from`, where the thread's section is `angle` away from the entry.
+  static CurvePoint turned(const CurvePoint& from, float angle) {
+    CurvePoint place = from;
+    place.out = std::cos(angle) * from.out + std::sin(angle) * from.side;
+    place.side = std::cos(angle) * from.side - std::sin(angle) * from.out;
+    place.normal = place.out.normalized();
+    place.position = from.position - from.out + place.out;
+    return place;
+  }
+
+  // Moves the place of entry of a viewing ray along the thread to where light that meets the thread at `from` leaves it
+  // along wo.
+  static void move_along(const CurvePoint& from, const Vector3f& wo, CurvePoint& place) {
+    constexpr float kMostSlope = 0.5f;
+    const float along = -wo.dot(place.tangent), cosine = std::sqrt(std::max(1e-12f, 1 - along * along));
+    const float slope = std::clamp(along / cosine, -kMostSlope, kMostSlope);
+    place.position -= slope * (from.out - place.out).norm() * place.tangent;
+  }
+
+  // f_cos times the density of the offset at which the viewing ray would have left, over the cosine of wi's inclination.
+  Array3d wandering_adjoint(const CurvePoint& from, const CurvePoint& place, const Vector3f& wo,
+                            const Vector3f& wi) const {
+    const float cosine = place.tangent.cross(wi).norm();
+    if (!(cosine > 1e-3f)) return Array3d::Zero();
+    const float azimuth =
+        std::atan2(wi.dot(place.out), wi.dot(place.side)) - std::atan2(wo.dot(place.out), wo.dot(place.side));
+    const float density =
+        simulated_exit_offsets().density(offset_in_section(place, wo), azimuth, -offset_in_section(from, wi));
+    const Matrix3f local = local_from_world(place);
+    const CurveLobes<float> lobes = lobes_at(models_[0], place, local, wo);
+    return lobes.evaluate(local * wi).f_cos.template cast<double>() * static_cast<double>(density / cosine);
+  }
+
+  // Scattering of threads in which light wanders (light_exit.h): the particle enters a thread once, at the place where
+  // a viewing ray would leave it, and leaves where that ray would come in. With |n . wo| per radian of the section
+  // being cos theta_o per offset, nothing here is unbounded.
+  void wander(const Particle& particle, double reference, Sampler& sampler, std::vector<Particle>& open,
+              std::vector<Array3d>& sums) const {
+    const std::optional<SurfaceHit> hit = rays_.intersect({particle.origin, particle.direction});
+    if (!hit) return;
+    const CurvePoint& from = point(*hit);
+    const Vector3f wi = -particle.direction;
+    const auto place_of = [&](const Vector3f& wo, float offset) {  // facing wo
+      const float middle = std::atan2(wo.dot(from.side), wo.dot(from.out));
+      return turned(from, middle + std::asin(offset));
+    };
+    connect_wandering(particle, from, place_of, sampler, sums);
+    if (particle.vertices + 1 == most_vertices_) return;
+    const double copies = std::min(particle.weight.maxCoeff() / reference, double{kMostCopies});
+    const int count = static_cast<int>(copies + static_cast<double>(sampler.next_1d()));
+    const Matrix3f local = local_from_world(from);
+    const CurveLobes<float> lobes = lobes_at(models_[0], from, local, wi);
+    for (int copy = 0; copy < count; ++copy) {
+      const Eigen::Vector2f choose = sampler.next_2d(), u = sampler.next_2d(), v = sampler.next_2d();
+      Vector3f wo_local = lobes.sample(choose.y(), u.x(), u.y(), v.x());
+      const float cos_theta = std::hypot(wo_local.y(), wo_local.z()), phi = 2 * std::numbers::pi_v<float> * v.x();
+      wo_local = {wo_local.x(), cos_theta * std::cos(phi), cos_theta * std::sin(phi)};
+      const Vector3f wo = (local.transpose() * wo_local).normalized();
+      CurvePoint place = place_of(wo, 2 * v.y() - 1);
+      const double pdf = static_cast<double>(inclination_pdf(lobes, wo_local)) / (2 * std::numbers::pi) / 2;
+      const Array3d scattered = wandering_adjoint(from, place, wo, wi) * static_cast<double>(cos_theta);
+      if (!(scattered.maxCoeff() > 0)) continue;
+      move_along(from, wo, place);
+      open.push_back({place.position, wo, particle.weight * scattered / (pdf * copies), particle.vertices + 1});
+    }
+  }
+
+  template <class PlaceOf>
+  void connect_wandering(const Particle& particle, const CurvePoint& from, const PlaceOf& place_of, Sampler& sampler,
+                         std::vector<Array3d>& sums) const {
+    const Vector3f about = (film_.eye - from.position.cast<double>()).normalized().cast<float>();
+    const float offset = 2 * sampler.next_1d() - 1;
+    CurvePoint place = place_of(about, offset);
+    const float facing = std::sqrt(std::max(0.0f, 1 - offset * offset));
+    move_along(from, about, place);
+    const Vector3d position = place.position.cast<double>(), to_eye = film_.eye - position;
+    const double scale = film_.distance_mm / to_eye.z();
+    if (std::abs(position.x() * scale) > film_.width_mm / 2 || std::abs(position.y() * scale) > film_.height_mm / 2)
+      return;
+    const double distance = to_eye.norm(), cosine = to_eye.z() / distance;
+    const Vector3f wo = (to_eye / distance).cast<float>();
+    const float leaving = place.normal.dot(wo);
+    if (!(leaving > 0) || rays_.occluded({place.position, wo}, static_cast<float>(distance))) return;
+    const double importance = film_.distance_mm * film_.distance_mm /
+                              (film_.width_mm * film_.height_mm * distance * distance * cosine * cosine * cosine);
+    sums[static_cast<std::size_t>(particle.vertices)] += particle.weight *
+                                                         wandering_adjoint(from, place, wo, -particle.direction) *
+                                                         (static_cast<double>(leaving / (0.5f * facing)) * importance);
+  }
+
   void scatter(const Particle& particle, double reference, Sampler& sampler, std::vector<Particle>& open,
                std::vector<Array3d>& sums) const {
+    if (exit_of(models_[0]) == ThreadExit::wandering) return wander(particle, reference, sampler, open, sums);
     const std::vector<SurfaceHit> hits = places(particle);
     if (hits.empty()) return;
     connect(particle, hits, sums);

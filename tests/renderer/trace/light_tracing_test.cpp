@@ -115,6 +115,13 @@ TEST(LightTracingTest, ParallelThreadsHaveTheMeanRadianceOfParticlesFromTheLight
   expect_the_same_means(parallel_threads_scene(), {12, 8}, 6'000'000, {1, 3, 8, 32});
 }
 
+// Threads that touch each other, so that where light leaves one decides what the next one catches.
+TEST(LightTracingTest, ParallelThreadsInWhichLightWandersHaveTheMeanRadianceOfParticlesFromTheLight) {
+  CurveScene scene = parallel_threads_scene();
+  scene.scene.curves.front().scattering = ThreadParameters{.sigma_a = {0.05, 0.3, 0.8}, .exit = ThreadExit::wandering};
+  expect_the_same_means(scene, {12, 8}, 6'000'000, {1, 3, 8});
+}
+
 TEST(LightTracingTest, PlainWeaveHasTheMeanDirectLightOfParticlesFromTheLight) {
   expect_the_same_means(plain_weave_scene(), {46.5, 36}, 2'000'000, {1});
 }

@@ -61,13 +61,18 @@ TEST(SceneFile, OptionsOfAThreadAreReadAndWrittenOnlyWhereTheyDiffer) {
   EXPECT_EQ(parse_thread(to_json(metal), "again").parameters.lambda0_rgb, metal.parameters.lambda0_rgb);
   EXPECT_EQ(parse_thread(to_json(metal), "again").parameters.transmittance_powers,
             metal.parameters.transmittance_powers);
-  ThreadFile entry = metal;
-  entry.parameters.exit = renderer::ThreadExit::entry_point;
-  EXPECT_EQ(to_json(entry).at("parameters").at("exit"), "entry_point");
-  EXPECT_EQ(parse_thread(to_json(entry), "again").parameters.exit, renderer::ThreadExit::entry_point);
-  json elsewhere = to_json(entry);
+  EXPECT_EQ(metal.parameters.exit, renderer::ThreadExit::far_side);  // named by no file that is older than the others
+  EXPECT_FALSE(to_json(metal).at("parameters").contains("exit"));
+  ThreadFile other = metal;
+  for (const auto& [name, exit] : thread_exits()) {
+    other.parameters.exit = exit;
+    EXPECT_EQ(parse_thread(to_json(other), "again").parameters.exit, exit) << name;
+  }
+  other.parameters.exit = renderer::ThreadExit::entry_point;
+  json elsewhere = to_json(other);
   elsewhere["parameters"]["exit"] = "middle";
-  EXPECT_NE(refusal([&] { parse_thread(elsewhere, "t"); }).find("\"far_side\" or \"entry_point\""), std::string::npos);
+  EXPECT_NE(refusal([&] { parse_thread(elsewhere, "t"); }).find("by \"wandering\", at its \"far_side\""),
+            std::string::npos);
   const json silk = to_json(read_thread(kThreads / "silk_gold.json")).at("parameters");
   EXPECT_FALSE(silk.contains("lambda0_rgb") || silk.contains("transmittance_powers") || silk.contains("exit"));
 

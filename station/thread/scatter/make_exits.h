@@ -1,0 +1,18 @@
+// The making of the built-in table of where light leaves threads from simulations: the work behind `threadstation
+// scatter exits`.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "renderer/scattering/exit_offsets.h"
+#include "station/output/progress.h"
+
+namespace station {
+
+// Simulates the library of threads, writes the table and returns it as a document: `share` has rows of shares of the
+// offsets out, in parts of 10,000, for each bin of azimuths of each bin of offsets in. Ctrl-C stops it between
+// simulations.
+nlohmann::json make_exits(const std::filesystem::path& out, std::uint64_t seed, ProgressStyle progress);
+
+}  // namespace station
