@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <sstream>
 #include <stdexcept>
 
 #include "renderer/scattering/degree.h"
@@ -64,8 +65,12 @@ float ExitOffsets::density(float offset_in, float azimuth, float offset_out) con
 const ExitOffsets& simulated_exit_offsets() {
   static const ExitOffsets table = [] {
     const nlohmann::json document = nlohmann::json::parse(kExitOffsetsJson);
-    return ExitOffsets(document.at("offset_bins").get<int>(), document.at("azimuth_bins").get<int>(),
-                       document.at("share").get<std::vector<double>>());
+    std::vector<double> share;
+    for (const nlohmann::json& row : document.at("rows")) {
+      std::istringstream text(row.get<std::string>());
+      for (double parts = 0; text >> parts;) share.push_back(parts);
+    }
+    return ExitOffsets(document.at("offset_bins").get<int>(), document.at("azimuth_bins").get<int>(), share);
   }();
   return table;
 }

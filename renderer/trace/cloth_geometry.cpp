@@ -3,7 +3,6 @@
 #include <embree3/rtcore.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
@@ -136,13 +135,14 @@ CurvePoint ClothGeometry::point_at(const ClothHit& hit) const {
   const ColumnYarns& yarns = yarns_[hit.yarns];
   CurvePoint point = point_on_curve(yarns.curves, hit.segment, hit.u, hit.hit_normal, hit.ray, hit.distance);
   const Vector3d patch = point.position.cast<double>() + hit.tile;
-  const Vector3d world = world_from_patch(cell, patch);
+  const Affine3x4 to_world = world_from_patch(cell);
+  const Vector3d world = to_world * patch.homogeneous();
   const Eigen::Matrix3f frame = frame_at(shell_, cell, world).cast<float>();
   point.curve_set = first_curve_set_ + yarns.thread;
   point.position = world.cast<float>();
   point.tangent = frame * point.tangent;
   point.normal = frame * point.normal;
-  place_section(Eigen::Matrix3d(cell.patch_from_world.leftCols<3>().inverse()).cast<float>(), point);
+  place_section(to_world.leftCols<3>().cast<float>(), point);
   if (absorption_) {
     const Eigen::Vector2i texel = absorption_->texel_at(patch.head<2>());
     point.absorption = &absorption_->sigma_a(texel.y(), texel.x());

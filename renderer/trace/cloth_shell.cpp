@@ -104,9 +104,11 @@ bool is_flat(const ClothSurface& surface, const Triangle& v) {
 
 }  // namespace
 
-Vector3d world_from_patch(const ShellCell& cell, const Vector3d& patch) {
-  const Matrix3d linear = cell.patch_from_world.leftCols<3>();
-  return linear.inverse() * (patch - cell.patch_from_world.col(3));
+Affine3x4 world_from_patch(const ShellCell& cell) {
+  Affine3x4 inverse;
+  inverse.leftCols<3>() = cell.patch_from_world.leftCols<3>().inverse();
+  inverse.col(3) = -inverse.leftCols<3>() * cell.patch_from_world.col(3);
+  return inverse;
 }
 
 ClothShell make_shell(const ClothSurface& surface, const SurfaceRange& heights) {

@@ -32,9 +32,9 @@ struct ShellCell {
   Eigen::AlignedBox3d bounds;             // world
 };
 
-// The place in the world of a place of the patch that lies in this cell. This inverse map is computed anew every time
-// instead of stored, because a garment has a hundred thousand cells.
-Eigen::Vector3d world_from_patch(const ShellCell& cell, const Eigen::Vector3d& patch);
+// The inverse of patch_from_world. It is computed anew for every hit instead of stored, because a garment has a hundred
+// thousand cells.
+Affine3x4 world_from_patch(const ShellCell& cell);
 
 struct ClothShell {
   std::vector<ShellCell> cells;

@@ -15,9 +15,10 @@ constexpr float kPi = std::numbers::pi_v<float>;
 
 // The share of places that near() draws anywhere on the section, so that it draws every place from which the lamp is
 // seen.
-constexpr float kAnywhere = 0.05f;
+constexpr float kAnywhere = 0.02f;
 // The least chance with which near() draws either side of the thread under ThreadExit::far_side.
 constexpr float kLeastSide = 0.02f;
+constexpr float kSideSlope = 5;  // how quickly that chance changes with the sine of the direction above the surface
 // How far along a thread light comes for each step across it, at most: further on yarns bend away.
 constexpr float kMostSlope = 0.5f;
 
@@ -32,7 +33,7 @@ float offset_in_section(const CurvePoint& point, const Vector3f& wo) {
 ThreadExits::ThreadExits(ThreadExit rule, const CurvePoint& point, const Vector3f& wo)
     : rule_(rule), point_(&point), side_(point.normal.cross(point.tangent)), out_(point.normal) {
   offset_in_ = offset_in_section(point, wo);
-  azimuth_in_ = std::atan2(wo.dot(out_), wo.dot(side_));
+  came_from_ = {wo.dot(side_), wo.dot(out_)};
   const float along = -wo.dot(point.tangent), across = std::sqrt(std::max(0.0f, 1 - along * along));
   slope_ = rule == ThreadExit::wandering ? std::clamp(along / std::max(across, 1e-6f), -kMostSlope, kMostSlope) : 0.0f;
 }
@@ -48,7 +49,8 @@ ThreadExits::Seen ThreadExits::seen_from(const Vector3f& direction) const {
 }
 
 float ThreadExits::azimuth_of(const Vector3f& wi) const {
-  return std::atan2(wi.dot(out_), wi.dot(side_)) - azimuth_in_;
+  const float side = wi.dot(side_), out = wi.dot(out_);
+  return std::atan2(came_from_.x() * out - came_from_.y() * side, came_from_.x() * side + came_from_.y() * out);
 }
 
 LightExit ThreadExits::at_entry(float drawn) const {
@@ -73,7 +75,7 @@ float ThreadExits::density(const Vector2f& on_circle, const Seen& seen, const Ve
 LightExit ThreadExits::toward(const Vector3f& wi, Sampler& sampler) const {
   const Seen seen = seen_from(wi);
   if (rule_ == ThreadExit::entry_point || seen.cosine == 0 || (rule_ == ThreadExit::far_side && faces_entry(seen)))
-    return at_entry(1);
+    return at_entry(0);
   const float u = sampler.next_1d();
   const float offset =
       rule_ == ThreadExit::far_side ? 2 * u - 1 : simulated_exit_offsets().sample(offset_in_, azimuth_of(wi), u);
@@ -86,7 +88,7 @@ LightExit ThreadExits::near(const Vector3f& about, Sampler& sampler) const {
   if (seen.cosine == 0) return at_entry(1);
   float u = sampler.next_1d(), rest = 1;
   if (rule_ == ThreadExit::far_side) {
-    const float entry = std::clamp(0.5f + 2 * seen.outward.y(), kLeastSide, 1 - kLeastSide);
+    const float entry = std::clamp(0.5f + kSideSlope * seen.outward.y(), kLeastSide, 1 - kLeastSide);
     if (u < entry) return at_entry(entry);
     rest = 1 - entry;
     u = std::min((u - entry) / rest, 1.0f);
@@ -105,7 +107,7 @@ LightExit ThreadExits::near(const Vector3f& about, Sampler& sampler) const {
 }
 
 float ThreadExits::share(const LightExit& exit, const Vector3f& wi) const {
-  if (rule_ == ThreadExit::entry_point) return 1;
+  if (rule_ == ThreadExit::entry_point || exit.drawn == 0) return 1;
   const Seen seen = seen_from(wi);
   if (rule_ == ThreadExit::far_side && faces_entry(seen) != exit.at_entry) return 0;
   if (exit.at_entry) return 1 / exit.drawn;

@@ -30,7 +30,8 @@ float offset_in_section(const CurvePoint& point, const Eigen::Vector3f& wo);
 struct LightExit {
   Eigen::Vector3f place;      // world, on the thread's surface
   Eigen::Vector2f on_circle;  // of the section, (side, out) of CurvePoint as unit vectors
-  float drawn = 0;            // density by which it was drawn, per radian; probability of the entry if `at_entry`
+  // By near(): the density of the place per radian, or the probability of the entry. 0: drawn for the very direction.
+  float drawn = 0;
   bool at_entry = true;
 };
 
@@ -49,7 +50,7 @@ class ThreadExits {
   LightExit toward(const Eigen::Vector3f& wi, Sampler& sampler) const;
   // A place where light leaves in some direction like `about`, to be weighted by share().
   LightExit near(const Eigen::Vector3f& about, Sampler& sampler) const;
-  // The density with which light that goes along wi leaves there, over that with which near() draws the place.
+  // The density with which light that goes along wi leaves there, over that with which the place was drawn.
   float share(const LightExit& exit, const Eigen::Vector3f& wi) const;
   LeavingRay ray(const LightExit& exit, const Eigen::Vector3f& wi) const;
 
@@ -61,6 +62,7 @@ class ThreadExits {
     float cosine = 0;                 // of the inclination; 0: along the tangent
   };
   Seen seen_from(const Eigen::Vector3f& direction) const;
+  // Of wi relative to wo, about the tangent.
   float azimuth_of(const Eigen::Vector3f& wi) const;
   LightExit at(const Eigen::Vector2f& on_circle, float drawn) const;
   LightExit at_entry(float drawn) const;
@@ -71,7 +73,8 @@ class ThreadExits {
   ThreadExit rule_;
   const CurvePoint* point_;
   Eigen::Vector3f side_, out_;  // unit vectors across the tangent, against which azimuths are measured
-  float offset_in_, azimuth_in_, slope_;
+  Eigen::Vector2f came_from_;   // wo by those
+  float offset_in_, slope_;
 };
 
 }  // namespace renderer

@@ -33,6 +33,8 @@ class Lights {
   double power(const Eigen::Vector3d& origin) const;
   // Density of `sample` per solid angle.
   double pdf(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
+  // Whether all of them are so far away that a direction is as good from one place as from another.
+  bool at_infinity() const { return lights_.empty(); }
   std::size_t size() const { return lights_.size() + (surroundings_ ? 1 : 0); }
 
   static constexpr double kSurroundings_mm = 1e9;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <numeric>
+#include <string>
+#include <vector>
 
 #include "station/documents/reader.h"
 #include "station/output/interrupt.h"
@@ -21,15 +23,19 @@ nlohmann::json make_exits(const std::filesystem::path& out, std::uint64_t seed, 
     display.show(done, total, "threads simulated");
     return !interrupted();
   };
-  std::vector<double> exits = renderer::mean_exits(renderer::clear_threads(renderer::thread_library()), options);
+  const std::vector<double> exits = renderer::mean_exits(renderer::clear_threads(renderer::thread_library()), options);
+  nlohmann::json rows = nlohmann::json::array();
   for (auto row = exits.begin(); row != exits.end(); row += options.offset_bins) {
     const double sum = std::accumulate(row, row + options.offset_bins, 0.0);
-    for (auto share = row; share != row + options.offset_bins; ++share) *share = std::round(kParts * *share / sum);
+    std::string text;
+    for (auto share = row; share != row + options.offset_bins; ++share)
+      text += (text.empty() ? "" : " ") + std::to_string(std::lround(kParts * *share / sum));
+    rows.push_back(text);
   }
   const nlohmann::json document{{"made_by", "threadstation scatter exits --seed " + std::to_string(seed)},
                                 {"offset_bins", options.offset_bins},
                                 {"azimuth_bins", options.azimuth_bins},
-                                {"share", std::vector<int>(exits.begin(), exits.end())}};
+                                {"rows", rows}};
   write_json_file(out, document);
   return document;
 }

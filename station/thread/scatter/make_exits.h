@@ -10,8 +10,8 @@
 
 namespace station {
 
-// Simulates the library of threads, writes the table and returns it as a document: `share` has rows of shares of the
-// offsets out, in parts of 10,000, for each bin of azimuths of each bin of offsets in. Ctrl-C stops it between
+// Simulates the library of threads, writes the table and returns it as a document: for each bin of azimuths of each bin
+// of offsets in a row of text with the shares of the offsets out, in parts of 10,000. Ctrl-C stops it between
 // simulations.
 nlohmann::json make_exits(const std::filesystem::path& out, std::uint64_t seed, ProgressStyle progress);
 

@@ -63,7 +63,8 @@ TEST(ClothShellTest, OnACylinderHeightsGoOutwardsAndThePatchGoesRound) {
       EXPECT_LT((frame.col(2) - normal).norm(), 2e-4);
       EXPECT_LT((frame.col(0) - along).norm(), 2e-4);
       EXPECT_LT((frame.col(1) - Vector3d::UnitZ()).norm(), 1e-9);
-      EXPECT_LT((world_from_patch(*cell, cell->patch_from_world * at.homogeneous()) - at).norm(), 1e-9);
+      EXPECT_LT((world_from_patch(*cell) * (cell->patch_from_world * at.homogeneous()).homogeneous() - at).norm(),
+                1e-9);
     }
   }
 }

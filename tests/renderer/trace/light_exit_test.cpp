@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "renderer/scattering/exit_offsets.h"
 #include "renderer/trace/path_vertex.h"
@@ -135,6 +136,7 @@ TEST(LightExitTest, RaysBeginInsideAndLeaveAtTheirPlace) {
     const CurvePoint entry = point_on(wide, high, 0.5f);
     const ThreadExits exits(ThreadExit::wandering, entry, Vector3f(0.9f, 0.3f, 0.3f).normalized());
     Sampler sampler(1, 5);
+    float deepest = 0;
     for (int i = 0; i < 1000; ++i) {
       sampler.start_sample(static_cast<std::uint32_t>(i));
       const float phi = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / 1000, z = 0.9f * std::sin(7 * phi);
@@ -142,9 +144,48 @@ TEST(LightExitTest, RaysBeginInsideAndLeaveAtTheirPlace) {
       const LightExit exit = exits.toward(wi, sampler);
       const LeavingRay leaving = exits.ray(exit, wi);
       EXPECT_LE(off_rim(leaving.ray.origin, wide, high), 1e-3f);
+      deepest = std::min(deepest, off_rim(leaving.ray.origin, wide, high));
+      EXPECT_EQ(exits.share(exit, wi), 1);
       EXPECT_LT((leaving.ray.origin + leaving.lead * wi - exit.place).norm(), 1e-5f);
       EXPECT_GE(off_rim(exit.place + 0.01f * wi, wide, high), 0);
     }
+    EXPECT_LT(deepest, -0.95f);  // near the axis
+  }
+}
+
+// A yarn that another one is pressed into: light that leaves the first inside the second meets the second.
+TEST(LightExitTest, LightThatLeavesInsideAnotherYarnMeetsIt) {
+  constexpr float kRadius = 0.25f;
+  for (const ThreadExit rule : {ThreadExit::far_side, ThreadExit::wandering}) {
+    Scene scene;
+    for (const float depth : {0.0f, 0.4f}) {  // axes along x and, 0.4 mm below, along y: they overlap by 0.1 mm
+      CurveSet yarn{.scattering = ThreadParameters{.exit = rule}};
+      for (int i = -3; i < 5; ++i) {
+        const auto along = static_cast<float>(i);
+        yarn.control_points.push_back({depth > 0 ? 0 : along, depth > 0 ? along : 0, -depth, kRadius});
+      }
+      for (std::uint32_t i = 0; i < 5; ++i) yarn.segments.push_back(i);
+      scene.curves.push_back(yarn);
+    }
+    const RayScene rays(std::move(scene));
+    const auto models = prepare_curve_models(scattering_models(rays.scene()));
+    const Vector3f down(0, 0, -1);
+    const std::optional<SurfaceHit> hit = rays.intersect({{0, 0.05f, 1}, down});
+    ASSERT_TRUE(hit && std::get<CurvePoint>(hit->point).curve_set == 0);
+    const PathVertex vertex(*hit, -down, models);
+    Sampler sampler(1, 6);
+    int met = 0, inside = 0;
+    for (int i = 0; i < 500; ++i) {
+      sampler.start_sample(static_cast<std::uint32_t>(i));
+      const LightExit exit = vertex.exit_toward(down, sampler);
+      const float x = exit.place.x(), below = exit.place.z() + 0.4f;
+      if (!(x * x + below * below < 0.95f * kRadius * kRadius)) continue;
+      ++inside;
+      const std::optional<SurfaceHit> next = rays.intersect(vertex.ray_from(exit, down).ray);
+      met += next && std::get<CurvePoint>(next->point).curve_set == 1;
+    }
+    EXPECT_GT(inside, 100);
+    EXPECT_EQ(met, inside);
   }
 }
 
