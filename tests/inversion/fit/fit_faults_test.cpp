@@ -73,9 +73,9 @@ TEST(FitFaultsTest, ANearlyBlackSpoolSaysSo) {
 }
 
 TEST(FitFaultsTest, AWhiteSpoolIsFittedWithAbsorptionNearNoneAndItsUncertainty) {
-  const DoubtedFit found = fit_and_doubt(photographs_of(white_thread()));
-  for (int c = 0; c < 3; ++c)
-    EXPECT_NEAR(found.fit.thread().sigma_a[c], white_thread().sigma_a[c], 0.05) << c;  // 0.03 for this seed
+  // All rounds: of six sessions that differ in their noise, kQuick leaves two or three 0.05 ... 0.08 off.
+  const DoubtedFit found = fit_and_doubt(photographs_of(white_thread()), FitOptions{});
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.fit.thread().sigma_a[c], white_thread().sigma_a[c], 0.05) << c;
 }
 
 TEST(FitFaultsTest, ASaturatedViewIsNamed) {
