@@ -36,6 +36,14 @@ std::vector<ColumnYarns> yarns_of(const Cloth& cloth) {
   return yarns;
 }
 
+float least_spread(const ClothShell& shell, const SurfaceRange& heights) {
+  float least = 1;
+  for (const double height_mm : {heights.low_mm, heights.high_mm})
+    for (const ShellCell& cell : shell.cells)
+      least = std::min(least, (cell.spread.middle + static_cast<float>(height_mm) * cell.spread.growth).minCoeff());
+  return least;
+}
+
 std::optional<AbsorptionTexture> checked_absorption(const Cloth& cloth) {
   if (!cloth.absorption) return std::nullopt;
   if (cloth.absorption->sigma_a.empty() || !(cloth.absorption->texel_mm.minCoeff() > 0))
@@ -75,7 +83,8 @@ ClothGeometry::ClothGeometry(const Cloth& cloth, std::uint32_t first_curve_set)
     : shell_(make_shell(cloth.surface, shell_heights(cloth.patch))),
       first_curve_set_(first_curve_set),
       yarns_(yarns_of(cloth)),
-      grid_(yarns_, {cloth.patch.period_x_mm, cloth.patch.period_y_mm}),
+      grid_(yarns_, {cloth.patch.period_x_mm, cloth.patch.period_y_mm},
+            least_spread(shell_, shell_heights(cloth.patch))),
       places_(cloth.patch, 0),
       absorption_(checked_absorption(cloth)) {}
 
@@ -105,9 +114,10 @@ void ClothGeometry::attach_to(RTCDevice device, RTCScene scene) const {
 
 void ClothGeometry::intersect(const RTCIntersectFunctionNArguments& arguments) const {
   auto* query = reinterpret_cast<RTCRayHit*>(arguments.rayhit);
-  const std::optional<PatchRay> ray = inside(shell_.cells[arguments.primID], query->ray);
+  const ShellCell& cell = shell_.cells[arguments.primID];
+  const std::optional<PatchRay> ray = inside(cell, query->ray);
   if (!ray) return;
-  const std::optional<YarnGrid::Hit> hit = grid_.nearest(ray->origin, ray->direction, ray->length);
+  const std::optional<YarnGrid::Hit> hit = grid_.nearest(ray->origin, ray->direction, ray->length, cell.spread);
   if (!hit) return;
   query->ray.tfar = std::min(query->ray.tfar, static_cast<float>(ray->begin + static_cast<double>(hit->distance)));
   query->hit.geomID = arguments.geomID;
@@ -125,24 +135,30 @@ void ClothGeometry::intersect(const RTCIntersectFunctionNArguments& arguments) c
 
 void ClothGeometry::occluded(const RTCOccludedFunctionNArguments& arguments) const {
   auto& query = *reinterpret_cast<RTCRay*>(arguments.ray);
-  const std::optional<PatchRay> ray = inside(shell_.cells[arguments.primID], query);
-  if (ray && grid_.occluded(ray->origin, ray->direction, ray->length))
+  const ShellCell& cell = shell_.cells[arguments.primID];
+  const std::optional<PatchRay> ray = inside(cell, query);
+  if (ray && grid_.occluded(ray->origin, ray->direction, ray->length, cell.spread))
     query.tfar = -std::numeric_limits<float>::infinity();
 }
 
 CurvePoint ClothGeometry::point_at(const ClothHit& hit) const {
   const ShellCell& cell = shell_.cells[hit.cell];
   const ColumnYarns& yarns = yarns_[hit.yarns];
-  CurvePoint point = point_on_curve(yarns.curves, hit.segment, hit.u, hit.hit_normal, hit.ray, hit.distance);
+  CurvePoint point =
+      point_on_curve(yarns.curves, hit.segment, hit.u, hit.hit_normal, hit.ray, hit.distance, cell.spread);
   const Vector3d patch = point.position.cast<double>() + hit.tile;
   const Affine3x4 to_world = world_from_patch(cell);
   const Vector3d world = to_world * patch.homogeneous();
-  const Eigen::Matrix3f frame = frame_at(shell_, cell, world).cast<float>();
+  // The section is that of the frame at the yarn's axis.
+  const Vector3d axis = to_world * (patch - point.out.cast<double>()).homogeneous();
+  const Eigen::Matrix3f frame = frame_at(shell_, cell, axis).cast<float>();
   point.curve_set = first_curve_set_ + yarns.thread;
   point.position = world.cast<float>();
   point.tangent = frame * point.tangent;
   point.normal = frame * point.normal;
-  place_section(to_world.leftCols<3>().cast<float>(), point);
+  Eigen::Matrix3f section = to_world.leftCols<3>().cast<float>();
+  section.leftCols<2>().colwise().normalize();
+  place_section(section, point);
   if (absorption_) {
     const Eigen::Vector2i texel = absorption_->texel_at(patch.head<2>());
     point.absorption = &absorption_->sigma_a(texel.y(), texel.x());

@@ -111,6 +111,29 @@ Affine3x4 world_from_patch(const ShellCell& cell) {
   return inverse;
 }
 
+namespace {
+
+// The range of spreads in which yarns keep their thickness; beyond it they are stretched with the surface.
+constexpr double kLeastSpread = 0.7, kMostSpread = 1.5;
+
+// Of the patch's x and y in the world, as far as yarns follow it.
+Eigen::Array2d lengths_of_xy(const ShellCell& cell) {
+  return world_from_patch(cell).leftCols<2>().colwise().norm().transpose().array().max(kLeastSpread).min(kMostSpread);
+}
+
+// Rounding is no spread: flat cloth is met as quickly as can be.
+Eigen::Vector2f exactly_one_where_nearly(const Eigen::Array2d& lengths) {
+  return ((lengths - 1).abs() < 1e-6).select(1, lengths).cast<float>();
+}
+
+// From the spreads at two heights.
+Spread spread_of(const Eigen::Array2d& below, double below_mm, const Eigen::Array2d& above, double above_mm) {
+  const Eigen::Array2d growth = (above - below) / (above_mm - below_mm);
+  return {.middle = (below - below_mm * growth).cast<float>(), .growth = growth.cast<float>()};
+}
+
+}  // namespace
+
 ClothShell make_shell(const ClothSurface& surface, const SurfaceRange& heights) {
   check(surface);
   ClothShell shell{.cells = {}, .frames = vertex_frames(surface)};
@@ -127,10 +150,14 @@ ClothShell make_shell(const ClothSurface& surface, const SurfaceRange& heights) 
     shell.cells.push_back(make_cell(surface, {a, b, c, over_c}, i));
     if (is_flat(surface, v)) {
       shell.cells.back() = whole_prism(shell.cells.back(), surface, v, heights);
+      shell.cells.back().spread.middle = exactly_one_where_nearly(lengths_of_xy(shell.cells.back()));
       continue;
     }
     shell.cells.push_back(make_cell(surface, {a, b, over_b, over_c}, i));
     shell.cells.push_back(make_cell(surface, {a, over_a, over_b, over_c}, i));
+    const Spread spread = spread_of(lengths_of_xy(shell.cells.end()[-3]), heights.low_mm,
+                                    lengths_of_xy(shell.cells.back()), heights.high_mm);
+    for (int k = 1; k <= 3; ++k) shell.cells.end()[-k].spread = spread;
   }
   return shell;
 }

@@ -21,6 +21,11 @@ namespace renderer {
 
 using Affine3x4 = Eigen::Matrix<double, 3, 4>;  // linear part and translation
 
+// How much wider the world is than the patch along the patch's x and y: middle + growth z at height z.
+struct Spread {
+  Eigen::Vector2f middle = Eigen::Vector2f::Ones(), growth = Eigen::Vector2f::Zero();  // growth: 1 / mm
+};
+
 // A cell: a tetrahedron, or a whole prism over a triangle without bend.
 struct ShellCell {
   // Distances from the cell's faces as shares of its extent; all are >= 0 inside. The first `corners` rows are the
@@ -29,7 +34,8 @@ struct ShellCell {
   int faces = 4, corners = 4;
   std::array<std::uint32_t, 4> vertex{};  // the surface's vertex above, below or at which each corner lies
   Affine3x4 patch_from_world;             // mm to mm; rows x, y, z of the endless patch
-  Eigen::AlignedBox3d bounds;             // world
+  Spread spread{};
+  Eigen::AlignedBox3d bounds;  // world
 };
 
 // The inverse of patch_from_world. It is computed anew for every hit instead of stored, because a garment has a hundred

@@ -83,7 +83,7 @@ std::size_t bytes_of(const CurveSet& curves) {
 }
 
 CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u, const Vector3f& hit_normal,
-                          const Ray& ray, float distance) {
+                          const Ray& ray, float distance, const Spread& spread) {
   const Eigen::Vector4f* p = &curves.control_points[curves.segments[segment]];
   const float w = 1 - u;
   const Eigen::Vector4f center =
@@ -92,15 +92,27 @@ CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u
       (-w * w * p[0] + u * (3 * u - 4) * p[1] - w * (3 * w - 4) * p[2] + u * u * p[3]).head<3>();
   const bool in_place = is_in_place(curves);
   const Ray local = in_place ? ray : unplaced(curves.placed, ray);
+  // From the patch to the world round the axis, as yarn_grid_kernel.cpp has it.
+  const auto wider = [&](float z) {
+    const Eigen::Vector2f xy = spread.middle + z * spread.growth;
+    return Vector3f(xy.x(), xy.y(), 1);
+  };
+  const auto fall = [&](const Vector3f& at) {
+    const Eigen::Vector2f moved = (curves.placed.linear() * at).head<2>();
+    return 0.5f * moved.cwiseAbs2().dot(spread.growth.cwiseQuotient(spread.middle));
+  };
+  const Vector3f here = wider(local.origin.z() + distance * local.direction.z()),
+                 direction = local.direction.cwiseProduct(here);
+  Vector3f from_center = (local.origin - center.head<3>()).cwiseProduct(here) + distance * direction;
+  from_center.z() -= fall(from_center);
   CurvePoint point;
-  point.tangent = derivative.normalized();
+  point.tangent = derivative.cwiseProduct(wider(center.z())).normalized();
   point.normal = across(hit_normal, point.tangent).normalized();
-  const Vector3f from_center = local.origin + distance * local.direction - center.head<3>();
-  if (const auto exact = cylinder_normal(from_center, local.direction, point.tangent, center.w()))
-    point.normal = *exact;
+  if (const auto exact = cylinder_normal(from_center, direction, point.tangent, center.w())) point.normal = *exact;
   point.out = center.w() * (1 - kStartDepth) * point.normal;
   point.side = point.out.cross(point.tangent);
-  point.position = center.head<3>() + point.out;
+  point.position = center.head<3>() + point.out.cwiseQuotient(here);
+  point.position.z() += fall(point.out);
   if (in_place) return point;
   const Eigen::Matrix3f linear = curves.placed.linear();
   point.position = curves.placed * point.position;

@@ -95,9 +95,9 @@ std::vector<Piece> pieces_of(const Cubic& line, std::uint32_t segment) {
 }
 
 // The box of the piece in x and y of the cloth.
-Eigen::AlignedBox2d box_of(const Piece& piece, const Vector3f& stretch) {
+Eigen::AlignedBox2d box_of(const Piece& piece, const Vector3f& stretch, double least_spread) {
   Eigen::AlignedBox2d box;
-  const Eigen::Array2d half = piece.radius * (1 - piece.axis.head<2>().array().square()).max(0.0).sqrt();
+  const Eigen::Array2d half = piece.radius / least_spread * (1 - piece.axis.head<2>().array().square()).max(0.0).sqrt();
   const Vector2d scale = stretch.head<2>().cast<double>();
   for (const double end : {piece.low, piece.high}) {
     const Eigen::Array2d at = (piece.base + end * piece.axis).head<2>().array();
@@ -136,7 +136,7 @@ double mean_radius(const std::vector<ColumnYarns>& yarns) {
 
 }  // namespace
 
-YarnGrid::YarnGrid(const std::vector<ColumnYarns>& yarns, const Vector2d& period_mm)
+YarnGrid::YarnGrid(const std::vector<ColumnYarns>& yarns, const Vector2d& period_mm, float least_spread)
     : kernel_(&best_kernel()), period_mm_(period_mm) {
   const double size = kCellRadii * mean_radius(yarns);
   for (int axis = 0; axis < 2; ++axis)
@@ -157,7 +157,7 @@ YarnGrid::YarnGrid(const std::vector<ColumnYarns>& yarns, const Vector2d& period
       for (int k = 0; k < 4; ++k) Eigen::Map<Eigen::Vector4f>(segment.power[k]) = line.power[k].cast<float>();
       origins_.push_back({part, s});
       for (const Piece& piece : pieces_of(line, number)) {
-        const Eigen::AlignedBox2d box = box_of(piece, stretch);
+        const Eigen::AlignedBox2d box = box_of(piece, stretch, static_cast<double>(least_spread));
         const Eigen::Array2i low = (box.min().array() / cell).floor().max(0.0).min(double{kMostCells}).cast<int>(),
                              high = (box.max().array() / cell).floor().max(-1.0).min(double{kMostCells}).cast<int>();
         for (int y = low.y(); y <= std::min(high.y(), cells_.y() - 1); ++y)
@@ -198,15 +198,20 @@ YarnGridData YarnGrid::data() const {
 
 namespace {
 
-YarnGridRay grid_ray(const Vector3d& origin, const Vector3d& direction, float length) {
-  return {{origin.x(), origin.y(), origin.z()}, {direction.x(), direction.y(), direction.z()}, length};
+YarnGridRay grid_ray(const Vector3d& origin, const Vector3d& direction, float length, const Spread& spread) {
+  return {{origin.x(), origin.y(), origin.z()},
+          {direction.x(), direction.y(), direction.z()},
+          length,
+          {spread.middle.x(), spread.middle.y()},
+          {spread.growth.x(), spread.growth.y()}};
 }
 
 }  // namespace
 
-std::optional<YarnGrid::Hit> YarnGrid::nearest(const Vector3d& origin, const Vector3d& direction, float length) const {
+std::optional<YarnGrid::Hit> YarnGrid::nearest(const Vector3d& origin, const Vector3d& direction, float length,
+                                               const Spread& spread) const {
   YarnGridHit hit;
-  if (!kernel_->nearest(data(), grid_ray(origin, direction, length), hit)) return std::nullopt;
+  if (!kernel_->nearest(data(), grid_ray(origin, direction, length, spread), hit)) return std::nullopt;
   return Hit{.yarns = origins_[hit.segment].yarns,
              .segment = origins_[hit.segment].segment,
              .u = hit.u,
@@ -217,8 +222,8 @@ std::optional<YarnGrid::Hit> YarnGrid::nearest(const Vector3d& origin, const Vec
              .normal = {hit.normal[0], hit.normal[1], hit.normal[2]}};
 }
 
-bool YarnGrid::occluded(const Vector3d& origin, const Vector3d& direction, float length) const {
-  return kernel_->occluded(data(), grid_ray(origin, direction, length));
+bool YarnGrid::occluded(const Vector3d& origin, const Vector3d& direction, float length, const Spread& spread) const {
+  return kernel_->occluded(data(), grid_ray(origin, direction, length, spread));
 }
 
 std::size_t YarnGrid::bytes() const {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "renderer/scene/scene.h"
+#include "renderer/trace/cloth_shell.h"
 #include "renderer/trace/yarn_grid_kernel.h"
 
 namespace renderer {
@@ -35,13 +36,17 @@ class YarnGrid {
     Eigen::Vector3f normal;        // outwards where the curves are round, not unit
   };
 
-  YarnGrid(const std::vector<ColumnYarns>& yarns, const Eigen::Vector2d& period_mm);
+  // `least_spread`: of all rays to come.
+  YarnGrid(const std::vector<ColumnYarns>& yarns, const Eigen::Vector2d& period_mm, float least_spread = 1);
 
   // The first place within `length` where the ray enters a yarn. The ray is given in the endless patch; its direction
   // need not be a unit vector, and it leaves yarns in which it starts without a hit. The hits are those of Embree's
-  // round curves, which Embree finds to 0.002 radii and this grid to 0.0002.
-  std::optional<Hit> nearest(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, float length) const;
-  bool occluded(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, float length) const;
+  // round curves, which Embree finds to 0.002 radii and this grid to 0.0002. `spread`: of the cloth where the ray is;
+  // yarns are as thick in the world as on a flat surface, whatever the patch is stretched by there.
+  std::optional<Hit> nearest(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, float length,
+                             const Spread& spread = {}) const;
+  bool occluded(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, float length,
+                const Spread& spread = {}) const;
 
   // Bytes of the grid without the yarns themselves.
   std::size_t bytes() const;

@@ -77,8 +77,7 @@ std::vector<double> shares_of_turns(const Yarn& yarn, int knots, int per_knot) {
 }
 
 // A strand inside a yarn, with `per_knot` knots of its own for each of the yarn's; place(i) is that of its i-th knot in
-// the round section, mm (Strands::places). A flat yarn is the round one pressed with its strands: they are as flat as
-// it is, so that those that touch keep touching.
+// the section, mm.
 Yarn strand_of(const YarnPatch& patch, const Yarn& yarn, double radius_mm, int per_knot,
                const std::function<Vector2d(int)>& place) {
   if (radius_mm > yarn.radius_mm)
@@ -86,7 +85,6 @@ Yarn strand_of(const YarnPatch& patch, const Yarn& yarn, double radius_mm, int p
                              " mm is thicker than its yarn of " + std::to_string(yarn.radius_mm) + " mm");
   const PeriodicSpline line = center_line(patch, yarn);
   const int knots = static_cast<int>(line.control_points.size()) * per_knot;
-  const double flat = std::sqrt(yarn.flatness);
   const Vector3d side = yarn.warp ? Vector3d::UnitX() : Vector3d::UnitY();
   Yarn strand = yarn;
   strand.radius_mm = radius_mm;
@@ -101,7 +99,7 @@ Yarn strand_of(const YarnPatch& patch, const Yarn& yarn, double radius_mm, int p
     // do.
     const Vector3d along = spline_value(line, t, 1).normalized(), up = along.cross(side).normalized();
     const Vector2d at = thickness(yarn, t) * place(i);
-    points.push_back(spline_value(line, t) + flat * at.x() * up.cross(along) + at.y() / flat * up);
+    points.push_back(spline_value(line, t) + at.x() * up.cross(along) + at.y() * up);
   }
   strand.control_points = spline_through(points, line.period).control_points;
   return strand;
@@ -126,11 +124,13 @@ YarnPatch with_plies(const YarnPatch& patch, const Plies& plies) {
     const int per_knot = std::max(1, static_cast<int>(std::ceil(kPointsPerTurn * std::abs(turns) / knots)));
     const double radius_mm = ply_radius_mm(plies, yarn.radius_mm);
     const std::vector<double> turned = shares_of_turns(yarn, knots, per_knot);
+    // A flat yarn is the round one pressed with its plies: they are as flat as it is, so that they keep touching.
+    const double flat = std::sqrt(yarn.flatness);
     for (int k = 0; k < plies.count; ++k) {
       Yarn ply = strand_of(patch, yarn, radius_mm, per_knot, [&](int i) {
         const double angle =
             2 * std::numbers::pi * (turns * turned[static_cast<std::size_t>(i)] + static_cast<double>(k) / plies.count);
-        return Vector2d((yarn.radius_mm - radius_mm) * Vector2d(std::cos(angle), std::sin(angle)));
+        return Vector2d((yarn.radius_mm - radius_mm) * Vector2d(flat * std::cos(angle), std::sin(angle) / flat));
       });
       ply.tex = yarn.tex / plies.count;
       twisted.yarns.push_back(std::move(ply));
@@ -149,6 +149,7 @@ YarnPatch with_strands(const YarnPatch& patch, const std::vector<Strands>& of_ya
     for (const Vector2d& place : of_yarns[i].places) {
       Yarn strand = strand_of(patch, patch.yarns[i], of_yarns[i].radius_mm, 1, [&](int) { return place; });
       strand.tex = 0;
+      strand.flatness = 1;
       divided.yarns.push_back(std::move(strand));
     }
   return divided;

@@ -19,17 +19,19 @@ namespace renderer {
 // std::runtime_error, one line: those of check_draft() and check_at_rest(); plies thicker than their yarn.
 RelaxedPatch woven_patch(const Draft& draft, const RelaxationOptions& options = {});
 
-// The patch with its plies instead of each yarn; what was measured stays that of the yarns.
+// The patch with its plies instead of each yarn; what was measured stays that of the yarns. A flat yarn's plies are
+// pressed as it is. Each ply is a yarn of the thread, thinner than its yarn: it scatters and absorbs as the thread does
+// whose spool was digitized, at each crossing of light with it.
 YarnPatch with_plies(const YarnPatch& patch, const Plies& plies);
 // The round strands of one yarn, which keep their places in its section all along it, as untwisted fibers do.
 struct Strands {
   double radius_mm = 0;
-  // In mm, in the round section: across the yarn in the cloth's plane, and along the third axis of a frame that is
+  // In mm, in the yarn's section: across the yarn in the cloth's plane, and along the third axis of a frame that is
   // right-handed along the yarn (up for the weft, down for the warp).
   std::vector<Eigen::Vector2d> places{};
 };
 // The patch with its strands instead of each yarn, `of_yarns` in the order of its yarns; what was measured stays that
-// of the yarns. A flat yarn's strands are pressed as it is. Errors: std::invalid_argument when the counts differ;
+// of the yarns. Strands are round in flat yarns too. Errors: std::invalid_argument when the counts differ;
 // std::runtime_error when a strand is thicker than its yarn.
 YarnPatch with_strands(const YarnPatch& patch, const std::vector<Strands>& of_yarns);
 

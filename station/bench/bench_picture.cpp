@@ -139,14 +139,15 @@ const SimulatedFibers& simulated_fibers(const Spool& spool) {
   return *spool.simulation;
 }
 
-std::vector<Eigen::Vector2d> fiber_centres(const Spool& spool, std::uint64_t seed) {
+std::vector<Eigen::Vector2d> fiber_centres(const Spool& spool, std::uint64_t seed, double flatness) {
   const SimulatedFibers& fibers = simulated_fibers(spool);
   std::size_t most = 0;
   // Random sequential placement may end a fiber short of what another order of the same circles would hold: try again.
   for (int attempt = 0; attempt < kPackingTries; ++attempt) {
     const auto centres =
         renderer::pack_fibers(spool.wrapping.thread_diameter_mm / 2, fibers.fiber_radius_mm, fibers.min_gap_mm,
-                              kPackingAttempts, fibers.fibers_per_thread, seed + static_cast<std::uint64_t>(attempt));
+                              kPackingAttempts, fibers.fibers_per_thread, seed + static_cast<std::uint64_t>(attempt),
+                              renderer::FiberPlacement::area_uniform, flatness);
     if (static_cast<int>(centres.size()) == fibers.fibers_per_thread) return centres;
     most = std::max(most, centres.size());
   }

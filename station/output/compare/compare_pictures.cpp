@@ -134,6 +134,10 @@ Comparison compare_pictures(const cv::Mat3f& photograph, const cv::Mat3f& render
   check(photograph, rendering, mask);
   Comparison result;
   result.scale = options.fit_scale ? fitted_scale(photograph, rendering, mask) : 1;
+  const cv::Scalar photographed_mean = cv::mean(photograph, mask), rendered_mean = cv::mean(rendering, mask);
+  for (int c = 0; c < 3; ++c)
+    if (photographed_mean[c] > 0)
+      result.brightness[static_cast<std::size_t>(c)] = rendered_mean[c] / photographed_mean[c];
   const std::vector<BlockPair> pairs = block_pairs(photograph, rendering, mask, result.scale, options);
   std::vector<double> delta_e;
   double error = 0, signal = 0;
@@ -164,6 +168,7 @@ nlohmann::json to_json(const Comparison& comparison) {
             {"brightness", profile.brightness}};
   };
   return {{"scale", comparison.scale},
+          {"brightness", comparison.brightness},
           {"blocks", comparison.blocks},
           {"mean_delta_e_2000", comparison.mean_delta_e},
           {"median_delta_e_2000", comparison.median_delta_e},

@@ -76,6 +76,37 @@ std::vector<inversion::View> synthetic_views(const RigFile& rig, const inversion
   return views;
 }
 
+BackLitSwatch back_lit_swatch(const RigFile& rig, int width_px, int height_px) {
+  constexpr double kBorder_mm = 10;
+  const rig::BenchTruth& truth = truth_of(rig);
+  const Eigen::Isometry3d frame_from_world(Eigen::Translation3d(0, 0, -rig.platform_height_mm));
+  BackLitSwatch swatch{.shape = {60, 60}, .frame_from_swatch = Eigen::Isometry3d::Identity(), .view = {}};
+  inversion::View& view = swatch.view;
+  view.id = "behind";
+  view.transmission = true;
+  view.camera = pooled_camera(truth.lens, lens_of(truth.lens), frame_from_world * truth.lens.world_from_camera,
+                              width_px, height_px);
+  view.light = near_light(truth.back, frame_from_world);
+  // In the platform's axis, where the camera looks.
+  const renderer::CameraRay ray = renderer::ray_through(view.camera, view.camera.cx, view.camera.cy);
+  const Eigen::Vector2d from = ray.origin.head<2>(), along = ray.direction.head<2>();
+  const double height_mm = ray.origin.z() - ray.direction.z() * from.dot(along) / along.squaredNorm();
+  const Eigen::Vector3d face(from.normalized().x(), from.normalized().y(), 0);
+  swatch.frame_from_swatch.translation() = Eigen::Vector3d(0, 0, height_mm);
+  swatch.frame_from_swatch.linear() << Eigen::Vector3d::UnitZ().cross(face), Eigen::Vector3d::UnitZ(), face;
+  const Eigen::Isometry3d swatch_from_frame = swatch.frame_from_swatch.inverse();
+  const Eigen::Array2d most = Eigen::Array2d(swatch.shape.width_mm, swatch.shape.height_mm) / 2 - kBorder_mm;
+  view.mask = cv::Mat1b(height_px, width_px, uchar{0});
+  for (int row = 0; row < height_px; ++row)
+    for (int column = 0; column < width_px; ++column) {
+      const renderer::CameraRay seen = renderer::ray_through(view.camera, column, row);
+      const Eigen::Vector3d o = swatch_from_frame * seen.origin, d = swatch_from_frame.linear() * seen.direction;
+      const Eigen::Vector2d at = (o - o.z() / d.z() * d).head<2>();
+      if ((at.array().abs() < most).all()) view.mask(row, column) = 255;
+    }
+  return swatch;
+}
+
 std::vector<inversion::View> cylinder_views(const RigFile& rig, const renderer::CylinderShape& cylinder, int width_px,
                                             int height_px) {
   const rig::BenchTruth& truth = truth_of(rig);

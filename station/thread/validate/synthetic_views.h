@@ -32,6 +32,16 @@ std::vector<inversion::View> synthetic_views(const RigFile& rig, const inversion
 std::vector<inversion::View> cylinder_views(const RigFile& rig, const renderer::CylinderShape& cylinder, int width_px,
                                             int height_px);
 
+// A flat swatch that stands upright on the platform, its face towards the camera, and its view from there with the lamp
+// behind it. The mask is the swatch's middle, away from its borders; the frame is that of cylinder_views. Errors: as
+// above.
+struct BackLitSwatch {
+  renderer::SwatchShape shape;
+  Eigen::Isometry3d frame_from_swatch;
+  inversion::View view;
+};
+BackLitSwatch back_lit_swatch(const RigFile& rig, int width_px, int height_px);
+
 struct PhotographOptions {
   int samples_per_pixel = 256;
   std::uint64_t seed = 1;

@@ -54,7 +54,10 @@ void require_thread_of(const Spool& spool, double yarn_diameter_mm) {
 class Study {
  public:
   explicit Study(const ValidateClothRequest& request)
-      : request_(request), rig_(read_rig(request.rig)), progress_("validate-cloth", request.progress_style) {
+      : request_(request),
+        rig_(read_rig(request.rig)),
+        progress_("validate-cloth", request.progress_style),
+        swatch_(back_lit_swatch(rig_, request.width_px, request.height_px)) {
     for (const fs::path& file : request.warps) warps_.push_back({file, read_spool(file)});
     weft_ = {request.weft, read_spool(request.weft)};
     for (const fs::path& file : request.drafts) {
@@ -65,6 +68,7 @@ class Study {
       drafts_.push_back({file.stem().string(), draft});
     }
     views_ = cylinder_views(rig_, cylinder_, request.width_px, request.height_px);
+    views_.push_back(swatch_.view);
     pictures_ = drafts_.size() * warps_.size() * views_.size() * (1 + request.models.size());
     fs::create_directories(request.out / "samples");
   }
@@ -141,7 +145,11 @@ class Study {
       if (!tracer) {
         const Woven woven = cloth();
         renderer::Scene scene;
-        add_cloth_on_cylinder(scene, cylinder_, woven.patch, woven.threads);
+        if (view.transmission)
+          scene.cloths.push_back({renderer::surface_of(swatch_.shape, woven.patch, swatch_.frame_from_swatch),
+                                  woven.patch, woven.threads});
+        else
+          add_cloth_on_cylinder(scene, cylinder_, woven.patch, woven.threads);
         scene.lights.push_back(inversion::sphere_light(view.light));
         tracer.emplace(std::move(scene));
       }
@@ -197,6 +205,7 @@ class Study {
   RigFile rig_;
   ProgressDisplay progress_;
   renderer::CylinderShape cylinder_{};
+  BackLitSwatch swatch_;
   std::vector<SpoolToFit> warps_;
   SpoolToFit weft_;
   std::vector<std::pair<std::string, renderer::Draft>> drafts_;
@@ -212,10 +221,13 @@ renderer::YarnPatch with_fibers_of(const renderer::YarnPatch& patch, const std::
   std::vector<renderer::Strands> bundles;
   for (const renderer::Yarn& yarn : patch.yarns) {
     const Spool& spool = spools.at(static_cast<std::size_t>(yarn.thread));
-    require_thread_of(spool, 2 * yarn.radius_mm);
     const SimulatedFibers& fibers = simulated_fibers(spool);
     const std::uint64_t seed = fibers.seed * 1000 + 500 + bundles.size();  // not those of the spool's own threads
-    bundles.push_back({.radius_mm = fibers.fiber_radius_mm, .places = fiber_centres(spool, seed * kFiberSeedStep)});
+    const double scale = 2 * yarn.radius_mm / spool.wrapping.thread_diameter_mm;
+    renderer::Strands& bundle =
+        bundles.emplace_back(renderer::Strands{.radius_mm = scale * fibers.fiber_radius_mm,
+                                               .places = fiber_centres(spool, seed * kFiberSeedStep, yarn.flatness)});
+    for (Eigen::Vector2d& place : bundle.places) place *= scale;
   }
   return renderer::with_strands(patch, bundles);
 }
@@ -225,33 +237,68 @@ std::vector<PredictedSample> validate_cloth(const ValidateClothRequest& request)
   return Study(request).run();
 }
 
+namespace {
+
+double percent_off(double brightness) {
+  return 100 * (brightness - 1);
+}
+
+struct Summary {
+  int pictures = 0;
+  double delta_e = 0, off_percent = 0, most_percent = 0;  // sums over pictures and channels; the largest either way
+};
+
+// By model and by where the lamp stood; of the reference, what its own noise makes.
+std::map<std::string, Summary> summaries(const std::vector<PredictedSample>& samples) {
+  std::map<std::string, Summary> sums;
+  for (const PredictedSample& sample : samples) {
+    const std::string lit = sample.side == "behind" ? ", lit from behind" : ", lit in front";
+    Summary& noise = sums["reference" + lit];
+    ++noise.pictures, noise.delta_e += sample.noise_delta_e;
+    for (const PredictedSample::OfModel& of : sample.models) {
+      Summary& sum = sums[name_of(of.model) + lit];
+      ++sum.pictures, sum.delta_e += of.comparison.mean_delta_e;
+      for (const double brightness : of.comparison.brightness) {
+        sum.off_percent += percent_off(brightness);
+        sum.most_percent = std::max(sum.most_percent, std::abs(percent_off(brightness)));
+      }
+    }
+  }
+  return sums;
+}
+
+}  // namespace
+
 std::string describe(const std::vector<PredictedSample>& samples) {
   std::string text =
-      "CIEDE2000 of block averages and the highlight's column, width (px), height (of the reference's) and hue "
-      "(deg)\n"
-      "weave            warp                       lamp   model      mean  95 % below  column  width  height   hue\n";
-  std::map<std::string, std::pair<double, int>> sums;
+      "CIEDE2000 of block averages, mean red, green and blue over the reference's (% off), and the highlight's column, "
+      "width (px), height (of the reference's) and hue (deg)\n"
+      "weave            warp                       lamp   model      mean  95 % below   red green  blue  column  width "
+      " "
+      "height   hue\n";
   const auto add_line = [&](const PredictedSample& of, const std::string& what, double mean, double most,
-                            const HighlightProfile& highlight, double unit) {
+                            const std::array<double, 3>& brightness, const HighlightProfile& highlight, double unit) {
     char line[200];
-    std::snprintf(line, sizeof line, "%-16s %-26s %-6s %-9s %5.2f  %10.2f  %6.0f %6.0f  %6.3f %5.0f\n",
-                  of.weave.c_str(), of.warp.c_str(), of.side.c_str(), what.c_str(), mean, most, highlight.peak_px,
+    std::snprintf(line, sizeof line,
+                  "%-16s %-26s %-6s %-9s %5.2f  %10.2f %+5.1f %+5.1f %+5.1f  %6.0f %6.0f  %6.3f %5.0f\n",
+                  of.weave.c_str(), of.warp.c_str(), of.side.c_str(), what.c_str(), mean, most,
+                  percent_off(brightness[0]), percent_off(brightness[1]), percent_off(brightness[2]), highlight.peak_px,
                   highlight.width_px, highlight.peak / unit, highlight.hue_deg);
     text += line;
-    sums[what].first += mean, ++sums[what].second;
   };
   for (const PredictedSample& sample : samples) {
     if (sample.models.empty()) continue;
     const HighlightProfile& reference = sample.models.front().comparison.photograph;
-    add_line(sample, "reference", sample.noise_delta_e, 0, reference, reference.peak);
+    add_line(sample, "reference", sample.noise_delta_e, 0, {1, 1, 1}, reference, reference.peak);
     for (const PredictedSample::OfModel& of : sample.models)
-      add_line(sample, name_of(of.model), of.comparison.mean_delta_e, of.comparison.delta_e_95, of.comparison.rendering,
-               reference.peak);
+      add_line(sample, name_of(of.model), of.comparison.mean_delta_e, of.comparison.delta_e_95,
+               of.comparison.brightness, of.comparison.rendering, reference.peak);
   }
-  for (const auto& [what, sum] : sums) {
-    char line[100];
-    std::snprintf(line, sizeof line, "%s: CIEDE2000 %.2f on average%s\n", what.c_str(), sum.first / sum.second,
-                  what == "reference" ? " (two renderings of it, over the root of 2)" : "");
+  for (const auto& [what, sum] : summaries(samples)) {
+    char line[200];
+    std::snprintf(
+        line, sizeof line, "%-24s CIEDE2000 %5.2f on average; mean light %+.1f %% on average, %.1f %% at most\n",
+        (what + ":").c_str(), sum.delta_e / sum.pictures, sum.off_percent / (3 * sum.pictures), sum.most_percent);
     text += line;
   }
   return text;

@@ -2,10 +2,11 @@
 // samples, where the truth is known.
 //
 //   spool     | simulated fibers, photographed in 17 views and fitted with the thread model and both baselines
-//   sample    | each weave in each warp colour, all with the same weft, on the black cylinder, lit from right and left
+//   sample    | each weave in each warp colour, all with the same weft: on the black cylinder, lit from right and left,
+//             | and as an upright swatch with the lamp behind it
 //   reference | the same cloth, every yarn made of the fibers of its spool: a patch of fibers in two scales
-//   table     | CIEDE2000 of block averages, and place, width, height and hue of the highlight, all in one unit of
-//             | radiance: nothing is scaled to fit
+//   table     | CIEDE2000 of block averages, the mean radiance over the reference's in each channel, and place, width,
+//             | height and hue of the highlight, all in one unit of radiance: nothing is scaled to fit
 #pragma once
 
 #include <cstdint>
@@ -35,7 +36,7 @@ struct ValidateClothRequest {
 };
 
 struct PredictedSample {
-  std::string weave, warp, side;  // weave and warp: names of their files; side of the lamp: "right" or "left"
+  std::string weave, warp, side;  // weave and warp: names of their files; side of the lamp: "right", "left", "behind"
   int block_px = 0;
   double noise_delta_e = 0;  // difference of the reference's two renderings over the root of 2: its noise alone
   struct OfModel {
@@ -45,9 +46,9 @@ struct PredictedSample {
   std::vector<OfModel> models;
 };
 
-// The patch with every yarn replaced by the fibers of its thread; `spools` is indexed by thread. Each yarn has a bundle
-// of its own, drawn as the spool's simulation draws bundles. Errors: std::runtime_error for a spool whose thread is not
-// as thick as the draft's yarns, and those of fiber_centres().
+// The patch with every yarn replaced by the round fibers of its thread; `spools` is indexed by thread. Each yarn has a
+// bundle of its own, drawn in its section, round or flat, as the spool's simulation draws bundles; that of a ply is as
+// much smaller, with its fibers, as the ply is thinner than the thread. Errors: those of fiber_centres().
 renderer::YarnPatch with_fibers_of(const renderer::YarnPatch& patch, const std::vector<Spool>& spools);
 
 // Runs the validation. Pictures in OUT are used again when nothing that they depend on has changed, so that an

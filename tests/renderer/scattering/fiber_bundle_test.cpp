@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 namespace renderer {
 namespace {
 
@@ -12,6 +15,28 @@ TEST(FiberBundleTest, FibersLieInsideTheThreadAndKeepTheirGaps) {
     EXPECT_LE(centers[i].norm(), 0.9);
     for (std::size_t j = 0; j < i; ++j) EXPECT_GE((centers[i] - centers[j]).norm(), 0.21);
   }
+}
+
+TEST(FiberBundleTest, FibersLieInsideAFlatThreadAndFillItEvenly) {
+  constexpr double kFlatness = 2.5, kFiber = 0.1;
+  const double a = std::sqrt(kFlatness), b = 1 / a;
+  int inner = 0, all = 0;
+  for (std::uint64_t seed = 0; seed < 500; ++seed)
+    for (const Eigen::Vector2d& center :
+         pack_fibers(1.0, kFiber, 0.01, 100, 3, seed, FiberPlacement::area_uniform, kFlatness)) {
+      double nearest = 1e9;  // of the ellipse to the centre
+      for (int i = 0; i < 2000; ++i) {
+        const double angle = 2 * std::numbers::pi * i / 2000;
+        nearest = std::min(nearest, (Eigen::Vector2d(a * std::cos(angle), b * std::sin(angle)) - center).norm());
+      }
+      EXPECT_LT(std::hypot(center.x() / a, center.y() / b), 1);
+      EXPECT_GT(nearest, kFiber - 1e-3);
+      // Half of an ellipse's area lies within 0.40397 of its half width.
+      inner += std::abs(center.x()) < 0.40397 * (a - kFiber), ++all;
+    }
+  EXPECT_GT(all, 1000);
+  // The inner body is a little blunter than an ellipse of that width.
+  EXPECT_NEAR(inner / static_cast<double>(all), 0.5, 0.06);
 }
 
 TEST(FiberBundleTest, TheSeedAloneDecidesTheBundle) {

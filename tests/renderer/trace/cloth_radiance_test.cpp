@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "renderer/trace/path_tracer.h"
+#include "renderer/weave/patch_measures.h"
 #include "tests/renderer/trace/cloth_scenes.h"
 
 namespace renderer {
@@ -12,27 +13,29 @@ namespace {
 
 using Eigen::Vector3d;
 
+using Eigen::Array3d;
+
 struct Estimate {
-  double mean = 0, standard_error = 0;
+  Array3d mean = Array3d::Zero(), standard_error = Array3d::Zero();
 };
 
-// Mean over all pixels and channels, from pictures with seeds of their own.
+// Mean over all pixels, from pictures with seeds of their own.
 Estimate mean_radiance(const Scene& scene, const Camera& camera, int samples_per_pixel, std::uint64_t first_seed) {
   constexpr int kPictures = 16;
   const PathTracer tracer(scene);
-  double sum = 0, squares = 0;
+  Array3d sum = Array3d::Zero(), squares = Array3d::Zero();
   for (int i = 0; i < kPictures; ++i) {
     const cv::Scalar mean = cv::mean(tracer.render(
         camera, {.samples_per_pixel = samples_per_pixel, .seed = first_seed + static_cast<std::uint64_t>(i)}));
-    const double value = (mean[0] + mean[1] + mean[2]) / 3;
+    const Array3d value(mean[0], mean[1], mean[2]);
     sum += value, squares += value * value;
   }
-  const double mean = sum / kPictures;
-  return {mean, std::sqrt(std::max(0.0, squares / kPictures - mean * mean) / (kPictures - 1))};
+  const Array3d mean = sum / kPictures;
+  return {mean, ((squares / kPictures - mean * mean).max(0) / (kPictures - 1)).sqrt()};
 }
 
 struct Comparison {
-  double ratio, standard_error;  // of two scales to brute force
+  Array3d ratio, standard_error;  // of two scales to brute force
 };
 
 Comparison compare(const ClothShape& shape, const YarnPatch& patch, const std::vector<SphereLight>& lights,
@@ -42,8 +45,14 @@ Comparison compare(const ClothShape& shape, const YarnPatch& patch, const std::v
   for (Scene* scene : {&two_scale, &brute_force}) scene->lights = lights, scene->meshes = meshes;
   const Estimate a = mean_radiance(two_scale, camera, samples_per_pixel, 100),
                  b = mean_radiance(brute_force, camera, samples_per_pixel, 200);
-  EXPECT_GT(b.mean, 0);
-  return {a.mean / b.mean, std::hypot(a.standard_error, b.standard_error) / b.mean};
+  EXPECT_GT(b.mean.minCoeff(), 0);
+  return {a.mean / b.mean, (a.standard_error.square() + b.standard_error.square()).sqrt() / b.mean};
+}
+
+void print(const std::string& what, const Comparison& found) {
+  std::printf("%s: two scales / brute force = %.4f %.4f %.4f +- %.4f %.4f %.4f\n", what.c_str(), found.ratio[0],
+              found.ratio[1], found.ratio[2], found.standard_error[0], found.standard_error[1],
+              found.standard_error[2]);
 }
 
 SphereLight lamp(const Vector3d& center) {
@@ -56,27 +65,29 @@ TEST(ClothRadianceTest, OnAFlatSwatchItIsThatOfTheExplicitYarns) {
       // 6 mm in the middle of 22 mm: borders are ten thicknesses away.
       const Comparison found = compare(SwatchShape{22, 22}, patch, {lamp({-120, 90, side * 300})}, {},
                                        camera_on({40, 20, 300}, {0, 0, 0}, {0, 1, 0}, 6, 32, 32), 32);
-      EXPECT_LT(found.standard_error, 0.003) << patch.name << ' ' << side;
-      EXPECT_NEAR(found.ratio, 1, 0.01) << patch.name << ' ' << side;  // more than three standard errors
-      std::printf("%s, light %s: two scales / brute force = %.4f +- %.4f\n", patch.name.c_str(),
-                  side > 0 ? "in front" : "behind", found.ratio, found.standard_error);
+      print(patch.name + (side > 0 ? ", light in front" : ", light behind"), found);
+      EXPECT_LT(found.standard_error.maxCoeff(), 0.006) << patch.name << ' ' << side;
+      EXPECT_LT((found.ratio - 1).abs().maxCoeff(), 0.015) << patch.name << ' ' << side;
     }
   }
 }
 
 TEST(ClothRadianceTest, OnABlackCylinderItIsNearlyThatOfTheBentYarns) {
-  const CylinderShape cylinder{.radius_mm = 41, .height_mm = 60};
-  const std::vector<TriangleMesh> body{
-      body_of(CylinderShape{.radius_mm = 40.4, .height_mm = 60}, Eigen::Isometry3d::Identity(), {0, 0, 0})};
-  const Camera camera = camera_on({500, 0, 30}, {0, 0, 30}, {0, 0, 1}, 90, 40, 20);
-  for (const YarnPatch& patch : {plain_patch(), satin_patch()}) {
-    const Comparison found = compare(cylinder, patch, {lamp({400, -300, 120})}, body, camera, 256);
-    EXPECT_LT(found.standard_error, 0.002) << patch.name;
-    // Yarns are stretched by 1 % at the outside, facets are flat.
-    EXPECT_NEAR(found.ratio, 1, 0.01) << patch.name;
-    std::printf("%s round a cylinder: two scales / brute force = %.4f +- %.4f\n", patch.name.c_str(), found.ratio,
-                found.standard_error);
-  }
+  for (const YarnPatch& patch : {plain_patch(), irregular_patch()})
+    for (const double radius_mm : {12.0, 41.0}) {
+      const double height_mm = 5 * radius_mm, middle_mm = height_mm / 2;
+      const CylinderShape cylinder{.radius_mm = radius_mm, .height_mm = height_mm};
+      const CylinderShape inside{.radius_mm = radius_mm + surface_range(patch).low_mm - 0.05, .height_mm = height_mm};
+      const Comparison found =
+          compare(cylinder, patch, {lamp({400, -300, middle_mm + 90})},
+                  {body_of(inside, Eigen::Isometry3d::Identity(), {0, 0, 0})},
+                  camera_on({500, 0, middle_mm}, {0, 0, middle_mm}, {0, 0, 1}, 2.2 * radius_mm, 40, 20), 128);
+      print(patch.name + " round a cylinder of " + std::to_string(static_cast<int>(radius_mm)) + " mm", found);
+      EXPECT_LT(found.standard_error.maxCoeff(), 0.003);
+      // Facets are flat; where the cloth is thick and open that shows. Yarns as thick as their surface is stretched
+      // made the irregular cloth 1.7 % too bright at 12 mm.
+      EXPECT_LT((found.ratio - 1).abs().maxCoeff(), patch.name == "plain" ? 0.008 : 0.011);
+    }
 }
 
 }  // namespace

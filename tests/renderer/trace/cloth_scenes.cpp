@@ -1,6 +1,9 @@
 #include "tests/renderer/trace/cloth_scenes.h"
 
+#include <random>
+
 #include "renderer/weave/initial_patch.h"
+#include "renderer/weave/woven_patch.h"
 
 namespace renderer {
 
@@ -18,6 +21,19 @@ YarnPatch plain_patch() {
 
 YarnPatch satin_patch() {
   return patch_of(satin_draft(5, 2), 0.55, 1.1);
+}
+
+YarnPatch irregular_patch() {
+  Draft draft{.name = "irregular", .warp_over = {}};
+  std::mt19937 random(8);
+  do {
+    draft.warp_over.assign(8, std::vector<bool>(8));
+    for (std::vector<bool>& pick : draft.warp_over)
+      for (std::size_t end = 0; end < pick.size(); ++end) pick[end] = random() >> 31 != 0;
+    draft.warp.pitch_mm = draft.weft.pitch_mm = 0.9;
+  } while (check_draft(draft));
+  draft.warp.threads = {0}, draft.weft.threads = {1};
+  return woven_patch(draft).patch;
 }
 
 Scene two_scale_scene(const ClothShape& shape, const YarnPatch& patch, const std::vector<ScatteringModel>& threads,

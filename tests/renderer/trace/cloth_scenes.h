@@ -11,6 +11,8 @@ namespace renderer {
 YarnPatch patch_of(Draft draft, double warp_pitch_mm, double weft_pitch_mm);
 YarnPatch plain_patch();  // 0.9 x 0.9 mm: gaps between the yarns
 YarnPatch satin_patch();  // satin of 5, 0.55 x 1.1 mm
+// Eight shafts raised at random, 0.9 x 0.9 mm, 1.9 mm thick. Round a tube of 12 mm its repeats are stretched by 4.7 %.
+YarnPatch irregular_patch();
 
 // The scene with nothing but the cloth, as a patch in two scales or as explicit curves.
 Scene two_scale_scene(const ClothShape& shape, const YarnPatch& patch, const std::vector<ScatteringModel>& threads,

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "renderer/picture/image_file.h"
 #include "station/documents/reader.h"
 #include "tests/places.h"
 #include "tests/station/commands/program.h"
@@ -127,12 +128,12 @@ class ValidateCloth : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(ValidateCloth, SamplesAreLitFromBothSidesAndPicturesAreMadeOnce) {
+TEST_F(ValidateCloth, SamplesAreLitFromBothSidesAndFromBehindAndPicturesAreMadeOnce) {
   const std::string warp = kFixtures + "/spools/packed_silk_red_20.json", draft = kFixtures + "/drafts/plain.json";
   const ProgramResult first = validate_cloth(warp, draft);
   ASSERT_EQ(first.status, 0) << first.error;
   const json found = json::parse(first.out);
-  ASSERT_EQ(found.at("samples").size(), 2U);
+  ASSERT_EQ(found.at("samples").size(), 3U);
   const auto peak_px = [&](std::size_t i, const char* of) {
     return found["samples"][i]["models"]["fiber"][of]["peak_px"].get<double>();
   };
@@ -142,6 +143,17 @@ TEST_F(ValidateCloth, SamplesAreLitFromBothSidesAndPicturesAreMadeOnce) {
     EXPECT_GT(difference, 0);
     EXPECT_LT(difference, 40);
     EXPECT_EQ(sample.at("models").at("fiber").at("scale"), 1.0) << "nothing is scaled to fit";
+    // The means say how bright the picture is against the reference, written as both are.
+    const auto mean = [&](const char* what) {
+      const std::string name = "plain-packed_silk_red_20-" + sample.at("lamp").get<std::string>() + "-" + what;
+      const cv::Mat3f a = renderer::read_exr(folder_ / "out/samples" / (name + "-a.exr")),
+                      b = renderer::read_exr(folder_ / "out/samples" / (name + "-b.exr"));
+      return cv::Scalar(cv::mean(a) + cv::mean(b));  // black outside of the mask
+    };
+    const cv::Scalar rendered = mean("fiber"), reference = mean("reference");
+    const auto brightness = sample.at("models").at("fiber").at("brightness").get<std::vector<double>>();
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(brightness[static_cast<std::size_t>(c)], rendered[c] / reference[c], 1e-4) << sample.at("lamp");
   }
   EXPECT_EQ(station::read_json_file(folder_ / "out/validation.json"), found);
   EXPECT_TRUE(fs::exists(folder_ / "out/samples.png"));
@@ -149,7 +161,7 @@ TEST_F(ValidateCloth, SamplesAreLitFromBothSidesAndPicturesAreMadeOnce) {
   for (const auto& entry : fs::recursive_directory_iterator(folder_ / "out"))
     if (entry.path().extension() == ".exr") written[entry.path()] = entry.last_write_time();
   EXPECT_EQ(written.size(),
-            2U * 34U + 2U * 2U * 2U);  // two spools' views; two sides, reference and model, two halves
+            2U * 34U + 3U * 2U * 2U);  // two spools' views; three lamps, reference and model, two halves
   const ProgramResult second = validate_cloth(warp, draft);
   ASSERT_EQ(second.status, 0) << second.error;
   EXPECT_EQ(json::parse(second.out), found);
