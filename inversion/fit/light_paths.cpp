@@ -84,12 +84,18 @@ class PathRecorder {
 
   renderer::ThreadPoint<float> point_at(float h, const Vector3f& wo) const {
     const float cosine = std::hypot(wo.y(), wo.z());
-    if (const auto* yarn = std::get_if<renderer::YarnParameters>(&traced_with_))
-      return {cosine, static_cast<float>(
-                          renderer::fibers_on_chord(yarn->fiber_count, yarn->radius_ratio, static_cast<double>(h)))};
-    const auto* fiber = std::get_if<renderer::FiberParameters>(&traced_with_);
-    const auto eta = static_cast<float>(fiber ? fiber->eta : renderer::kThreadEta);
-    return {cosine, renderer::InnerChord<float>(h, wo.x(), cosine, eta).length};
+    return {cosine, std::visit([&](const auto& model) { return way_inside(model, h, wo.x(), cosine); }, traced_with_)};
+  }
+
+  // What absorbs on the way through a curve: fibers of a yarn, the chord of what is one body.
+  static float way_inside(const renderer::YarnParameters& yarn, float h, float, float) {
+    return static_cast<float>(renderer::fibers_on_chord(yarn.fiber_count, yarn.radius_ratio, static_cast<double>(h)));
+  }
+  static float way_inside(const renderer::FiberParameters& fiber, float h, float sine, float cosine) {
+    return renderer::InnerChord<float>(h, sine, cosine, static_cast<float>(fiber.eta)).length;
+  }
+  static float way_inside(const renderer::ThreadParameters&, float h, float sine, float cosine) {
+    return renderer::InnerChord<float>(h, sine, cosine, static_cast<float>(renderer::kThreadEta)).length;
   }
 
   float record_light(const Vector3f& position, const renderer::ThreadExits& exits, const Eigen::Matrix3f& frame,

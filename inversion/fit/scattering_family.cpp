@@ -138,10 +138,22 @@ RgbByUnknowns by_unknowns_of(const Model&, const renderer::ThreadSlopes<double>&
 
 }  // namespace
 
+namespace {
+
+FiberFamily family(const renderer::FiberParameters&) {
+  return {};
+}
+YarnFamily family(const renderer::YarnParameters& yarn) {
+  return {yarn.fiber_count};
+}
+ThreadFamily family(const renderer::ThreadParameters& thread) {
+  return {thread.exit};
+}
+
+}  // namespace
+
 ScatteringFamily family_of(const renderer::ScatteringModel& model) {
-  if (std::holds_alternative<renderer::FiberParameters>(model)) return FiberFamily{};
-  if (const auto* yarn = std::get_if<renderer::YarnParameters>(&model)) return YarnFamily{yarn->fiber_count};
-  return ThreadFamily{std::get<renderer::ThreadParameters>(model).exit};
+  return std::visit([](const auto& of) { return ScatteringFamily(family(of)); }, model);
 }
 
 FamilyUnknowns unknowns_of(const ScatteringFamily& family) {

@@ -7,7 +7,8 @@
 // it: no ray has to remember in which scale it is, rays may start, end and be blocked anywhere, and on a flat surface
 // nothing is approximated. On a curved surface the yarns bend at the faces of the cells, by the angle between
 // neighbouring triangles. (To enter at the mid-surface and follow the ray in the flat patch until it leaves would need
-// a limit for grazing rays, and would bend light instead of yarns.)
+// a limit for grazing rays, and would bend light instead of yarns.) Yarns are as thick everywhere as on a flat surface,
+// although the patch is stretched where the surface is, and above or below the middle of a bent one (Spread).
 #pragma once
 
 #include <Eigen/Core>

@@ -46,17 +46,23 @@ std::filesystem::path model_file(const InvertRequest& request) {
   return results_of(request) / (name_of(request.fit.model) + ".json");
 }
 
-json model_document(const inversion::ViewFit& fit, const SessionFile& asked, const DevelopedViews& developed,
-                    const json& fit_part, const json& provenance) {
-  if (const auto* fiber = std::get_if<renderer::FiberParameters>(&fit.model)) return to_json(*fiber);
-  if (const auto* yarn = std::get_if<renderer::YarnParameters>(&fit.model)) return to_json(*yarn);
-  return to_json(ThreadFile{.name = asked.spool.name,
-                            .diameter_mm = asked.spool.wrapping.thread_diameter_mm,
-                            .parameters = fit.thread(),
-                            .linear_srgb_from_camera = developed.linear_srgb_from_camera,
-                            .fit = fit_part,
-                            .provenance = provenance});
-}
+// The document of a fitted model; a thread's says what it was fitted to as well.
+struct ModelDocument {
+  const SessionFile& asked;
+  const DevelopedViews& developed;
+  const json &fit_part, &provenance;
+
+  json operator()(const renderer::FiberParameters& fiber) const { return to_json(fiber); }
+  json operator()(const renderer::YarnParameters& yarn) const { return to_json(yarn); }
+  json operator()(const renderer::ThreadParameters& thread) const {
+    return to_json(ThreadFile{.name = asked.spool.name,
+                              .diameter_mm = asked.spool.wrapping.thread_diameter_mm,
+                              .parameters = thread,
+                              .linear_srgb_from_camera = developed.linear_srgb_from_camera,
+                              .fit = fit_part,
+                              .provenance = provenance});
+  }
+};
 
 // Renders one view with the fitted thread, compares it, and writes both pictures.
 FittedView write_fitted_view(const InvertRequest& request, const inversion::WrappedSpool& spool,
@@ -129,7 +135,8 @@ InvertResult invert_session(const InvertRequest& request) {
   for (const FittedView& view : result.views) agreements.push_back(view.agreement);
   result.doubts = inversion::fit_doubts(views, fit, agreements);
   result.fit["doubts"] = result.doubts;
-  const json document = model_document(fit, asked, developed, result.fit, provenance_json(request.session, asked));
+  const json provenance = provenance_json(request.session, asked);
+  const json document = std::visit(ModelDocument{asked, developed, result.fit, provenance}, fit.model);
   write_json_file(result.file, document);
   if (request.fit.model != inversion::ModelKind::thread) write_json_file(results_of(request) / "fit.json", result.fit);
   if (request.out) write_json_file(*request.out, document);
