@@ -1,9 +1,9 @@
 // The intersection of rays with the grid of yarn_grid.h: cells are walked along the ray, the pieces of a cell are
 // tested eight at a time, and those whose cylinder the ray meets are solved for exactly.
 //
-// Where the world is wider than the patch, or narrower, yarns are not. There (`spread`) the place where the ray enters is
-// taken from the patch to the world round the yarn's axis: stretched across the yarn, and lowered as the surface falls
-// away from its tangent there.
+// Where the world is wider than the patch, or narrower, yarns are not. There (`spread`) the place where the ray enters
+// is taken from the patch to the world round the yarn's axis: stretched, and lowered as the surface falls away from its
+// tangent there.
 //
 // A hit is where the ray enters the surface { c(u) + r(u) n : n unit, n . c'(u) = 0 }. At a trial u the ray is
 // intersected with the cone that touches the yarn there; the distance along the axis by which that point misses the

@@ -19,7 +19,8 @@ struct HighlightProfile {
 
 struct Comparison {
   double scale = 1;  // the rendering was multiplied by it: equal means inside the mask
-  // The rendering's mean inside the mask over the photograph's, each channel, without that scale; 1 where the photograph is black.
+  // The rendering's mean inside the mask over the photograph's, each channel, without that scale; 1 where the
+  // photograph is black.
   std::array<double, 3> brightness{1, 1, 1};
   double mean_delta_e = 0, median_delta_e = 0, delta_e_95 = 0;  // CIEDE2000 of block averages
   double relative_rmse = 0;                                     // of the same averages, all channels

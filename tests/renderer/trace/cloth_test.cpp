@@ -95,8 +95,8 @@ TEST(ClothTest, OnACylinderRaysMeetTheBentYarnsNearly) {
     normals_rad += static_cast<double>((p.normal - q.normal).norm());
   }
   ASSERT_GT(met, 5000);
-  // The faces lie up to 3 um inside the cylinder and turn by 1.4 degrees. That moves silhouettes of yarns, where rays pass
-  // on to another yarn. The explicit cloth stands over at the top.
+  // The faces lie up to 3 um inside the cylinder and turn by 1.4 degrees. That moves silhouettes of yarns, where rays
+  // pass on to another yarn. The explicit cloth stands over at the top.
   EXPECT_GT(near, 0.97 * met);
   EXPECT_LT(missed_by_one, 0.02 * met);
   EXPECT_LT(normals_rad / near, 0.02);
