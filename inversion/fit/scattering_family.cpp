@@ -136,10 +136,6 @@ RgbByUnknowns by_unknowns_of(const Model&, const renderer::ThreadSlopes<double>&
   return by_parameters<Model::kSlopeCount>(slopes);
 }
 
-}  // namespace
-
-namespace {
-
 FiberFamily family(const renderer::FiberParameters&) {
   return {};
 }

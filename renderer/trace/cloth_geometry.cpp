@@ -36,14 +36,6 @@ std::vector<ColumnYarns> yarns_of(const Cloth& cloth) {
   return yarns;
 }
 
-float least_spread(const ClothShell& shell, const SurfaceRange& heights) {
-  float least = 1;
-  for (const double height_mm : {heights.low_mm, heights.high_mm})
-    for (const ShellCell& cell : shell.cells)
-      least = std::min(least, (cell.spread.middle + static_cast<float>(height_mm) * cell.spread.growth).minCoeff());
-  return least;
-}
-
 std::optional<AbsorptionTexture> checked_absorption(const Cloth& cloth) {
   if (!cloth.absorption) return std::nullopt;
   if (cloth.absorption->sigma_a.empty() || !(cloth.absorption->texel_mm.minCoeff() > 0))
@@ -83,8 +75,7 @@ ClothGeometry::ClothGeometry(const Cloth& cloth, std::uint32_t first_curve_set)
     : shell_(make_shell(cloth.surface, shell_heights(cloth.patch))),
       first_curve_set_(first_curve_set),
       yarns_(yarns_of(cloth)),
-      grid_(yarns_, {cloth.patch.period_x_mm, cloth.patch.period_y_mm},
-            least_spread(shell_, shell_heights(cloth.patch))),
+      grid_(yarns_, {cloth.patch.period_x_mm, cloth.patch.period_y_mm}, shell_.least_spread),
       places_(cloth.patch, 0),
       absorption_(checked_absorption(cloth)) {}
 

@@ -102,17 +102,6 @@ bool is_flat(const ClothSurface& surface, const Triangle& v) {
          (surface.normals[v[2]].normalized() - a).norm() < kParallel;
 }
 
-}  // namespace
-
-Affine3x4 world_from_patch(const ShellCell& cell) {
-  Affine3x4 inverse;
-  inverse.leftCols<3>() = cell.patch_from_world.leftCols<3>().inverse();
-  inverse.col(3) = -inverse.leftCols<3>() * cell.patch_from_world.col(3);
-  return inverse;
-}
-
-namespace {
-
 // The range of spreads in which yarns keep their thickness; beyond it they are stretched with the surface.
 constexpr double kLeastSpread = 0.7, kMostSpread = 1.5;
 
@@ -133,6 +122,13 @@ Spread spread_of(const Eigen::Array2d& below, double below_mm, const Eigen::Arra
 }
 
 }  // namespace
+
+Affine3x4 world_from_patch(const ShellCell& cell) {
+  Affine3x4 inverse;
+  inverse.leftCols<3>() = cell.patch_from_world.leftCols<3>().inverse();
+  inverse.col(3) = -inverse.leftCols<3>() * cell.patch_from_world.col(3);
+  return inverse;
+}
 
 ClothShell make_shell(const ClothSurface& surface, const SurfaceRange& heights) {
   check(surface);
@@ -159,6 +155,10 @@ ClothShell make_shell(const ClothSurface& surface, const SurfaceRange& heights) 
                                     lengths_of_xy(shell.cells.back()), heights.high_mm);
     for (int k = 1; k <= 3; ++k) shell.cells.end()[-k].spread = spread;
   }
+  for (const ShellCell& cell : shell.cells)
+    for (const double height_mm : {heights.low_mm, heights.high_mm})
+      shell.least_spread = std::min(
+          shell.least_spread, (cell.spread.middle + static_cast<float>(height_mm) * cell.spread.growth).minCoeff());
   return shell;
 }
 

@@ -8,7 +8,7 @@
 // nothing is approximated. On a curved surface the yarns bend at the faces of the cells, by the angle between
 // neighbouring triangles. (To enter at the mid-surface and follow the ray in the flat patch until it leaves would need
 // a limit for grazing rays, and would bend light instead of yarns.) Yarns are as thick everywhere as on a flat surface,
-// although the patch is stretched where the surface is, and above or below the middle of a bent one (Spread).
+// although the patch is stretched where the surface is, and above or below the middle of a bent one (spread.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -16,16 +16,12 @@
 #include <vector>
 
 #include "renderer/scene/scene.h"
+#include "renderer/trace/spread.h"
 #include "renderer/weave/patch_measures.h"
 
 namespace renderer {
 
 using Affine3x4 = Eigen::Matrix<double, 3, 4>;  // linear part and translation
-
-// How much wider the world is than the patch along the patch's x and y: middle + growth z at height z.
-struct Spread {
-  Eigen::Vector2f middle = Eigen::Vector2f::Ones(), growth = Eigen::Vector2f::Zero();  // growth: 1 / mm
-};
 
 // A cell: a tetrahedron, or a whole prism over a triangle without bend.
 struct ShellCell {
@@ -46,6 +42,7 @@ Affine3x4 world_from_patch(const ShellCell& cell);
 struct ClothShell {
   std::vector<ShellCell> cells;
   std::vector<Eigen::Matrix3d> frames;  // per vertex of the surface: world from patch, a rotation
+  float least_spread = 1;               // of all cells at all heights, at most 1
 };
 
 // The shell of a cloth on this surface between these heights. Errors: std::runtime_error with one line when the surface

@@ -1,8 +1,8 @@
 // Round curves inside Embree: seen from outside only, with exact normals (ray_scene.h).
 #pragma once
 
-#include "renderer/trace/cloth_shell.h"
 #include "renderer/trace/ray_hit.h"
+#include "renderer/trace/spread.h"
 
 struct RTCDeviceTy;
 struct RTCSceneTy;

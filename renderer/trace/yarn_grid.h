@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "renderer/scene/scene.h"
-#include "renderer/trace/cloth_shell.h"
+#include "renderer/trace/spread.h"
 #include "renderer/trace/yarn_grid_kernel.h"
 
 namespace renderer {

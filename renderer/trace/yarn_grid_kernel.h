@@ -39,7 +39,7 @@ struct YarnGridData {
 struct YarnGridRay {
   double origin[3], direction[3];  // in the endless patch; the direction's length is near 1
   float length;
-  float spread[2], growth[2];  // Spread of cloth_shell.h, where the ray is
+  float spread[2], growth[2];  // Spread of spread.h, where the ray is
 };
 
 struct YarnGridHit {

@@ -215,6 +215,34 @@ class Study {
   std::size_t pictures_ = 0, done_ = 0;
 };
 
+double percent_off(double brightness) {
+  return 100 * (brightness - 1);
+}
+
+struct Summary {
+  int pictures = 0;
+  double delta_e = 0, off_percent = 0, most_percent = 0;  // sums over pictures and channels; the largest either way
+};
+
+// By model and by where the lamp stood.
+std::map<std::string, Summary> summaries(const std::vector<PredictedSample>& samples) {
+  std::map<std::string, Summary> sums;
+  for (const PredictedSample& sample : samples) {
+    const std::string lit = sample.side == "behind" ? ", lit from behind" : ", lit in front";
+    Summary& noise = sums["noise of the reference" + lit];
+    ++noise.pictures, noise.delta_e += sample.noise_delta_e;
+    for (const PredictedSample::OfModel& of : sample.models) {
+      Summary& sum = sums[name_of(of.model) + lit];
+      ++sum.pictures, sum.delta_e += of.comparison.mean_delta_e;
+      for (const double brightness : of.comparison.brightness) {
+        sum.off_percent += percent_off(brightness);
+        sum.most_percent = std::max(sum.most_percent, std::abs(percent_off(brightness)));
+      }
+    }
+  }
+  return sums;
+}
+
 }  // namespace
 
 renderer::YarnPatch with_fibers_of(const renderer::YarnPatch& patch, const std::vector<Spool>& spools) {
@@ -237,45 +265,12 @@ std::vector<PredictedSample> validate_cloth(const ValidateClothRequest& request)
   return Study(request).run();
 }
 
-namespace {
-
-double percent_off(double brightness) {
-  return 100 * (brightness - 1);
-}
-
-struct Summary {
-  int pictures = 0;
-  double delta_e = 0, off_percent = 0, most_percent = 0;  // sums over pictures and channels; the largest either way
-};
-
-// By model and by where the lamp stood; of the reference, what its own noise makes.
-std::map<std::string, Summary> summaries(const std::vector<PredictedSample>& samples) {
-  std::map<std::string, Summary> sums;
-  for (const PredictedSample& sample : samples) {
-    const std::string lit = sample.side == "behind" ? ", lit from behind" : ", lit in front";
-    Summary& noise = sums["reference" + lit];
-    ++noise.pictures, noise.delta_e += sample.noise_delta_e;
-    for (const PredictedSample::OfModel& of : sample.models) {
-      Summary& sum = sums[name_of(of.model) + lit];
-      ++sum.pictures, sum.delta_e += of.comparison.mean_delta_e;
-      for (const double brightness : of.comparison.brightness) {
-        sum.off_percent += percent_off(brightness);
-        sum.most_percent = std::max(sum.most_percent, std::abs(percent_off(brightness)));
-      }
-    }
-  }
-  return sums;
-}
-
-}  // namespace
-
 std::string describe(const std::vector<PredictedSample>& samples) {
   std::string text =
       "CIEDE2000 of block averages, mean red, green and blue over the reference's (% off), and the highlight's column, "
       "width (px), height (of the reference's) and hue (deg)\n"
-      "weave            warp                       lamp   model      mean  95 % below   red green  blue  column  width "
-      " "
-      "height   hue\n";
+      "weave            warp                       lamp   model      mean  95 % below   red green  blue  "
+      "column  width  height   hue\n";
   const auto add_line = [&](const PredictedSample& of, const std::string& what, double mean, double most,
                             const std::array<double, 3>& brightness, const HighlightProfile& highlight, double unit) {
     char line[200];
@@ -296,10 +291,14 @@ std::string describe(const std::vector<PredictedSample>& samples) {
   }
   for (const auto& [what, sum] : summaries(samples)) {
     char line[200];
-    std::snprintf(
-        line, sizeof line, "%-24s CIEDE2000 %5.2f on average; mean light %+.1f %% on average, %.1f %% at most\n",
-        (what + ":").c_str(), sum.delta_e / sum.pictures, sum.off_percent / (3 * sum.pictures), sum.most_percent);
+    std::snprintf(line, sizeof line, "%s: CIEDE2000 %.2f on average", what.c_str(), sum.delta_e / sum.pictures);
     text += line;
+    if (sum.most_percent > 0) {
+      std::snprintf(line, sizeof line, "; mean light %+.1f %% on average, %.1f %% at most",
+                    sum.off_percent / (3 * sum.pictures), sum.most_percent);
+      text += line;
+    }
+    text += "\n";
   }
   return text;
 }

@@ -134,6 +134,25 @@ TEST(WovenPatchTest, StrandsKeepTheirPlacesInTheYarn) {
                std::runtime_error);
 }
 
+TEST(WovenPatchTest, StrandsOfAFlatYarnAreRoundAndLieInItsSection) {
+  YarnPatch yarns = relax(plain_cloth(1.25, 1.25, 0.5)).patch;
+  for (Yarn& yarn : yarns.yarns) yarn.flatness = 2.25;  // 0.375 mm wide and 0.167 mm high, from the middle
+  const std::vector<Eigen::Vector2d> places{{0.3, 0}, {0, -0.1}};
+  const YarnPatch divided =
+      with_strands(yarns, std::vector<Strands>(yarns.yarns.size(), {.radius_mm = 0.05, .places = places}));
+  for (std::size_t y = 0; y < yarns.yarns.size(); ++y) {
+    const PeriodicSpline center = center_line(yarns, yarns.yarns[y]);
+    const Vector3d side = yarns.yarns[y].warp ? Vector3d::UnitX() : Vector3d::UnitY();
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const Yarn& strand = divided.yarns[y * places.size() + k];
+      EXPECT_EQ(strand.flatness, 1);
+      const Vector3d offset = spline_value(center_line(divided, strand), 2) - spline_value(center, 2);
+      EXPECT_NEAR(offset.dot(side), places[k].x(), 2e-3);
+      EXPECT_NEAR(offset.norm(), places[k].norm(), 4e-3);
+    }
+  }
+}
+
 TEST(WovenPatchTest, PliesTouchEachOtherInsideTheirYarnAndRepeatWithThePatch) {
   const YarnPatch yarns = relax(plain_cloth(1.25, 1.25, 0.5)).patch;
   for (const int count : {2, 3, 5}) {

@@ -7,7 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "renderer/picture/image_file.h"
+#include "renderer/weave/initial_patch.h"
+#include "renderer/weave/woven_patch.h"
 #include "station/documents/reader.h"
+#include "station/documents/spool.h"
+#include "station/thread/validate/validate_cloth.h"
 #include "tests/places.h"
 #include "tests/station/commands/program.h"
 
@@ -166,6 +170,31 @@ TEST_F(ValidateCloth, SamplesAreLitFromBothSidesAndFromBehindAndPicturesAreMadeO
   ASSERT_EQ(second.status, 0) << second.error;
   EXPECT_EQ(json::parse(second.out), found);
   for (const auto& [path, time] : written) EXPECT_EQ(fs::last_write_time(path), time) << path;
+}
+
+TEST(WithFibersOf, FlatYarnsHaveRoundFibersAndPliesThinnerOnes) {
+  const station::Spool spool = station::read_spool(kFixtures + "/spools/packed_silk_red_20.json");
+  renderer::YarnPatch patch = renderer::initial_patch(renderer::plain_draft());  // 0.5 mm, as the spool's thread
+  patch.yarns[0].flatness = 2.5;
+  const renderer::YarnPatch fibers = station::with_fibers_of(patch, {spool});
+  ASSERT_EQ(fibers.yarns.size(), 20 * patch.yarns.size());
+  double widest = 0, highest = 0;  // of the flat yarn, a warp end
+  for (int i = 0; i < 20; ++i) {
+    const renderer::Yarn& fiber = fibers.yarns[static_cast<std::size_t>(i)];
+    EXPECT_EQ(fiber.flatness, 1);
+    EXPECT_EQ(fiber.radius_mm, 0.0375);
+    const Eigen::Vector3d offset = renderer::spline_value(renderer::center_line(fibers, fiber), 0) -
+                                   renderer::spline_value(renderer::center_line(patch, patch.yarns[0]), 0);
+    widest = std::max(widest, std::abs(offset.x()) + fiber.radius_mm);
+    highest = std::max(highest, offset.tail<2>().norm() + fiber.radius_mm);
+  }
+  EXPECT_GT(widest, 0.27) << "wider than the round yarn";
+  EXPECT_LT(widest, 0.25 * std::sqrt(2.5) + 1e-3);
+  EXPECT_LT(highest, 0.25 / std::sqrt(2.5) + 1e-3);
+  const renderer::YarnPatch plied = renderer::with_plies(patch, {.count = 2});
+  const renderer::YarnPatch of_plies = station::with_fibers_of(plied, {spool});
+  EXPECT_EQ(of_plies.yarns.size(), 20 * plied.yarns.size());
+  for (const renderer::Yarn& fiber : of_plies.yarns) EXPECT_NEAR(fiber.radius_mm, 0.0375 / 2, 1e-12);
 }
 
 TEST_F(ValidateCloth, AThreadThatIsNotTheDraftsIsRefusedInOneLine) {
