@@ -113,6 +113,11 @@ TEST_F(TurntableContract, IsBrokenByTakingAnyAngle) {
                                       "an infinite angle is refused"));
 }
 
+TEST_F(TurntableContract, IsBrokenByAStopThatDoesNotStop) {
+  table.on_stop = [] {};
+  EXPECT_THAT(failures(), ElementsAre("a stop ends a move and keeps the position"));
+}
+
 TEST_F(TurntableContract, IsBrokenByLosingThePositionAtAStop) {
   bool lost = false;
   table.on_stop = [&] {

@@ -456,9 +456,14 @@ TEST_F(RunnerTest, APlatformThatStandsElsewhereFromTheBeginningIsSetRightByItsTa
 
 TEST_F(RunnerTest, APlatformWhoseTagsAreNotBelievedEndsTheRun) {
   fake.turntable.off_rad = 45 * kDegree;
-  fake.options.inspect = [&](const PlanStep&, const rig::Picture&, double) { return seen_by_tags(fake.turntable); };
+  int pictures = 0;
+  fake.options.inspect = [&](const PlanStep&, const rig::Picture&, double) {
+    ++pictures;
+    return seen_by_tags(fake.turntable);
+  };
   fake.options.settle_place = [](double, double) { return std::optional<double>(); };
   EXPECT_THAT(message_of([&] { fake.run(path, small_plan()); }), HasSubstr("slipped"));
+  EXPECT_EQ(pictures, 1) << "nothing is photographed on a platform that nobody knows";
 }
 
 TEST_F(RunnerTest, APlatformThatSlipsLaterHasSlippedWhateverAnybodySays) {
