@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "inversion/fit/loss_terms.h"
+#include "inversion/fit/mean_terms.h"
 #include "inversion/fit/view_objective.h"
 #include "inversion/solve/adam.h"
 #include "inversion/solve/bias_free.h"
@@ -170,51 +171,34 @@ Attempt search_by_rounds(ViewObjective& objective, const Search& search, const s
   return best;
 }
 
-BiasFreeTerms data_terms(const ViewObjective::Halves& both) {
-  const auto& [a, b] = both.residuals;
-  const auto& [by_a, by_b] = both.jacobians;
-  const Eigen::MatrixXd product = by_a.transpose() * by_b;
-  return {.loss = 0.5 * a.dot(b),
-          .gradient = 0.5 * (by_a.transpose() * b + by_b.transpose() * a),
-          .hessian = 0.5 * (product + product.transpose())};
-}
-
-// The covariance that the noise of paths and pictures gives the gradient of data_terms, summed over blocks, because the
-// three colours of a block share their paths.
-Eigen::MatrixXd gradient_covariance(const ViewObjective::Halves& both) {
-  const auto& [a, b] = both.residuals;
-  const auto& [by_a, by_b] = both.jacobians;
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(by_a.cols(), by_a.cols());
-  for (Eigen::Index row = 0; row < a.size(); row += 3) {
-    const VectorXd of_block = 0.5 * (by_a.middleRows<3>(row).transpose() * b.segment<3>(row) +
-                                     by_b.middleRows<3>(row).transpose() * a.segment<3>(row));
-    covariance += of_block * of_block.transpose();
-  }
-  return covariance;
-}
-
-// Goes on from where the search has ended by steps without bias. The last step's paths remain recorded.
-void remove_bias(ViewObjective& objective, const Search& search, Attempt& attempt) {
+// Goes on from where the search has ended by steps without bias. The last step's paths remain recorded. Returns the
+// terms of the paths that count together at the end.
+MeanTerms remove_bias(ViewObjective& objective, const Search& search, Attempt& attempt) {
   const FitOptions& options = *search.options;
   const int paths = options.paths_per_block.back();
   OtherTerms others(*search.family, prior_scale(objective, search, attempt.rounds));
+  const BiasFreeOptions steps{.lower = search.unknowns.lower,
+                              .upper = search.unknowns.upper,
+                              .held = search.held,
+                              .exact = [&](const VectorXd& unknowns) { return others.at(unknowns); }};
+  MeanTerms mean;
   const auto loss = [&](int step, const VectorXd& unknowns) {
     const std::string name = "without bias, step " + std::to_string(step + 1);
     const auto number = options.paths_per_block.size() + static_cast<std::size_t>(step);
     objective.trace(unknowns, paths, options.seed + kSeedStep * number, [&](int, int) {
       if (options.progress && !options.progress(name, 1)) throw std::runtime_error(kStopped);
     });
-    BiasFreeTerms terms = others.at(unknowns);
-    const BiasFreeTerms data = data_terms(objective.halves(unknowns));
-    return BiasFreeTerms{terms.loss + data.loss, terms.gradient + data.gradient, terms.hessian + data.hessian};
+    const ViewObjective::Halves both = objective.halves(unknowns);
+    if (step + 1 >= steps.own_steps) mean.add(both);
+    return data_terms(both);
   };
   if (options.robust) attempt.view_weights = objective.weigh_robustly(attempt.unknowns);
   FitRound round{.paths_per_block = paths, .bias_free = true, .converged = true};
-  round.losses = minimise_bias_free(
-      loss, {.lower = search.unknowns.lower, .upper = search.unknowns.upper, .held = search.held}, attempt.unknowns);
+  round.losses = minimise_bias_free(loss, steps, attempt.unknowns);
   round.steps = static_cast<int>(round.losses.size());
   round.loss_before = round.losses.front(), round.loss_after = round.losses.back();
   attempt.rounds.push_back(std::move(round));
+  return mean;
 }
 
 Attempt search_by_adam(ViewObjective& objective, const Search& search, const VectorXd& start) {
@@ -257,18 +241,18 @@ std::vector<bool> fixed_unknowns(const Search& search, const VectorXd& unknowns)
   return fixed;
 }
 
-// The certainty at the unknowns, by the paths that were recorded last.
+// The certainty at the unknowns, by the paths that were recorded last and by the terms met on the way there, if any.
 Certainty certainty_at(const ViewObjective& objective, const Search& search, double prior_scale,
-                       const VectorXd& unknowns) {
+                       const VectorXd& unknowns, MeanTerms mean) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   LinearisedFit fit;
   RowMajor jacobian(objective.residual_count(), unknowns.size());
   fit.residuals.resize(objective.residual_count());
   objective.residuals(unknowns, fit.residuals.data(), jacobian.data());
   fit.jacobian = jacobian;
-  const ViewObjective::Halves both = objective.halves(unknowns);
-  fit.hessian = data_terms(both).hessian;
-  fit.gradient_covariance = gradient_covariance(both);
+  if (mean.empty()) mean.add(objective.halves(unknowns));
+  fit.hessian = mean.hessian();
+  fit.gradient_covariance = mean.gradient_covariance();
   fit.variances = objective.residual_variances(unknowns);
   fit.views = objective.residual_views();
   fit.fixed = fixed_unknowns(search, unknowns);
@@ -288,14 +272,15 @@ ViewFit fit_family(const WrappedSpool& spool, const std::vector<View>& views, co
         search.held.push_back(k);
   Attempt best = options.solver == Solver::adam ? search_by_adam(objective, search, starts.front())
                                                 : search_by_rounds(objective, search, starts);
+  MeanTerms mean;
   if (options.solver == Solver::levenberg_marquardt && options.without_bias &&
       options.paths_per_block.back() >= kFewestPathsWithoutBias)
-    remove_bias(objective, search, best);
+    mean = remove_bias(objective, search, best);
   ViewFit fit{
       .model = model_at(family, best.unknowns),
       .unknowns = best.unknowns,
       .unknown_names = search.unknowns.names,
-      .certainty = certainty_at(objective, search, prior_scale(objective, search, best.rounds), best.unknowns),
+      .certainty = certainty_at(objective, search, prior_scale(objective, search, best.rounds), best.unknowns, mean),
       .rounds = best.rounds,
       .start = best.start,
       .view_weights = best.view_weights.empty() ? std::vector<double>(views.size(), 1.0) : std::move(best.view_weights),

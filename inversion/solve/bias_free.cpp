@@ -20,10 +20,10 @@ MatrixXd made_positive(const MatrixXd& hessian) {
          axes.eigenvectors().transpose();
 }
 
-// The step in the unknowns that are free, solved again without those that it would take across a bound.
+// The step in the unknowns that are free, solved again without those that it would take across a bound, and shortened
+// to the longest. The Hessian's diagonal is `damping` larger.
 VectorXd bounded_step(const BiasFreeOptions& options, const VectorXd& at, const VectorXd& gradient,
-                      const MatrixXd& hessian) {
-  constexpr double damping = 1e-2;
+                      const MatrixXd& hessian, double damping) {
   const Eigen::Index count = at.size();
   VectorXd change = VectorXd::Zero(count);
   std::vector<bool> fixed(static_cast<std::size_t>(count), false);
@@ -32,7 +32,7 @@ VectorXd bounded_step(const BiasFreeOptions& options, const VectorXd& at, const 
     std::vector<Eigen::Index> free;
     for (Eigen::Index k = 0; k < count; ++k)
       if (!fixed[static_cast<std::size_t>(k)]) free.push_back(k);
-    if (free.empty()) return change;
+    if (free.empty()) break;
     const auto size = static_cast<Eigen::Index>(free.size());
     MatrixXd system(size, size);
     VectorXd right(size);
@@ -54,25 +54,52 @@ VectorXd bounded_step(const BiasFreeOptions& options, const VectorXd& at, const 
       change[k] = kept - at[k];
       if (kept != wanted) fixed[static_cast<std::size_t>(k)] = crossed = true;
     }
-    if (!crossed) return change;
+    if (!crossed) break;
   }
-  return change;
+  return change * std::min(1.0, options.longest / std::max(change.cwiseAbs().maxCoeff(), 1e-300));
 }
+
+// The mean of quadratic models of the loss, each of one set of paths.
+class MeanModel {
+ public:
+  explicit MeanModel(Eigen::Index unknowns)
+      : hessian_(MatrixXd::Zero(unknowns, unknowns)), right_(VectorXd::Zero(unknowns)) {}
+  void add(const BiasFreeTerms& terms, const VectorXd& traced_at) {
+    hessian_ += terms.hessian;
+    right_ += terms.hessian * traced_at - terms.gradient;
+    ++sets_;
+  }
+  int sets() const { return sets_; }
+  MatrixXd hessian() const { return hessian_ / sets_; }
+  VectorXd gradient(const VectorXd& unknowns) const { return (hessian_ * unknowns - right_) / sets_; }
+
+ private:
+  MatrixXd hessian_;
+  VectorXd right_;
+  int sets_ = 0;
+};
 
 }  // namespace
 
 std::vector<double> minimise_bias_free(const BiasFreeLoss& loss, const BiasFreeOptions& options, VectorXd& unknowns) {
-  MatrixXd hessian = MatrixXd::Zero(unknowns.size(), unknowns.size());
+  constexpr double kOld = 0.7;  // of the running mean: the first steps' Hessians are of other places
+  constexpr double kOwnDamping = 1e-2, kJointDamping = 1e-3;
+  constexpr int kFewSets = 3;  // their Hessian is noisier than the running mean
+  MatrixXd running;
+  MeanModel joint(unknowns.size());
   std::vector<double> losses;
-  for (int step = 0; step < options.full_steps + options.averaged_steps; ++step) {
-    const BiasFreeTerms at = loss(step, unknowns);
-    losses.push_back(at.loss);
-    constexpr double kOld = 0.7;  // of the mean: the first steps' Hessians are of other places
-    hessian = step == 0 ? at.hessian : MatrixXd(kOld * hessian + (1 - kOld) * at.hessian);
-    VectorXd change = bounded_step(options, unknowns, at.gradient, made_positive(hessian));
-    const double longest = change.cwiseAbs().maxCoeff();
-    if (longest > options.longest) change *= options.longest / longest;
-    unknowns += change / std::max(1, step - options.full_steps + 2);
+  for (int step = 0; step < options.own_steps + options.joint_steps; ++step) {
+    const BiasFreeTerms here = loss(step, unknowns);
+    BiasFreeTerms exact{.gradient = VectorXd::Zero(unknowns.size()),
+                        .hessian = MatrixXd::Zero(unknowns.size(), unknowns.size())};
+    if (options.exact) exact = options.exact(unknowns);
+    losses.push_back(here.loss + exact.loss);
+    running = step == 0 ? here.hessian : MatrixXd(kOld * running + (1 - kOld) * here.hessian);
+    if (step + 1 >= options.own_steps) joint.add(here, unknowns);
+    const bool alone = step < options.own_steps;
+    const VectorXd gradient = (alone ? here.gradient : joint.gradient(unknowns)) + exact.gradient;
+    const MatrixXd hessian = (alone || joint.sets() < kFewSets ? running : joint.hessian()) + exact.hessian;
+    unknowns += bounded_step(options, unknowns, gradient, made_positive(hessian), alone ? kOwnDamping : kJointDamping);
   }
   return losses;
 }

@@ -56,6 +56,9 @@ class SimulatedBody {
   // The code and parameter of the event that is sent for each of them; none where the host asks for them.
   virtual std::optional<std::pair<std::uint16_t, std::uint32_t>> picture_event() const = 0;
   virtual void set_condition(const BodyCondition& condition) = 0;
+  // True as long as a host keeps the mirror up and the sensor warm; always false for a camera without a mirror, which
+  // has one picture of its live view at a time.
+  virtual bool shows_live_view() { return false; }
 };
 
 // `camera` must outlive the result; its preview serves as live view and as the JPEG beside a raw file. An exposure runs

@@ -54,6 +54,8 @@ std::string event(std::uint32_t type, const std::string& body) {
   return PtpWriter().put(static_cast<std::uint32_t>(8 + body.size())).put(type).bytes(body).take();
 }
 
+constexpr std::uint32_t kToComputer = 2;  // of kLiveViewOutput
+
 class Canon final : public SimulatedBody {
  public:
   explicit Canon(Camera& camera) : parts_(camera) {}
@@ -65,6 +67,10 @@ class Canon final : public SimulatedBody {
     if (condition.jpeg_only) quality_ = Quality::large_fine_jpeg;
   }
   int waiting_pictures() override { return parts_.waiting(); }
+  bool shows_live_view() override {
+    const std::lock_guard hold(mutex_);
+    return (live_view_output_ & kToComputer) != 0;
+  }
   std::optional<std::pair<std::uint16_t, std::uint32_t>> picture_event() const override { return std::nullopt; }
 
   PtpAnswer handle(const PtpRequest& request) override {
@@ -221,7 +227,7 @@ class Canon final : public SimulatedBody {
 
   // Blocks of length, type and data; type 1 is the JPEG.
   PtpAnswer live_view() const {
-    if ((live_view_output_ & 2) == 0) return {kNotReady, std::nullopt};
+    if ((live_view_output_ & kToComputer) == 0) return {kNotReady, std::nullopt};
     PtpAnswer answer = parts_.live_view();
     if (answer.data) answer.data = event(1, *answer.data);
     return answer;

@@ -26,6 +26,10 @@ class Nikon final : public SimulatedBody {
     if (condition.jpeg_only) quality_ = kJpegFine;
   }
   int waiting_pictures() override { return parts_.waiting(); }
+  bool shows_live_view() override {
+    const std::lock_guard hold(mutex_);
+    return live_view_;
+  }
   std::optional<std::pair<std::uint16_t, std::uint32_t>> picture_event() const override { return std::nullopt; }
 
   PtpAnswer handle(const PtpRequest& request) override {

@@ -186,10 +186,10 @@ RigDevices open_turntable(const RigFile& rig, rig::AskedPerson* asked) {
 TurntableLine open_turntable_line(const RigFile& rig) {
   if (!rig.turntable_wire)
     throw std::runtime_error("rig \"" + rig.name + "\" has no turntable with a motor controller");
-  TurntableLine opened{.devices = undrawn_bench(rig, turns_the_bench(rig)), .line = nullptr};
-  start_simulated_wire(rig, opened.devices);
-  opened.line = open_line(*rig.turntable_wire, opened.devices.simulated_wire.get());
-  return opened;
+  TurntableLine connected{.devices = undrawn_bench(rig, turns_the_bench(rig)), .line = nullptr};
+  start_simulated_wire(rig, connected.devices);
+  connected.line = open_line(*rig.turntable_wire, connected.devices.simulated_wire.get());
+  return connected;
 }
 
 RigDevices open_camera(const RigFile& rig) {

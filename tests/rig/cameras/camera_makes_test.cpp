@@ -231,7 +231,9 @@ TEST_P(CameraMakes, ALiveViewCostsTheNextPictureNothing) {
   for (int i = 0; i < 2; ++i) {
     EXPECT_FALSE(camera->preview().empty());
     EXPECT_FALSE(camera->preview().empty());
+    EXPECT_EQ(wired.body->shows_live_view(), GetParam() != CameraMake::sony);
     EXPECT_TRUE(delivers_what_was_made(*camera));
+    EXPECT_FALSE(wired.body->shows_live_view()) << "its mirror is still up";
   }
 }
 

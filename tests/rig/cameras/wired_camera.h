@@ -61,6 +61,7 @@ class WatchedBody final : public rig::SimulatedBody {
     return body_.picture_event();
   }
   void set_condition(const rig::BodyCondition& condition) override { body_.set_condition(condition); }
+  bool shows_live_view() override { return body_.shows_live_view(); }
 
  private:
   rig::SimulatedBody& body_;

@@ -1,0 +1,36 @@
+#include "inversion/fit/mean_terms.h"
+
+namespace inversion {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr Eigen::Index kColours = 3;  // rows of a block
+
+}  // namespace
+
+BiasFreeTerms data_terms(const ViewObjective::Halves& both) {
+  const auto& [a, b] = both.residuals;
+  const auto& [by_a, by_b] = both.jacobians;
+  const MatrixXd product = by_a.transpose() * by_b;
+  return {.loss = 0.5 * a.dot(b),
+          .gradient = 0.5 * (by_a.transpose() * b + by_b.transpose() * a),
+          .hessian = 0.5 * (product + product.transpose())};
+}
+
+void MeanTerms::add(const ViewObjective::Halves& both) {
+  const auto& [a, b] = both.residuals;
+  const auto& [by_a, by_b] = both.jacobians;
+  if (empty()) hessians_ = covariances_ = MatrixXd::Zero(by_a.cols(), by_a.cols());
+  hessians_ += data_terms(both).hessian;
+  for (Eigen::Index row = 0; row < a.size(); row += kColours) {
+    const VectorXd of_block = 0.5 * (by_a.middleRows<kColours>(row).transpose() * b.segment<kColours>(row) +
+                                     by_b.middleRows<kColours>(row).transpose() * a.segment<kColours>(row));
+    covariances_ += of_block * of_block.transpose();
+  }
+  ++sets_;
+}
+
+}  // namespace inversion
