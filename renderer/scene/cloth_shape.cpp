@@ -89,12 +89,8 @@ struct SurfaceBuilder {
   }
 };
 
-// How many periods the explicit cloth has along x and y.
-struct Tiling {
-  int x, y;
-};
-
-Tiling tiling_of(const ClothShape& shape, const YarnPatch& patch) {
+// The tiles that cover the shape.
+Tiles tiles_of(const ClothShape& shape, const YarnPatch& patch) {
   const auto whole = [](double length, double period) {
     return std::max(1, static_cast<int>(std::ceil(length / period - 1e-9)));
   };
@@ -110,7 +106,25 @@ Vector3d on_shape(const ClothShape& shape, double around_mm, const Vector3d& she
   return (s.radius_mm + sheet.z()) * outwards(2 * std::numbers::pi * sheet.x() / around_mm) + Vector3d(0, 0, sheet.y());
 }
 
-double segments_of(const YarnPatch& patch, const Tiling& tiles) {
+// The planes at the borders of the shape (CurveSet::cut), in a sheet whose x and y are `stretch` times as long there.
+std::vector<Eigen::Vector4f> borders_of(const ClothShape& shape, const Vector3d& stretch) {
+  if (const auto* s = std::get_if<SwatchShape>(&shape)) {
+    const auto width = static_cast<float>(s->width_mm / stretch.x()),
+               height = static_cast<float>(s->height_mm / stretch.y());
+    return {{-1, 0, 0, 0}, {1, 0, 0, width}, {0, -1, 0, 0}, {0, 1, 0, height}};
+  }
+  const auto height = static_cast<float>(std::get<CylinderShape>(shape).height_mm);
+  return {{0, 0, -1, 0}, {0, 0, 1, height}};
+}
+
+Eigen::Vector4f moved(const Eigen::Vector4f& plane, const Eigen::Isometry3d& by) {
+  const Vector3d normal = by.linear() * plane.head<3>().cast<double>();
+  Eigen::Vector4f result;
+  result << normal.cast<float>(), plane.w() + static_cast<float>(normal.dot(by.translation()));
+  return result;
+}
+
+double segments_of(const YarnPatch& patch, const Tiles& tiles) {
   double segments = 0;
   for (const Yarn& yarn : patch.yarns) segments += static_cast<double>(yarn.control_points.size());
   return segments * tiles.x * tiles.y;
@@ -127,7 +141,7 @@ std::vector<CurveSet> explicit_curves(const ClothShape& shape, const YarnPatch& 
                                       const Eigen::Isometry3d& world_from_cloth) {
   if (const auto* mesh = std::get_if<MeshShape>(&shape))
     throw std::runtime_error(mesh->name + ": brute force lays yarns on swatches and cylinders only; use two_scale");
-  const Tiling tiles = tiling_of(shape, patch);
+  const Tiles tiles = tiles_of(shape, patch);
   if (!(segments_of(patch, tiles) <= kMostExplicitSegments))
     throw std::runtime_error("cloth: brute force would need " + std::to_string(tiles.x) + " x " +
                              std::to_string(tiles.y) + " repeats of \"" + patch.name +
@@ -141,18 +155,26 @@ std::vector<CurveSet> explicit_curves(const ClothShape& shape, const YarnPatch& 
     if (!round && !swatch)
       throw std::runtime_error("cloth: \"" + patch.name +
                                "\" has flattened yarns, and brute force bends round ones only; use two_scale");
+    const Tiles all = with_neighbours(part.patch, tiles, swatch != nullptr);  // a tube closes along x
     for (const int thread : threads_of(part.patch)) {
-      CurveSet set = curves_of(part.patch, tiles.x, tiles.y, thread);
+      CurveSet set = curves_of(part.patch, all, thread);
       set.scattering = threads[static_cast<std::size_t>(thread)];
-      if (round)
+      set.cut = borders_of(shape, part.stretch);
+      if (round) {
+        // The sheet of a swatch begins at its corner.
+        const Eigen::Isometry3d world_from_sheet =
+            swatch ? world_from_cloth * Eigen::Translation3d(on_shape(shape, around_mm, Vector3d::Zero()))
+                   : world_from_cloth;
+        for (Eigen::Vector4f& plane : set.cut) plane = moved(plane, world_from_sheet);
         for (Eigen::Vector4f& point : set.control_points) {
           const Vector3d sheet = point.head<3>().cast<double>();
           point.head<3>() = (world_from_cloth * on_shape(shape, around_mm, sheet)).cast<float>();
         }
-      else
+      } else {
         set.placed = (world_from_cloth * Eigen::Translation3d(on_shape(shape, around_mm, Vector3d::Zero())) *
                       Eigen::Scaling(part.stretch))
                          .cast<float>();
+      }
       sets.push_back(std::move(set));
     }
   }

@@ -111,17 +111,31 @@ std::vector<RoundYarns> round_yarns_of(const YarnPatch& patch) {
   return all;
 }
 
-CurveSet curves_of(const YarnPatch& patch, int tiles_x, int tiles_y, int thread) {
-  assert(tiles_x > 0 && tiles_y > 0);
+Tiles with_neighbours(const YarnPatch& patch, Tiles tiles, bool along_x) {
+  const double stray = stray_of(patch);
+  const auto widen = [&](int& first, int& count, double period_mm) {
+    const int more = 1 + static_cast<int>(stray / period_mm);
+    first -= more;
+    count += 2 * more;
+  };
+  if (along_x) widen(tiles.first_x, tiles.x, patch.period_x_mm);
+  widen(tiles.first_y, tiles.y, patch.period_y_mm);
+  return tiles;
+}
+
+CurveSet curves_of(const YarnPatch& patch, const Tiles& tiles, int thread) {
+  assert(tiles.x > 0 && tiles.y > 0);
   CurveSet set;
   for (const Yarn& yarn : patch.yarns) {
     const PeriodicSpline line = center_line(patch, yarn);
-    const int along = yarn.warp ? tiles_y : tiles_x, across = yarn.warp ? tiles_x : tiles_y;
-    for (int tile = 0; tile < across; ++tile) {
+    const int count = static_cast<int>(line.control_points.size());
+    const int first = (yarn.warp ? tiles.first_y : tiles.first_x) * count,
+              end = first + (yarn.warp ? tiles.y : tiles.x) * count;
+    const int across = yarn.warp ? tiles.first_x : tiles.first_y, last = across + (yarn.warp ? tiles.x : tiles.y);
+    for (int tile = across; tile < last; ++tile) {
       const Eigen::Vector3d offset =
           yarn.warp ? Eigen::Vector3d(tile * patch.period_x_mm, 0, 0) : Eigen::Vector3d(0, tile * patch.period_y_mm, 0);
-      add_runs(set, yarn, line, offset, 0, along * static_cast<int>(line.control_points.size()),
-               [&](int k) { return thread_of_segment(yarn, k) == thread; });
+      add_runs(set, yarn, line, offset, first, end, [&](int k) { return thread_of_segment(yarn, k) == thread; });
     }
   }
   return set;

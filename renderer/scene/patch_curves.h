@@ -29,9 +29,16 @@ struct RoundYarns {
 // (yarn_contact.h).
 std::vector<RoundYarns> round_yarns_of(const YarnPatch& patch);
 
-// A sheet of tiles_x x tiles_y periods, for brute-force rendering: every yarn runs in one piece from one border of the
-// sheet [0, tiles_x period_x] x [0, tiles_y period_y] to the other and ends there; curves have no end caps.
-CurveSet curves_of(const YarnPatch& patch, int tiles_x, int tiles_y, int thread);
+// Whole periods of a patch: x of them from period number first_x on, likewise y.
+struct Tiles {
+  int x = 1, y = 1;
+  int first_x = 0, first_y = 0;
+};
+// `tiles` and those about them, along x and y or along y alone, from which yarns reach into them.
+Tiles with_neighbours(const YarnPatch& patch, Tiles tiles, bool along_x);
+// A sheet of tiles, for brute-force rendering: every yarn runs in one piece from one border of the tiles to the other
+// and ends there; curves have no end caps.
+CurveSet curves_of(const YarnPatch& patch, const Tiles& tiles, int thread);
 
 // All segments, of whichever periodic image, whose surface can reach the column [-margin, period_x + margin] x
 // [-margin, period_y + margin], for the two-scale renderer. A ray that stays inside the column meets exactly what it

@@ -28,6 +28,8 @@ struct CurveSet {
   std::vector<Eigen::Vector4f> control_points{};  // x, y, z, radius (mm)
   std::vector<std::uint32_t> segments{};          // index of the first of each segment's four control points
   ScatteringModel scattering = FiberParameters{};
+  // Planes (n, d) in the curves' frame: what has n . x > d of any is cut off, and the cut ends are open.
+  std::vector<Eigen::Vector4f> cut{};
   // World from the curves' frame. Where it stretches, the curves have elliptical sections.
   Eigen::Affine3f placed = Eigen::Affine3f::Identity();
 

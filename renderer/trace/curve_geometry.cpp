@@ -15,10 +15,14 @@ using Eigen::Vector3f;
 constexpr float kStartDepth = 1e-3f;
 
 // Embree calls this for each candidate hit of a curve: 0 refuses it.
-void refuse_back_sides(const RTCFilterFunctionNArguments* arguments) {
+void refuse_back_sides_and_what_is_cut_off(const RTCFilterFunctionNArguments* arguments) {
   const auto* ray = reinterpret_cast<const RTCRay*>(arguments->ray);
   const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
-  if (hit->Ng_x * ray->dir_x + hit->Ng_y * ray->dir_y + hit->Ng_z * ray->dir_z > 0) arguments->valid[0] = 0;
+  const Vector3f direction(ray->dir_x, ray->dir_y, ray->dir_z);
+  if (hit->Ng_x * direction.x() + hit->Ng_y * direction.y() + hit->Ng_z * direction.z() > 0) arguments->valid[0] = 0;
+  const Vector3f place = Vector3f(ray->org_x, ray->org_y, ray->org_z) + ray->tfar * direction;
+  for (const Eigen::Vector4f& plane : static_cast<const CurveSet*>(arguments->geometryUserPtr)->cut)
+    if (plane.head<3>().dot(place) > plane.w()) arguments->valid[0] = 0;
 }
 
 Vector3f across(const Vector3f& v, const Vector3f& unit_axis) {
@@ -53,8 +57,9 @@ void add_round_curves(RTCDevice device, RTCScene scene, const CurveSet& curves) 
                              sizeof(Eigen::Vector4f), curves.control_points.size());
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, curves.segments.data(), 0,
                              sizeof(std::uint32_t), curves.segments.size());
-  rtcSetGeometryIntersectFilterFunction(geometry, refuse_back_sides);
-  rtcSetGeometryOccludedFilterFunction(geometry, refuse_back_sides);
+  rtcSetGeometryUserData(geometry, const_cast<CurveSet*>(&curves));
+  rtcSetGeometryIntersectFilterFunction(geometry, refuse_back_sides_and_what_is_cut_off);
+  rtcSetGeometryOccludedFilterFunction(geometry, refuse_back_sides_and_what_is_cut_off);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene, geometry);
   rtcReleaseGeometry(geometry);

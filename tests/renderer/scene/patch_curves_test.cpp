@@ -56,7 +56,7 @@ bool contains_segment(const CurveSet& set, const CurveSet& other, std::uint32_t 
 
 TEST(PatchCurvesTest, ThreadsOfThePatchAreListedOnce) {
   EXPECT_EQ(threads_of(initial_patch(two_colours())), (std::vector<int>{0, 1, 2}));
-  EXPECT_TRUE(curves_of(initial_patch(two_colours()), 1, 1, 7).segments.empty());
+  EXPECT_TRUE(curves_of(initial_patch(two_colours()), {1, 1}, 7).segments.empty());
 }
 
 TEST(PatchCurvesTest, ASheetHasEveryYarnInOnePieceFromBorderToBorder) {
@@ -64,7 +64,7 @@ TEST(PatchCurvesTest, ASheetHasEveryYarnInOnePieceFromBorderToBorder) {
   const double width = 3 * patch.period_x_mm, height = 2 * patch.period_y_mm;
   std::size_t curves = 0;
   for (int thread : {0, 1, 2}) {
-    const CurveSet sheet = curves_of(patch, 3, 2, thread);
+    const CurveSet sheet = curves_of(patch, {3, 2}, thread);
     for (std::size_t s = 0; s < sheet.segments.size(); ++s) {
       const std::uint32_t first = sheet.segments[s];
       ASSERT_LT(first + 3, sheet.control_points.size());
@@ -83,7 +83,7 @@ TEST(PatchCurvesTest, ASheetHasEveryYarnInOnePieceFromBorderToBorder) {
 
 TEST(PatchCurvesTest, ASheetRepeatsItselfWithThePeriod) {
   const YarnPatch patch = initial_patch(two_colours());
-  const CurveSet one = curves_of(patch, 1, 1, 0), sheet = curves_of(patch, 3, 3, 0);
+  const CurveSet one = curves_of(patch, {1, 1}, 0), sheet = curves_of(patch, {3, 3}, 0);
   EXPECT_EQ(sheet.segments.size(), 9 * one.segments.size());
   for (std::uint32_t first : one.segments) {
     for (int x : {0, 2})
@@ -97,7 +97,7 @@ TEST(PatchCurvesTest, ACellHoldsEverySegmentOfTheInfiniteClothThatReachesItAndNo
   for (const YarnPatch& patch : {initial_patch(two_colours()), initial_patch(small)}) {
     for (double margin : {0.0, 0.3, 2.5}) {  // the last reaches beyond the next tile of the small patch
       for (int thread : threads_of(patch)) {
-        const CurveSet cell = cell_curves_of(patch, thread, margin), sheet = curves_of(patch, 7, 7, thread);
+        const CurveSet cell = cell_curves_of(patch, thread, margin), sheet = curves_of(patch, {7, 7}, thread);
         const Vector3d offset(-3 * patch.period_x_mm, -3 * patch.period_y_mm, 0);
         for (std::uint32_t first : sheet.segments)
           if (distance_to_column(patch, sheet, first, offset, margin) < 0)

@@ -96,10 +96,48 @@ TEST(ClothTest, OnACylinderRaysMeetTheBentYarnsNearly) {
   }
   ASSERT_GT(met, 5000);
   // The faces lie up to 3 um inside the cylinder and turn by 1.4 degrees. That moves silhouettes of yarns, where rays
-  // pass on to another yarn. The explicit cloth stands over at the top.
+  // pass on to another yarn.
   EXPECT_GT(near, 0.97 * met);
   EXPECT_LT(missed_by_one, 0.02 * met);
   EXPECT_LT(normals_rad / near, 0.02);
+}
+
+TEST(ClothTest, BruteForceEndsWhereTheShapeEnds) {
+  const Eigen::Isometry3d turned = Eigen::Translation3d(3, -2, 1) * Eigen::AngleAxisd(0.7, Vector3d::UnitZ());
+  const YarnPatch round = plain_patch();
+  YarnPatch flat = round;
+  for (Yarn& yarn : flat.yarns) yarn.flatness = 1.5;
+  const auto share_met = [](const RayScene& scene, const Eigen::Isometry3d& place, const Eigen::Array2d& half) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> across(-1.3, 1.3);
+    int met = 0;
+    for (int i = 0; i < 40000; ++i) {
+      const Vector3d at(half.x() * across(random), half.y() * across(random), 5);
+      const auto hit =
+          scene.intersect({(place * at).cast<float>(), (place.linear() * -Vector3d::UnitZ()).cast<float>()});
+      if (!hit) continue;
+      ++met;
+      EXPECT_TRUE((at.head<2>().array().abs() < half + 1e-3).all()) << at.transpose();
+    }
+    return met / 40000.0;
+  };
+  for (const YarnPatch& patch : {round, flat}) {
+    const SwatchShape swatch{5.3, 8.1};  // 2.9 and 4.5 periods
+    const Eigen::Array2d half(swatch.width_mm / 2, swatch.height_mm / 2);
+    const double whole =
+        share_met(RayScene(two_scale_scene(swatch, patch, red_and_blue_threads(), turned)), turned, half);
+    EXPECT_NEAR(
+        share_met(RayScene(brute_force_scene(swatch, patch, red_and_blue_threads(), turned)), turned, half) / whole, 1,
+        0.003);
+  }
+  // Seen from the side, a tube of 7.3 mm is no higher than that.
+  const CylinderShape tube{.radius_mm = 12, .height_mm = 7.3};
+  const RayScene scene(brute_force_scene(tube, round, red_and_blue_threads()));
+  for (const float height_mm : {-0.05F, 7.35F})
+    for (float angle = 0; angle < 6; angle += 0.05F) {
+      const Vector3f inwards(-std::cos(angle), -std::sin(angle), 0);
+      EXPECT_FALSE(scene.intersect({-20 * inwards + height_mm * Vector3f::UnitZ(), inwards})) << height_mm;
+    }
 }
 
 // Round 12 mm ten repeats of 7.2 mm are stretched by 4.7 %, and by another 8 % where the cloth is highest.

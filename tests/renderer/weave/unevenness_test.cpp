@@ -127,7 +127,7 @@ TEST(UnevennessTest, SlubsComeToRestInContactWithTheThicknessOfEachPlace) {
 
 TEST(UnevennessTest, SlubsAreDrawnWithTheRadiusOfEachPlace) {
   const YarnPatch patch = woven_patch(slubbed_cloth()).patch;
-  const CurveSet curves = curves_of(patch, 2, 1, 1);  // weft yarns, along x
+  const CurveSet curves = curves_of(patch, {2, 1}, 1);  // weft yarns, along x
   const Yarn& first = *std::find_if(patch.yarns.begin(), patch.yarns.end(), [](const Yarn& y) { return !y.warp; });
   const std::size_t count = first.control_points.size();
   for (std::size_t k = 0; k < 2 * count; ++k)  // the curve starts with the point before the border
@@ -158,7 +158,7 @@ TEST(UnevennessTest, ShadesChangeAlongAYarnInPiecesOfTheMeanLengthAsked) {
 
   const YarnPatch patch = woven_patch(draft).patch;
   std::size_t segments = 0, all = 0;
-  for (const int thread : threads_of(patch)) segments += curves_of(patch, 1, 1, thread).segments.size();
+  for (const int thread : threads_of(patch)) segments += curves_of(patch, {1, 1}, thread).segments.size();
   for (const Yarn& yarn : patch.yarns) all += yarn.control_points.size();
   EXPECT_EQ(segments, all);
 }
