@@ -48,6 +48,10 @@ void add_invert_command(CLI::App& app) {
   for (inversion::ParameterGroup group : inversion::kParameterGroups) groups.push_back(inversion::name_of(group));
   command->add_option("--hold", arguments->held, "leave this group of parameters at its start")
       ->check(CLI::IsMember(groups));
+  command
+      ->add_option("--hold-out", arguments->request.held_out,
+                   "leave out so many views, and tell how they are predicted")
+      ->check(CLI::Range(0, 1000));
   command->add_option("--paths", arguments->request.fit.paths_per_block, "light paths per block, one number a round")
       ->check(CLI::Range(1, 100000));
   command->add_option("--adam-steps", arguments->request.fit.adam_steps, "steps of --solver adam")

@@ -11,12 +11,21 @@ constexpr std::array<const char*, 2> kClothPictures{"swatch", "cylinder"};
 
 }  // namespace
 
-std::filesystem::path thread_file_of(const std::filesystem::path& session) {
-  return session / "result" / "thread.json";
+std::filesystem::path results_of(const std::filesystem::path& session, const std::string& model) {
+  return model == "thread" ? session / "result" : session / "result" / model;
 }
 
-std::filesystem::path fitted_file_of(const std::filesystem::path& session, const std::string& view) {
-  return session / "result" / "fitted" / (view + ".exr");
+std::filesystem::path baseline_fit_of(const std::filesystem::path& session, const std::string& model) {
+  return results_of(session, model) / "fit.json";
+}
+
+std::filesystem::path thread_file_of(const std::filesystem::path& session) {
+  return results_of(session, "thread") / "thread.json";
+}
+
+std::filesystem::path fitted_file_of(const std::filesystem::path& session, const std::string& view,
+                                     const std::string& model) {
+  return results_of(session, model) / "fitted" / (view + ".exr");
 }
 
 std::filesystem::path cloth_folder(const std::filesystem::path& session) {

@@ -8,9 +8,14 @@
 
 namespace station {
 
-// The fitted thread, and one view as the fitted thread gives it; neither needs to be there.
+// The folder of what a fit of `model` ("thread", "fiber", "yarn") found, the report of the fit in a baseline's (a
+// thread's is part of the thread's file), the fitted thread, and one view as the fitted model gives it. None needs to
+// be there.
+std::filesystem::path results_of(const std::filesystem::path& session, const std::string& model);
+std::filesystem::path baseline_fit_of(const std::filesystem::path& session, const std::string& model);
 std::filesystem::path thread_file_of(const std::filesystem::path& session);
-std::filesystem::path fitted_file_of(const std::filesystem::path& session, const std::string& view);
+std::filesystem::path fitted_file_of(const std::filesystem::path& session, const std::string& view,
+                                     const std::string& model = "thread");
 
 // The folder of the cloth that the session's thread weaves into, and the file that says what it is made of.
 std::filesystem::path cloth_folder(const std::filesystem::path& session);

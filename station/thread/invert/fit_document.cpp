@@ -86,18 +86,28 @@ std::string name_of(inversion::Solver solver) {
   return solver == inversion::Solver::adam ? "adam" : "lm";
 }
 
+std::vector<inversion::ViewAgreement> agreements_of(const std::vector<FittedView>& views, bool held_out) {
+  std::vector<inversion::ViewAgreement> agreements;
+  for (const FittedView& view : views)
+    if (view.held_out == held_out) agreements.push_back(view.agreement);
+  return agreements;
+}
+
 json fit_document(const inversion::ViewFit& fit, const inversion::FitOptions& options,
-                  const std::vector<FittedView>& fitted, int samples_per_pixel) {
+                  const std::vector<FittedView>& compared, int samples_per_pixel) {
   json views = json::array(), held = json::array();
-  std::vector<inversion::ViewAgreement> all, reflection, transmission;
-  for (std::size_t i = 0; i < fitted.size(); ++i) {
-    const FittedView& view = fitted[i];
+  std::size_t fitted = 0;
+  std::vector<inversion::ViewAgreement> reflection, transmission;
+  for (const FittedView& view : compared) {
     views.push_back({{"id", view.id},
-                     {"weight", fit.view_weights[i]},
                      {"relative_rmse", view.agreement.relative_rmse()},
                      {"relative_bias", view.agreement.relative_bias},
                      {"mean_over_diffuser", view.agreement.mean_reference}});
-    all.push_back(view.agreement);
+    if (view.held_out) {
+      views.back()["held_out"] = true;
+      continue;
+    }
+    views.back()["weight"] = fit.view_weights[fitted++];
     (view.transmission ? transmission : reflection).push_back(view.agreement);
   }
   for (inversion::ParameterGroup group : options.held) held.push_back(name_of(group));
@@ -113,10 +123,12 @@ json fit_document(const inversion::ViewFit& fit, const inversion::FitOptions& op
                 {"rounds", rounds_json(fit)},
                 {"samples_per_pixel", samples_per_pixel},
                 {"views", views},
-                {"relative_rmse", inversion::overall_relative_rmse(all)},
+                {"relative_rmse", inversion::overall_relative_rmse(agreements_of(compared, false))},
                 {"certainty", certainty_json(fit)}};
   if (!reflection.empty()) document["relative_rmse_reflection"] = inversion::overall_relative_rmse(reflection);
   if (!transmission.empty()) document["relative_rmse_transmission"] = inversion::overall_relative_rmse(transmission);
+  if (const auto held_out = agreements_of(compared, true); !held_out.empty())
+    document["relative_rmse_held_out"] = inversion::overall_relative_rmse(held_out);
   if (options.model == inversion::ModelKind::thread) document["bands"] = bands_json(fit);
   if (const auto* yarn = std::get_if<renderer::YarnParameters>(&fit.model)) document["fiber_count"] = yarn->fiber_count;
   return document;

@@ -14,6 +14,8 @@
 #include "station/documents/views_file.h"
 #include "station/documents/yarn_file.h"
 #include "station/output/interrupt.h"
+#include "station/session/results.h"
+#include "station/thread/invert/held_out_views.h"
 
 namespace station {
 namespace {
@@ -36,14 +38,12 @@ json provenance_json(const std::filesystem::path& session, const SessionFile& as
           {"paper", "Xia et al. 2025, Predicting Fabric Appearance Through Thread Scattering and Inversion"}};
 }
 
-// The folder of the results: the session's own for the thread, one below it for each baseline.
-std::filesystem::path results_of(const InvertRequest& request) {
-  const std::filesystem::path results = request.session / "result";
-  return request.fit.model == inversion::ModelKind::thread ? results : results / name_of(request.fit.model);
+std::filesystem::path folder_of(const InvertRequest& request) {
+  return results_of(request.session, name_of(request.fit.model));
 }
 
 std::filesystem::path model_file(const InvertRequest& request) {
-  return results_of(request) / (name_of(request.fit.model) + ".json");
+  return folder_of(request) / (name_of(request.fit.model) + ".json");
 }
 
 // The document of a fitted model; a thread's says what it was fitted to as well.
@@ -75,9 +75,9 @@ FittedView write_fitted_view(const InvertRequest& request, const inversion::Wrap
                                {"threadstation/samples_per_pixel", std::to_string(request.samples_per_pixel)}};
   std::string& content = header["threadstation/content"];
   content = "linear camera RGB, radiance unit; rendered with the fitted thread inside the mask";
-  renderer::write_exr(results_of(request) / "fitted" / (view.id + ".exr"), fitted, header);
+  renderer::write_exr(fitted_file_of(request.session, view.id, name_of(request.fit.model)), fitted, header);
   content = "linear camera RGB, radiance unit; fitted minus photographed inside the mask";
-  renderer::write_exr(results_of(request) / "residual" / (view.id + ".exr"), residual, header);
+  renderer::write_exr(folder_of(request) / "residual" / (view.id + ".exr"), residual, header);
   return {
       .id = view.id, .transmission = view.transmission, .agreement = inversion::agreement(view, fitted, fit.block_px)};
 }
@@ -87,7 +87,7 @@ void prepare_results(const InvertRequest& request) {
   FileSystem disk;
   if (request.out) check_can_store(disk, *request.out);
   for (const char* name : {"fitted", "residual"}) {
-    const std::filesystem::path folder = results_of(request) / name;
+    const std::filesystem::path folder = folder_of(request) / name;
     std::error_code code;
     std::filesystem::create_directories(folder, code);
     if (code)
@@ -109,6 +109,10 @@ InvertResult invert_session(const InvertRequest& request) {
   read_view_pictures(request.session, developed);
   std::vector<inversion::View> views;
   for (const DevelopedView& view : developed.views) views.push_back(view.view);
+  const std::vector<bool> held_out = held_out_views(developed.views, request.held_out);
+  std::vector<inversion::View> seen;
+  for (std::size_t i = 0; i < views.size(); ++i)
+    if (!held_out[i]) seen.push_back(views[i]);
 
   prepare_results(request);
   ProgressDisplay progress("invert", request.progress_style);
@@ -119,7 +123,7 @@ InvertResult invert_session(const InvertRequest& request) {
     if (percent / 5 != shown / 5 || shown < 0) progress.show(shown = percent, 100, what);
     return !interrupted();
   };
-  const inversion::ViewFit fit = inversion::fit_views(asked.spool.wrapping, views, options);
+  const inversion::ViewFit fit = inversion::fit_views(asked.spool.wrapping, seen, options);
 
   InvertResult result{.model = fit.model, .file = model_file(request)};
   std::filesystem::remove(result.file);  // it no longer belongs to the pictures beside it
@@ -128,17 +132,17 @@ InvertResult invert_session(const InvertRequest& request) {
     progress.show(static_cast<int>(100 * (kFitShare + (1 - kFitShare) * share)), 100, "view " + view.id);
     result.views.push_back(
         write_fitted_view(request, asked.spool.wrapping, view, fit, kViewSeed + result.views.size()));
+    result.views.back().held_out = held_out[result.views.size() - 1];
   }
   result.fit = fit_document(fit, request.fit, result.views, request.samples_per_pixel);
   result.relative_rmse = result.fit.at("relative_rmse");
-  std::vector<inversion::ViewAgreement> agreements;
-  for (const FittedView& view : result.views) agreements.push_back(view.agreement);
-  result.doubts = inversion::fit_doubts(views, fit, agreements);
+  result.doubts = inversion::fit_doubts(seen, fit, agreements_of(result.views, false));
   result.fit["doubts"] = result.doubts;
   const json provenance = provenance_json(request.session, asked);
   const json document = std::visit(ModelDocument{asked, developed, result.fit, provenance}, fit.model);
   write_json_file(result.file, document);
-  if (request.fit.model != inversion::ModelKind::thread) write_json_file(results_of(request) / "fit.json", result.fit);
+  if (request.fit.model != inversion::ModelKind::thread)
+    write_json_file(baseline_fit_of(request.session, name_of(request.fit.model)), result.fit);
   if (request.out) write_json_file(*request.out, document);
   progress.finish("relative RMSE " + number_text(100 * result.relative_rmse, 1) + " %");
   return result;
@@ -187,13 +191,17 @@ std::string baseline_text(const json& fit) {
 std::string describe(const InvertResult& result) {
   std::string text;
   for (const FittedView& view : result.views)
-    text += view.id + ": relative RMSE " + number_text(100 * view.agreement.relative_rmse(), 1) + " %, bias " +
+    text += view.id + (view.held_out ? " (held out)" : "") + ": relative RMSE " +
+            number_text(100 * view.agreement.relative_rmse(), 1) + " %, bias " +
             number_text(100 * view.agreement.relative_bias, 1) + " %\n";
   text += "overall: relative RMSE " + number_text(100 * result.relative_rmse, 1) + " %";
   for (const char* part : {"reflection", "transmission"})
     if (const auto found = result.fit.find(std::string("relative_rmse_") + part); found != result.fit.end())
       text += std::string(", ") + part + " " + number_text(100 * found->get<double>(), 1) + " %";
   text += "\n";
+  if (const auto found = result.fit.find("relative_rmse_held_out"); found != result.fit.end())
+    text += "held out: relative RMSE " + number_text(100 * found->get<double>(), 1) +
+            " %, views that the fit has not seen\n";
   if (const auto* thread = std::get_if<renderer::ThreadParameters>(&result.model))
     text += thread_text(*thread, result.fit);
   else

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <opencv2/core.hpp>
+#include <string>
 
 #include "inversion/view/view.h"
 
@@ -14,9 +15,10 @@ struct FittedTwins {
   cv::Rect box;                    // the part with the threads
 };
 
-// Reads a view's twin; the view's own picture must have been read. Errors: those of read_exr, when the session was not
-// fitted.
-FittedTwins read_twins(const std::filesystem::path& session, const inversion::View& view);
+// Reads a view's twin by the fitted thread or a baseline (results.h); the view's own picture must have been read.
+// Errors: those of read_exr, when the session was not fitted.
+FittedTwins read_twins(const std::filesystem::path& session, const inversion::View& view,
+                       const std::string& model = "thread");
 
 // The residual, fitted minus photographed, averaged over the fit's blocks of `block_px`: grey (0.5 at the twins' scale)
 // where it is zero.

@@ -3,15 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 #include "renderer/picture/image_file.h"
 #include "station/documents/number_text.h"
+#include "station/documents/reader.h"
 #include "station/documents/thread_file.h"
 #include "station/output/display.h"
 #include "station/output/html.h"
 #include "station/output/plot.h"
 #include "station/session/results.h"
-#include "station/thread/invert/invert_session.h"
+#include "station/thread/invert/fit_document.h"
 #include "station/thread/report/fitted_twins.h"
 
 namespace station {
@@ -22,7 +24,7 @@ std::string parameter_table(const ThreadFile& thread) {
   return fact_table(
       {{"agreement with the photographs",
         number_text(100 * thread.fit.at("relative_rmse").get<double>(), 1) + " % relative RMSE over blocks of " +
-            std::to_string(thread.fit.at("block_px").get<int>()) + " px, all views alike"},
+            std::to_string(thread.fit.at("block_px").get<int>()) + " px, all fitted views alike"},
        {"absorption sigma_a (R, G, B)",
         numbers_text({p.sigma_a[0], p.sigma_a[1], p.sigma_a[2]}, 3) + " per thread radius"},
        {"longitudinal roughness alpha (R, TT, TRT)", numbers_text({p.alpha[0], p.alpha[1], p.alpha[2]}, 3)},
@@ -45,25 +47,83 @@ std::string energy_plot(const renderer::ThreadParameters& parameters) {
   return line_plot("cos theta", "scale factor", lines);
 }
 
-std::string figures_of(const nlohmann::json& fit, const std::string& id) {
-  for (const nlohmann::json& view : fit.at("views"))
+// A model that was fitted to the session, with the report of its fit.
+struct FittedModel {
+  std::string name;
+  nlohmann::json fit;
+};
+
+// The thread first, then the baselines that were fitted as well.
+std::vector<FittedModel> fitted_models(const std::filesystem::path& session, const ThreadFile& thread) {
+  std::vector<FittedModel> models{{"thread", thread.fit}};
+  for (const auto& [name, kind] : names_of_models())
+    if (kind != inversion::ModelKind::thread && std::filesystem::exists(baseline_fit_of(session, name)))
+      models.push_back({name, read_json_file(baseline_fit_of(session, name))});
+  return models;
+}
+
+std::set<std::string> held_out_of(const FittedModel& model) {
+  std::set<std::string> ids;
+  for (const nlohmann::json& view : model.fit.at("views"))
+    if (view.value("held_out", false)) ids.insert(view.at("id"));
+  return ids;
+}
+
+// The models side by side; empty for a thread alone of which no view was held out.
+std::string model_table(const std::vector<FittedModel>& models) {
+  const std::set<std::string> held_out = held_out_of(models.front());
+  if (models.size() == 1 && held_out.empty()) return {};
+  std::string table =
+      "<h2>Models on the same views</h2>\n<table>\n<tr><th>relative RMSE</th><th>all fitted views</th>"
+      "<th>reflection</th><th>transmission</th><th>held-out views</th></tr>\n";
+  std::string differing;
+  for (const FittedModel& model : models) {
+    table += "<tr><th>" + model.name + "</th>";
+    for (const char* key :
+         {"relative_rmse", "relative_rmse_reflection", "relative_rmse_transmission", "relative_rmse_held_out"}) {
+      const auto found = model.fit.find(key);
+      table += "<td>" +
+               (found == model.fit.end() ? std::string("none") : number_text(100 * found->get<double>(), 1) + " %") +
+               "</td>";
+    }
+    table += "</tr>\n";
+    if (held_out_of(model) != held_out)
+      differing += "<p class=\"doubt\">The " + model.name +
+                   " was fitted with other views held out than the thread: fit both with the same --hold-out to "
+                   "compare them.</p>\n";
+  }
+  return table + "</table>\n" + differing;
+}
+
+std::string figures_of(const FittedModel& model, const std::string& id) {
+  for (const nlohmann::json& view : model.fit.at("views"))
     if (view.at("id") == id)
-      return "relative RMSE " + number_text(100 * view.at("relative_rmse").get<double>(), 1) + " %, bias " +
+      return std::string(view.value("held_out", false) ? "held out: " : "") + "relative RMSE " +
+             number_text(100 * view.at("relative_rmse").get<double>(), 1) + " %, bias " +
              number_text(100 * view.at("relative_bias").get<double>(), 1) + " %";
   return "not fitted";
 }
 
-std::string fitted_tile(const std::filesystem::path& session, const DevelopedView& developed, const ThreadFile& thread,
-                        const std::array<double, 9>& colour) {
+// The photograph of a view, then each model's twin above its residual.
+std::string view_figures(const std::filesystem::path& session, const DevelopedView& developed,
+                         const std::vector<FittedModel>& models, const std::array<double, 9>& colour) {
   const inversion::View& view = developed.view;
-  const FittedTwins twins = read_twins(session, view);
-  const auto shown = [&](const cv::Mat3f& picture, const std::string& what) {
-    return embedded_image(display(picture, twins.scale, colour)(twins.box).clone(), view.id + " " + what);
-  };
-  return "<figure>" + shown(twins.photographed, "photographed") + shown(twins.fitted, "fitted") +
-         shown(residual_picture(view, twins, thread.fit.at("block_px").get<int>()), "residual") + "<figcaption>" +
-         escaped(view.id) + ": photographed, fitted, fitted minus photographed (grey is none)<br>" +
-         figures_of(thread.fit, view.id) + "</figcaption></figure>\n";
+  std::string figures;
+  for (const FittedModel& model : models) {
+    if (!std::filesystem::exists(fitted_file_of(session, view.id, model.name))) continue;
+    const FittedTwins twins = read_twins(session, view, model.name);
+    const auto shown = [&](const cv::Mat3f& picture, const std::string& what) {
+      return embedded_image(display(picture, twins.scale, colour)(twins.box).clone(), view.id + " " + what);
+    };
+    if (figures.empty())
+      figures = "<figure>" + shown(twins.photographed, "photographed") + "<figcaption>" + escaped(view.id) +
+                ": photographed</figcaption></figure>\n";
+    figures += "<figure>" + shown(twins.fitted, model.name) +
+               shown(residual_picture(view, twins, model.fit.at("block_px").get<int>()), model.name + " residual") +
+               "<figcaption>" + model.name + ", and minus photographed (grey is none)<br>" +
+               figures_of(model, view.id) + "</figcaption></figure>\n";
+  }
+  return figures;
 }
 
 cv::Mat3b fitted_into(const cv::Mat3b& picture, cv::Size size) {
@@ -85,11 +145,14 @@ std::string thread_section(const std::filesystem::path& session, const Developed
   if (const auto found = thread.fit.find("doubts"); found != thread.fit.end())
     for (const nlohmann::json& doubt : *found)
       doubts += "<p class=\"doubt\">Doubt: " + escaped(doubt.get<std::string>()) + "</p>\n";
-  std::string html = "<h2>Thread</h2>\n" + doubts + parameter_table(thread) + energy_plot(thread.parameters) +
-                     "\n<h2>Photographs and their fitted twins</h2>\n<div class=\"sheet\">\n";
+  const std::vector<FittedModel> models = fitted_models(session, thread);
+  const std::string open = "<div class=\"sheet\">\n", close = "</div>\n";
+  const std::string between = models.size() > 1 ? close + open : std::string();  // a row for each view
+  std::string html = "<h2>Thread</h2>\n" + doubts + parameter_table(thread) + energy_plot(thread.parameters) + "\n" +
+                     model_table(models) + "<h2>Photographs and their fitted twins</h2>\n" + open;
   for (const DevelopedView& view : developed.views)
-    html += fitted_tile(session, view, thread, developed.linear_srgb_from_camera);
-  return html + "</div>\n";
+    html += view_figures(session, view, models, developed.linear_srgb_from_camera) + between;
+  return html + close;
 }
 
 std::string cloth_section(const std::filesystem::path& session, const DevelopedViews& developed) {

@@ -1,5 +1,5 @@
-// The fit's part of a session report: parameters, lobe energies, photographs beside their fitted twins and residuals,
-// and the woven cloth.
+// The fit's part of a session report: parameters, lobe energies, the thread and the baselines that were fitted side by
+// side on the same views with their residuals and errors [Xia 2025, figures 6 and 7], and the woven cloth.
 #pragma once
 
 #include <filesystem>

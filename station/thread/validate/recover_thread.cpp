@@ -9,6 +9,7 @@
 #include "inversion/fit/energy_bands.h"
 #include "inversion/fit/thread_unknowns.h"
 #include "inversion/view/agreement.h"
+#include "station/documents/number_text.h"
 #include "station/documents/rig_file.h"
 #include "station/documents/spool.h"
 #include "station/documents/thread_file.h"
@@ -22,6 +23,7 @@ namespace {
 using inversion::View;
 
 constexpr double kLeastCosine = 0.65;  // inclinations that the 17 views show well
+constexpr double kSameEnergy = 1e-6;   // between a lobe's energies that are the same
 constexpr int kLossPaths = 4096, kLossRepetitions = 4;
 constexpr const char* kStopped = "the recovery was interrupted; start it again";
 
@@ -71,6 +73,31 @@ std::vector<View> with_noise(const std::vector<View>& exact, const rig::TrueSens
 
 nlohmann::json loss_json(const inversion::IndependentLoss& loss) {
   return {{"mean", loss.mean}, {"standard_error", loss.standard_error}, {"without_noise", loss.without_noise}};
+}
+
+// Refuses a thread that no values of the unknowns give: pictures of it say nothing about how well a fit finds it.
+void require_reachable(const std::filesystem::path& file, const renderer::ThreadParameters& truth) {
+  const auto refused = [&](const std::string& what) {
+    return std::runtime_error(file.string() + ": " + what +
+                              "; give a thread that a fit can find, or change the thread's parameters");
+  };
+  if (truth.lambda0_rgb != Eigen::Vector3d::Ones())
+    throw refused("it has lambda0_rgb, the tint of its highlight, which is not among the unknowns of a fit");
+  if (truth.transmittance_powers != renderer::ThreadParameters{}.transmittance_powers)
+    throw refused("it has transmittance_powers, which are not among the unknowns of a fit");
+  const renderer::ThreadParameters found = inversion::parameters_of(inversion::unknowns_of(truth));
+  if (const double most = found.sigma_a.maxCoeff(); most < truth.sigma_a.maxCoeff())
+    throw refused("its sigma_a is " + number_text(truth.sigma_a.maxCoeff(), 4) + ", and the most of a fit is " +
+                  number_text(most, 4));
+  for (int tenth = 0; tenth <= 10; ++tenth) {
+    const auto of_truth = renderer::thread_lobe_energies<double>(truth, tenth / 10.0),
+               of_found = renderer::thread_lobe_energies<double>(found, tenth / 10.0);
+    for (std::size_t p = 0; p < 3; ++p)
+      if (std::abs(of_truth[p] - of_found[p]) > kSameEnergy)
+        throw refused("its lambda_" + std::to_string(p) + " is " + number_text(of_truth[p], 4) + " at cos theta " +
+                      number_text(tenth / 10.0, 1) + ", and the nearest that a fit can have is " +
+                      number_text(of_found[p], 4));
+  }
 }
 
 // The spool's views as the known thread gives them, without noise. `begun` is told the name of each.
@@ -133,7 +160,8 @@ RecoveredThread recover_thread(const RecoverRequest& request) {
   watch_interrupts();
   const RigFile rig = read_rig(request.rig);
   const Spool spool = read_spool(request.spool);
-  ThreadFile thread = read_thread(request.thread);
+  const ThreadFile thread = read_thread(request.thread);
+  require_reachable(request.thread, thread.parameters);
   ProgressDisplay progress("recover", request.progress_style);
   const int parts = 2 + request.draws;
   const auto show = [&](int part, const std::string& what) { progress.show(part, parts, what); };
