@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -124,6 +125,18 @@ Eigen::Vector4f moved(const Eigen::Vector4f& plane, const Eigen::Isometry3d& by)
   return result;
 }
 
+// Leaves out the segments of which nothing is left after the cut.
+void drop_what_is_cut_off(CurveSet& set) {
+  std::erase_if(set.segments, [&](std::uint32_t first) {
+    const std::span points(&set.control_points[first], 4);
+    return std::ranges::any_of(set.cut, [&](const Eigen::Vector4f& plane) {
+      return std::ranges::all_of(points, [&](const Eigen::Vector4f& point) {
+        return plane.head<3>().dot(point.head<3>()) - point.w() > plane.w();
+      });
+    });
+  });
+}
+
 double segments_of(const YarnPatch& patch, const Tiles& tiles) {
   double segments = 0;
   for (const Yarn& yarn : patch.yarns) segments += static_cast<double>(yarn.control_points.size());
@@ -149,6 +162,9 @@ std::vector<CurveSet> explicit_curves(const ClothShape& shape, const YarnPatch& 
   check_cloth(patch, threads.size());
   const auto* swatch = std::get_if<SwatchShape>(&shape);
   const double around_mm = tiles.x * patch.period_x_mm;
+  // The sheet of a swatch begins at its corner.
+  const Eigen::Isometry3d world_from_sheet =
+      swatch ? world_from_cloth * Eigen::Translation3d(on_shape(shape, around_mm, Vector3d::Zero())) : world_from_cloth;
   std::vector<CurveSet> sets;
   for (const RoundYarns& part : round_yarns_of(patch)) {
     const bool round = part.stretch == Vector3d::Ones();
@@ -161,20 +177,15 @@ std::vector<CurveSet> explicit_curves(const ClothShape& shape, const YarnPatch& 
       set.scattering = threads[static_cast<std::size_t>(thread)];
       set.cut = borders_of(shape, part.stretch);
       if (round) {
-        // The sheet of a swatch begins at its corner.
-        const Eigen::Isometry3d world_from_sheet =
-            swatch ? world_from_cloth * Eigen::Translation3d(on_shape(shape, around_mm, Vector3d::Zero()))
-                   : world_from_cloth;
         for (Eigen::Vector4f& plane : set.cut) plane = moved(plane, world_from_sheet);
         for (Eigen::Vector4f& point : set.control_points) {
           const Vector3d sheet = point.head<3>().cast<double>();
           point.head<3>() = (world_from_cloth * on_shape(shape, around_mm, sheet)).cast<float>();
         }
       } else {
-        set.placed = (world_from_cloth * Eigen::Translation3d(on_shape(shape, around_mm, Vector3d::Zero())) *
-                      Eigen::Scaling(part.stretch))
-                         .cast<float>();
+        set.placed = (world_from_sheet * Eigen::Scaling(part.stretch)).cast<float>();
       }
+      drop_what_is_cut_off(set);
       sets.push_back(std::move(set));
     }
   }

@@ -41,10 +41,9 @@ using ClothShape = std::variant<SwatchShape, CylinderShape, MeshShape>;
 ClothSurface surface_of(const ClothShape& shape, const YarnPatch& patch, const Eigen::Isometry3d& world_from_cloth);
 
 // The same cloth as curves, one set for each thread and section that occur, cut off at the borders of the shape as the
-// surface is. Yarns bend smoothly on a cylinder and keep their round
-// cross-section. Errors: those of surface_of, and std::runtime_error for a mesh, which has no explicit curves, for
-// flattened yarns on a cylinder, for a thread that is not among `threads`, and for more than `kMostExplicitSegments`
-// segments.
+// surface is. Yarns bend smoothly on a cylinder and keep their round cross-section. Errors: those of surface_of, and
+// std::runtime_error for a mesh, which has no explicit curves, for flattened yarns on a cylinder, for a thread that is
+// not among `threads`, and for more than `kMostExplicitSegments` segments.
 inline constexpr double kMostExplicitSegments = 2e7;  // about 4 GB with Embree's tree
 std::vector<CurveSet> explicit_curves(const ClothShape& shape, const YarnPatch& patch,
                                       const std::vector<ScatteringModel>& threads,

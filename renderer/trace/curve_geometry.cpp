@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -19,10 +20,13 @@ void refuse_back_sides_and_what_is_cut_off(const RTCFilterFunctionNArguments* ar
   const auto* ray = reinterpret_cast<const RTCRay*>(arguments->ray);
   const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
   const Vector3f direction(ray->dir_x, ray->dir_y, ray->dir_z);
-  if (hit->Ng_x * direction.x() + hit->Ng_y * direction.y() + hit->Ng_z * direction.z() > 0) arguments->valid[0] = 0;
-  const Vector3f place = Vector3f(ray->org_x, ray->org_y, ray->org_z) + ray->tfar * direction;
-  for (const Eigen::Vector4f& plane : static_cast<const CurveSet*>(arguments->geometryUserPtr)->cut)
-    if (plane.head<3>().dot(place) > plane.w()) arguments->valid[0] = 0;
+  const auto beyond = [&](const Eigen::Vector4f& plane) {
+    const Vector3f place = Vector3f(ray->org_x, ray->org_y, ray->org_z) + ray->tfar * direction;
+    return plane.head<3>().dot(place) > plane.w();
+  };
+  if (Vector3f(hit->Ng_x, hit->Ng_y, hit->Ng_z).dot(direction) > 0 ||
+      std::ranges::any_of(static_cast<const CurveSet*>(arguments->geometryUserPtr)->cut, beyond))
+    arguments->valid[0] = 0;
 }
 
 Vector3f across(const Vector3f& v, const Vector3f& unit_axis) {

@@ -78,7 +78,8 @@ json thread_document(const ThreadFile& thread) {
   for (const json& view : part_of(thread.fit, "views"))
     views.push_back({{"id", view.at("id")},
                      {"relative_rmse", view.at("relative_rmse")},
-                     {"relative_bias", view.at("relative_bias")}});
+                     {"relative_bias", view.at("relative_bias")},
+                     {"held_out", view.value("held_out", false)}});
   return {{"name", thread.name},
           {"diameter_mm", thread.diameter_mm},
           {"relative_rmse", thread.fit.value("relative_rmse", json())},

@@ -17,7 +17,7 @@ function showView() {
   byId("fitted").src = picture({of: residual() ? "residual" : "fitted", session, view, made});
   const line = result.views.find(one => one.id === view);
   byId("view-figures").textContent =
-    line ? `${text("relative_rmse")} ${percent(line.relative_rmse)} · ${text("relative_bias")} ${percent(line.relative_bias)}` : "";
+    line ? `${line.held_out ? `${text("held_out")}: ` : ""}${text("relative_rmse")} ${percent(line.relative_rmse)} · ${text("relative_bias")} ${percent(line.relative_bias)}` : "";
 }
 
 function wipe() { byId("fitted").style.clipPath = `inset(0 0 0 ${byId("wipe").value}%)`; byId("wipe-line").style.left = `${byId("wipe").value}%`; }

@@ -110,7 +110,11 @@ std::string view_figures(const std::filesystem::path& session, const DevelopedVi
   const inversion::View& view = developed.view;
   std::string figures;
   for (const FittedModel& model : models) {
-    if (!std::filesystem::exists(fitted_file_of(session, view.id, model.name))) continue;
+    // A baseline may have been fitted before the session was developed again with other views.
+    if (model.name != "thread" && !std::filesystem::exists(fitted_file_of(session, view.id, model.name))) {
+      figures += "<figure><figcaption>" + model.name + ": not fitted to this view</figcaption></figure>\n";
+      continue;
+    }
     const FittedTwins twins = read_twins(session, view, model.name);
     const auto shown = [&](const cv::Mat3f& picture, const std::string& what) {
       return embedded_image(display(picture, twins.scale, colour)(twins.box).clone(), view.id + " " + what);

@@ -23,6 +23,21 @@ TEST_F(TechnicianPage, ASessionIsShownAsItsJournalHasItNow) {
   EXPECT_EQ(get("/api/state").at("sessions")[0].at("state"), "interrupted");
 }
 
+TEST_F(TechnicianPage, AViewThatTheFitHasNotSeenIsToldApart) {
+  copy_session();
+  json thread = station::read_json_file(std::filesystem::path(FIXTURES_DIR) / "threads/silk_red.json");
+  const json view{{"id", "reflection-horizontal-1"}, {"relative_rmse", 0.1}, {"relative_bias", 0.02}};
+  json held_out = view;
+  held_out["held_out"] = true;
+  thread["fit"]["views"] = {view, held_out};
+  std::filesystem::create_directories(folder_ / "bench/sessions/silk_red/result");
+  station::write_json_file(folder_ / "bench/sessions/silk_red/result/thread.json", thread);
+  const json views = get("/api/result", "silk_red").at("views");
+  ASSERT_EQ(views.size(), 2U);
+  EXPECT_EQ(views[0].at("held_out"), false);
+  EXPECT_EQ(views[1].at("held_out"), true);
+}
+
 TEST_F(TechnicianPage, ThePageAndItsPartsAreThere) {
   for (const char* path :
        {"/", "/app.js", "/bench.js", "/capture.js", "/curves.js", "/document.js", "/library.js", "/result.js",
