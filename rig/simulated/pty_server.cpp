@@ -55,7 +55,9 @@ class Server final : public PtyServer {
     while (!ending.stop_requested() && port_->plugged()) {
       pollfd watched{.fd = master_, .events = POLLIN, .revents = 0};
       ::poll(&watched, 1, kLookEveryMs);
-      if ((watched.revents & POLLHUP) != 0) {
+      const bool hung_up = (watched.revents & POLLHUP) != 0;
+      // What a program wrote just before it ended is still to be heard: its last stop, for example.
+      if (hung_up && (watched.revents & POLLIN) == 0) {
         open = false;
         port_->transmit();  // the firmware lives on, and nobody hears what it says
         std::this_thread::sleep_for(std::chrono::milliseconds(kLookEveryMs));
@@ -65,7 +67,7 @@ class Server final : public PtyServer {
       std::array<char, 4096> bytes{};
       if (const ssize_t got = ::read(master_, bytes.data(), bytes.size()); got > 0)
         port_->receive({bytes.data(), static_cast<std::size_t>(got)});
-      say(port_->transmit());
+      if (const std::string said = port_->transmit(); !hung_up) say(said);
     }
     ::close(master_);
   }

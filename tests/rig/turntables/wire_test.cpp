@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <future>
+#include <mutex>
 #include <thread>
 
 #include "rig/devices/device_contract.h"
@@ -49,6 +50,22 @@ class FolderOfLinks {
 
  private:
   std::filesystem::path folder_;
+};
+
+// A port that does as the one behind it does.
+class PassedOn : public rig::SimulatedPort {
+ public:
+  explicit PassedOn(std::shared_ptr<rig::SimulatedPort> port) : port_(std::move(port)) {}
+  void power_on() override { port_->power_on(); }
+  void opened() override { port_->opened(); }
+  void receive(std::string_view bytes) override { port_->receive(bytes); }
+  std::string transmit() override { return port_->transmit(); }
+  void unplug() override { port_->unplug(); }
+  bool plugged() override { return port_->plugged(); }
+  int operations() override { return port_->operations(); }
+
+ private:
+  std::shared_ptr<rig::SimulatedPort> port_;
 };
 
 struct Wire : testing::TestWithParam<std::tuple<Protocol, Line>> {
@@ -105,24 +122,17 @@ TEST_P(Wire, APulledPlugIsToldWhileWriting) {
 
 // Opening a port starts the board behind it; one that is unplugged in that very moment is not started again.
 TEST_P(Wire, APlugPulledWhileTheLineIsOpenedStaysPulled) {
-  class PulledWhenOpened final : public rig::SimulatedPort {
+  class PulledWhenOpened final : public PassedOn {
    public:
-    PulledWhenOpened(std::shared_ptr<rig::SimulatedPort> port, std::future<void> has_line)
-        : port_(std::move(port)), has_line_(std::move(has_line)) {}
-    void power_on() override { port_->power_on(); }
+    PulledWhenOpened(const std::shared_ptr<rig::SimulatedPort>& port, std::future<void> has_line)
+        : PassedOn(port), has_line_(std::move(has_line)) {}
     void opened() override {
       has_line_.wait();
-      port_->unplug();
-      port_->opened();
+      unplug();
+      PassedOn::opened();
     }
-    void receive(std::string_view bytes) override { port_->receive(bytes); }
-    std::string transmit() override { return port_->transmit(); }
-    void unplug() override { port_->unplug(); }
-    bool plugged() override { return port_->plugged(); }
-    int operations() override { return port_->operations(); }
 
    private:
-    std::shared_ptr<rig::SimulatedPort> port_;
     std::future<void> has_line_;
   };
   std::promise<void> has_line;
@@ -140,6 +150,36 @@ TEST_P(Wire, APlugPulledWhileTheLineIsOpenedStaysPulled) {
 }
 
 // The links that the system keeps below /dev/serial; a link to a link is one, too.
+// A board hears what was written just before its program ended, be it a stop, even when it is slow to listen.
+TEST_P(Wire, WhatWasWrittenJustBeforeTheLineIsClosedIsHeard) {
+  class SlowToListen final : public PassedOn {
+   public:
+    SlowToListen(const std::shared_ptr<rig::SimulatedPort>& port, std::mutex& other_work)
+        : PassedOn(port), other_work_(other_work) {}
+    std::string transmit() override {
+      const std::lock_guard hold(other_work_);
+      return PassedOn::transmit();
+    }
+
+   private:
+    std::mutex& other_work_;
+  };
+  std::mutex other_work;
+  server = rig::serve_on_pty(std::make_shared<SlowToListen>(rig.port, other_work));
+  auto open = open_line(line(), server->path());
+  open->read(0.2);
+  const int before = rig.port->operations();
+  {
+    const std::lock_guard hold(other_work);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // it waits for its other work by now
+    open->write(protocol() == Protocol::grbl ? "!" : "/1 1 stop\n");
+    open.reset();
+  }
+  for (int i = 0; i < 500 && rig.port->operations() == before; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  EXPECT_EQ(rig.port->operations(), before + 1);
+}
+
 TEST_P(Wire, APortIsOpenedByALinkToIt) {
   const FolderOfLinks links;
   const std::string id = links.make("by-id", server->path()), mine = links.make("turntable", id);
