@@ -7,6 +7,7 @@
 
 #include "inversion/fit/loss_terms.h"
 #include "inversion/fit/mean_terms.h"
+#include "inversion/fit/pixel_loss.h"
 #include "inversion/fit/view_objective.h"
 #include "inversion/solve/adam.h"
 #include "inversion/solve/bias_free.h"
@@ -15,6 +16,7 @@ namespace inversion {
 namespace {
 
 using Eigen::VectorXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr int kMostSteps = 40;
 constexpr int kMostReweighings = 4;
@@ -189,7 +191,7 @@ MeanTerms remove_bias(ViewObjective& objective, const Search& search, Attempt& a
       if (options.progress && !options.progress(name, 1)) throw std::runtime_error(kStopped);
     });
     const ViewObjective::Halves both = objective.halves(unknowns);
-    if (step + 1 >= steps.own_steps) mean.add(both);
+    if (step + 1 >= steps.own_steps) mean.add(both, unknowns);
     return data_terms(both);
   };
   if (options.robust) attempt.view_weights = objective.weigh_robustly(attempt.unknowns);
@@ -201,27 +203,23 @@ MeanTerms remove_bias(ViewObjective& objective, const Search& search, Attempt& a
   return mean;
 }
 
-Attempt search_by_adam(ViewObjective& objective, const Search& search, const VectorXd& start) {
+// By the loss of the pictures alone, with light paths of each step's own.
+Attempt search_by_adam(const Search& search, const VectorXd& start, int paths, const StochasticLoss& of_pictures) {
   const FitOptions& options = *search.options;
   Attempt attempt{.unknowns = start};
   VectorXd low = search.unknowns.lower, high = search.unknowns.upper;
   for (int k : search.held) low[k] = high[k] = start[k];
-  ceres::Problem problem;
-  problem.AddResidualBlock(new DataTerm(objective, static_cast<int>(start.size())), nullptr, attempt.unknowns.data());
-  add_penalties(*search.family, problem, attempt.unknowns.data());
+  OtherTerms others(*search.family, 0);
   const auto evaluate = [&](int step, const VectorXd& unknowns, VectorXd& gradient) {
     const double share = (step - 1.0) / options.adam_steps;
     if (options.progress && !options.progress("step " + std::to_string(step), share))
       throw std::runtime_error(kStopped);
-    objective.trace(unknowns, options.adam_paths, options.seed + kSeedStep * static_cast<std::uint64_t>(step),
-                    [](int, int) {});
-    double loss = 0;
-    std::vector<double> slopes;
-    problem.Evaluate({}, &loss, nullptr, &slopes, nullptr);
-    gradient = Eigen::Map<const VectorXd>(slopes.data(), unknowns.size());
-    return loss;
+    const double loss = of_pictures(step, unknowns, gradient);
+    const BiasFreeTerms other = others.at(unknowns);
+    gradient += other.gradient;
+    return loss + other.loss;
   };
-  FitRound round{.paths_per_block = options.adam_paths, .steps = options.adam_steps};
+  FitRound round{.paths_per_block = paths, .steps = options.adam_steps};
   round.losses = minimise_by_adam(evaluate, {.steps = options.adam_steps}, low, high, attempt.unknowns);
   round.loss_before = round.losses.front();
   VectorXd gradient(start.size());
@@ -231,31 +229,62 @@ Attempt search_by_adam(ViewObjective& objective, const Search& search, const Vec
   return attempt;
 }
 
-std::vector<bool> fixed_unknowns(const Search& search, const VectorXd& unknowns) {
+std::uint64_t seed_of_step(const FitOptions& options, int step) {
+  return options.seed + kSeedStep * static_cast<std::uint64_t>(step);
+}
+
+Attempt search_by_adam(ViewObjective& objective, const Search& search, const VectorXd& start) {
+  const FitOptions& options = *search.options;
+  return search_by_adam(search, start, options.adam_paths, [&](int step, const VectorXd& unknowns, VectorXd& gradient) {
+    objective.trace(unknowns, options.adam_paths, seed_of_step(options, step), [](int, int) {});
+    VectorXd residuals(objective.residual_count());
+    RowMajor jacobian(objective.residual_count(), unknowns.size());
+    objective.residuals(unknowns, residuals.data(), jacobian.data());
+    gradient = jacobian.transpose() * residuals;
+    return 0.5 * residuals.squaredNorm();
+  });
+}
+
+// Ends with paths of the objective at the unknowns found, which tell how certain they are.
+Attempt search_by_pixels(const PixelLoss& pixels, ViewObjective& objective, const Search& search,
+                         const VectorXd& start) {
+  const FitOptions& options = *search.options;
+  Attempt attempt = search_by_adam(
+      search, start, options.paths_per_pixel, [&](int step, const VectorXd& unknowns, VectorXd& gradient) {
+        return pixels.at(unknowns, options.paths_per_pixel, seed_of_step(options, step), gradient);
+      });
+  attempt.rounds.back().bias_free = true;
+  objective.trace(attempt.unknowns, options.adam_paths, seed_of_step(options, options.adam_steps + 2), [](int, int) {});
+  return attempt;
+}
+
+// LinearisedFit::bounds.
+std::vector<int> touched_bounds(const Search& search, const VectorXd& unknowns) {
   constexpr double kTouching = 1e-9;
   const VectorXd &low = search.unknowns.lower, &high = search.unknowns.upper;
-  std::vector<bool> fixed;
+  std::vector<int> bounds;
   for (Eigen::Index k = 0; k < unknowns.size(); ++k)
-    fixed.push_back(unknowns[k] <= low[k] + kTouching || unknowns[k] >= high[k] - kTouching);
-  for (int k : search.held) fixed[static_cast<std::size_t>(k)] = true;
-  return fixed;
+    bounds.push_back(unknowns[k] <= low[k] + kTouching ? -1 : unknowns[k] >= high[k] - kTouching ? 1 : 0);
+  return bounds;
 }
 
 // The certainty at the unknowns, by the paths that were recorded last and by the terms met on the way there, if any.
 Certainty certainty_at(const ViewObjective& objective, const Search& search, double prior_scale,
                        const VectorXd& unknowns, MeanTerms mean) {
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   LinearisedFit fit;
   RowMajor jacobian(objective.residual_count(), unknowns.size());
   fit.residuals.resize(objective.residual_count());
   objective.residuals(unknowns, fit.residuals.data(), jacobian.data());
   fit.jacobian = jacobian;
-  if (mean.empty()) mean.add(objective.halves(unknowns));
+  if (mean.empty()) mean.add(objective.halves(unknowns), unknowns);
   fit.hessian = mean.hessian();
   fit.gradient_covariance = mean.gradient_covariance();
   fit.variances = objective.residual_variances(unknowns);
   fit.views = objective.residual_views();
-  fit.fixed = fixed_unknowns(search, unknowns);
+  fit.held.assign(static_cast<std::size_t>(unknowns.size()), false);
+  for (int k : search.held) fit.held[static_cast<std::size_t>(k)] = true;
+  fit.bounds = touched_bounds(search, unknowns);
+  fit.gradient = mean.gradient(unknowns) + OtherTerms(*search.family, prior_scale).at(unknowns).gradient;
   fit.scales = VectorXd::Ones(unknowns.size());
   fit.penalty_jacobian = OtherTerms(*search.family, 0).jacobian(unknowns);
   if (prior_scale > 0) fit.prior_jacobian = PriorTerm(prior_scale).jacobian();
@@ -270,13 +299,16 @@ ViewFit fit_family(const WrappedSpool& spool, const std::vector<View>& views, co
     for (int k = 0; k < renderer::kThreadParameterCount; ++k)
       if (std::find(options.held.begin(), options.held.end(), group_of(k)) != options.held.end())
         search.held.push_back(k);
-  Attempt best = options.solver == Solver::adam ? search_by_adam(objective, search, starts.front())
-                                                : search_by_rounds(objective, search, starts);
+  const bool by_pixels = options.model == ModelKind::paper,
+             by_rounds = !by_pixels && options.solver == Solver::levenberg_marquardt;
+  Attempt best = by_pixels   ? search_by_pixels(PixelLoss(spool, views, family), objective, search, starts.front())
+                 : by_rounds ? search_by_rounds(objective, search, starts)
+                             : search_by_adam(objective, search, starts.front());
   MeanTerms mean;
-  if (options.solver == Solver::levenberg_marquardt && options.without_bias &&
-      options.paths_per_block.back() >= kFewestPathsWithoutBias)
+  if (by_rounds && options.without_bias && options.paths_per_block.back() >= kFewestPathsWithoutBias)
     mean = remove_bias(objective, search, best);
   ViewFit fit{
+      .family = family,
       .model = model_at(family, best.unknowns),
       .unknowns = best.unknowns,
       .unknown_names = search.unknowns.names,
@@ -330,6 +362,8 @@ ViewFit fit_views(const WrappedSpool& spool, const std::vector<View>& views, con
   switch (options.model) {
     case ModelKind::yarn:
       return fit_best_yarn(spool, views, options);
+    case ModelKind::paper:
+      return fit_family(spool, views, options, PaperFamily{}, unknowns_of(PaperFamily{}).starts);
     case ModelKind::fiber:
       return fit_family(spool, views, options, FiberFamily{}, unknowns_of(FiberFamily{}).starts);
     case ModelKind::thread:
@@ -343,7 +377,7 @@ ViewFit fit_views(const WrappedSpool& spool, const std::vector<View>& views, con
 
 IndependentLoss independent_loss(const WrappedSpool& spool, const std::vector<View>& views, const ViewFit& fit,
                                  int paths_per_block, int repetitions, std::uint64_t seed) {
-  ViewObjective objective(spool, views, family_of(fit.model));
+  ViewObjective objective(spool, views, fit.family);
   VectorXd residuals(objective.residual_count());
   double sum = 0, squares = 0;
   VectorXd together = VectorXd::Zero(residuals.size());

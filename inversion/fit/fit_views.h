@@ -13,6 +13,11 @@
 //
 // Eq. 6's hinges that keep energies positive are bounds here (thread_unknowns.h), for both solvers; its trend is
 // rounded within a thousandth of its corner.
+//
+// ModelKind::paper is the paper's own recipe, to tell what the model cannot do from what is done differently here:
+// single pixels, all of the same weight in a view; the printed parameters with the printed hinges; light leaves where
+// it came in; Adam from one start, 100 steps of rate 0.01; no prior, no robust weights. The paper gives neither the
+// start nor the number of paths: they are this project's.
 #pragma once
 
 #include <functional>
@@ -26,7 +31,7 @@
 
 namespace inversion {
 
-enum class ModelKind { thread, fiber, yarn };
+enum class ModelKind { thread, fiber, yarn, paper };
 enum class Solver { levenberg_marquardt, adam };
 
 struct FitOptions {
@@ -35,6 +40,8 @@ struct FitOptions {
   // The start of the thread model, with the rule by which light leaves threads; the baselines have starts of their own.
   renderer::ThreadParameters start = starting_thread();
   std::vector<renderer::ThreadParameters> other_starts = other_starting_threads();  // may be empty
+  // Of ModelKind::paper, which adam_steps steps are for and nothing else here but the seed.
+  int paths_per_pixel = 8;
   // Paths per block in each round, of which there is at least one. Every start goes through all rounds but the last,
   // which is for the one that has got farthest. Adam goes from `start` alone, with adam_paths paths a step.
   std::vector<int> paths_per_block{256, 256, 512, 1024, 2048};
@@ -69,6 +76,7 @@ struct FitRound {
 };
 
 struct ViewFit {
+  ScatteringFamily family;
   renderer::ScatteringModel model;  // of a thread: with limit_energy on
   Eigen::VectorXd unknowns;
   std::vector<std::string> unknown_names;

@@ -20,11 +20,16 @@ BiasFreeTerms data_terms(const ViewObjective::Halves& both) {
           .hessian = 0.5 * (product + product.transpose())};
 }
 
-void MeanTerms::add(const ViewObjective::Halves& both) {
+void MeanTerms::add(const ViewObjective::Halves& both, const VectorXd& unknowns) {
   const auto& [a, b] = both.residuals;
   const auto& [by_a, by_b] = both.jacobians;
-  if (empty()) hessians_ = covariances_ = MatrixXd::Zero(by_a.cols(), by_a.cols());
-  hessians_ += data_terms(both).hessian;
+  if (empty()) {
+    offsets_ = VectorXd::Zero(by_a.cols());
+    hessians_ = covariances_ = MatrixXd::Zero(by_a.cols(), by_a.cols());
+  }
+  const BiasFreeTerms terms = data_terms(both);
+  offsets_ += terms.gradient - terms.hessian * unknowns;
+  hessians_ += terms.hessian;
   for (Eigen::Index row = 0; row < a.size(); row += kColours) {
     const VectorXd of_block = 0.5 * (by_a.middleRows<kColours>(row).transpose() * b.segment<kColours>(row) +
                                      by_b.middleRows<kColours>(row).transpose() * a.segment<kColours>(row));

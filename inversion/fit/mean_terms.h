@@ -14,11 +14,12 @@ BiasFreeTerms data_terms(const ViewObjective::Halves& both);
 
 class MeanTerms {
  public:
-  // Terms of a set of paths whose noise is independent of the others', traced at unknowns near theirs.
-  void add(const ViewObjective::Halves& both);
+  // Terms of a set of paths whose noise is independent of the others', traced at these unknowns, near theirs.
+  void add(const ViewObjective::Halves& both, const Eigen::VectorXd& unknowns);
   bool empty() const { return sets_ == 0; }
-  // Unknowns x unknowns, of data_terms; needs one set at least, as does the next.
-  Eigen::MatrixXd hessian() const { return hessians_ / sets_; }
+  // Of data_terms; they need one set at least, as does the next.
+  Eigen::VectorXd gradient(const Eigen::VectorXd& unknowns) const { return (offsets_ + hessians_ * unknowns) / sets_; }
+  Eigen::MatrixXd hessian() const { return hessians_ / sets_; }  // unknowns x unknowns
   // The covariance that the noise of pictures and paths gives the gradient of one set, summed over blocks, because the
   // three colours of a block share their paths. The paths' noise is less in the mean of the sets, where steps come to
   // its minimum; along valleys they do not, and there the deviations of fifty fits are as large as this says
@@ -27,6 +28,7 @@ class MeanTerms {
 
  private:
   int sets_ = 0;
+  Eigen::VectorXd offsets_;                 // sum of gradients, each of the set's quadratic model at unknowns of 0
   Eigen::MatrixXd hessians_, covariances_;  // their sums
 };
 

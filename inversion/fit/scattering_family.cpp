@@ -3,6 +3,7 @@
 #include <ceres/ceres.h>
 
 #include <cmath>
+#include <utility>
 
 namespace inversion {
 namespace {
@@ -11,8 +12,8 @@ using Eigen::VectorXd;
 using RgbByUnknowns = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 using renderer::kThreadParameterCount;
 
-constexpr double kGamma = 1e-4;          // of eq. 6's trend of lambda_0
-constexpr double kTrendRounding = 1e-3;  // below this the hinge is rounded, so that it has a derivative
+constexpr double kGamma = 1e-4;          // of eq. 6's hinges
+constexpr double kHingeRounding = 1e-3;  // below this a hinge is rounded, so that it has a derivative
 constexpr int kEnergyAngles = 33;        // c = 0, where no view sees how high lambda_2 rises, to c = 1
 // Weight of the mean squared excess: 1 % of it costs as much as a tenth of the data term.
 constexpr double kEnergyPenalty = 30;
@@ -37,14 +38,26 @@ struct EnergyTerm {
   }
 };
 
-// lambda_0(1) - lambda_0(0) where positive.
-struct TrendTerm {
+// The weighted sum of unknowns where positive, as in eq. 6.
+struct Hinge {
+  std::vector<std::pair<int, double>> summed;  // unknown and weight
+
   template <class S>
   bool operator()(const S* u, S* residual) const {
-    residual[0] = u[kL1] > u[kL0] ? u[kL1] - u[kL0] : S(0.0);
+    S sum(0.0);
+    for (const auto& [unknown, weight] : summed) sum += S(weight) * u[unknown];
+    residual[0] = sum > S(0.0) ? sum : S(0.0);
     return true;
   }
 };
+
+// Huber's loss is linear beyond the rounding: half of it times the scale is gamma |x|.
+void add_hinge(ceres::Problem& problem, double* unknowns, Hinge hinge) {
+  problem.AddResidualBlock(
+      new ceres::AutoDiffCostFunction<Hinge, 1, kThreadParameterCount>(new Hinge(std::move(hinge))),
+      new ceres::ScaledLoss(new ceres::HuberLoss(kHingeRounding), kGamma / kHingeRounding, ceres::TAKE_OWNERSHIP),
+      unknowns);
+}
 
 VectorXd vector_of(std::initializer_list<double> numbers) {
   VectorXd vector(static_cast<Eigen::Index>(numbers.size()));
@@ -77,6 +90,31 @@ FamilyUnknowns unknowns(const YarnFamily&) {
           .starts = {vector_of({0.3, 0.3, 0.3, 0.3, 0.3, 0.3}), vector_of({1, 1, 1, 0.5, 0.2, 0.6})}};
 }
 
+// The unknowns are the thread's parameters. The paper clamps r0c and r1a to be non-negative and roughnesses and
+// absorption have a range of their own; the other energies are free.
+FamilyUnknowns unknowns(const PaperFamily&) {
+  const renderer::ThreadParameters p = starting_thread();
+  VectorXd lower = lower_bounds(), upper = upper_bounds(), start(kThreadParameterCount);
+  start << p.sigma_a, p.alpha[0], p.alpha[1], p.alpha[2], p.beta[0], p.beta[1], p.beta[2], p.r0a, p.r0b, p.r0c, p.r1a,
+      p.r2a, p.r2b, p.r2c;
+  lower.tail(kThreadParameterCount - kR0a).setConstant(-renderer::kMostR2);
+  upper.tail(kThreadParameterCount - kR0a).setConstant(renderer::kMostR2);
+  lower[kR0c] = lower[kR1] = 0;
+  return {.names = {"sigma_a_r", "sigma_a_g", "sigma_a_b", "alpha_r", "alpha_tt", "alpha_trt", "beta_r", "beta_tt",
+                    "beta_trt", "r0a", "r0b", "r0c", "r1a", "r2a", "r2b", "r2c"},
+          .lower = lower,
+          .upper = upper,
+          .starts = {start}};
+}
+
+renderer::ThreadParameters parameters(const PaperFamily&, const VectorXd& u) {
+  std::array<double, kThreadParameterCount> parameters{};
+  std::copy(u.begin(), u.end(), parameters.begin());
+  renderer::ThreadParameters p = renderer::thread_parameters(parameters, false);
+  p.exit = renderer::ThreadExit::entry_point;
+  return p;
+}
+
 renderer::ThreadParameters parameters(const ThreadFamily& family, const VectorXd& u) {
   renderer::ThreadParameters p = parameters_of(u);
   p.exit = family.exit;
@@ -98,6 +136,10 @@ renderer::YarnParameters parameters(const YarnFamily& family, const VectorXd& u)
 
 BlockShader shader(const ThreadFamily&, const VectorXd& u) {
   return ThreadShader{block_model(parameters_of(u)), parameters_by_unknowns(u)};
+}
+
+BlockShader shader(const PaperFamily& family, const VectorXd& u) {
+  return ThreadShader{block_model(parameters(family, u)), ThreadJacobian::Identity()};
 }
 
 template <class Family>
@@ -136,21 +178,7 @@ RgbByUnknowns by_unknowns_of(const Model&, const renderer::ThreadSlopes<double>&
   return by_parameters<Model::kSlopeCount>(slopes);
 }
 
-FiberFamily family(const renderer::FiberParameters&) {
-  return {};
-}
-YarnFamily family(const renderer::YarnParameters& yarn) {
-  return {yarn.fiber_count};
-}
-ThreadFamily family(const renderer::ThreadParameters& thread) {
-  return {thread.exit};
-}
-
 }  // namespace
-
-ScatteringFamily family_of(const renderer::ScatteringModel& model) {
-  return std::visit([](const auto& of) { return ScatteringFamily(family(of)); }, model);
-}
 
 FamilyUnknowns unknowns_of(const ScatteringFamily& family) {
   return std::visit([](const auto& of) { return unknowns(of); }, family);
@@ -161,15 +189,17 @@ renderer::ScatteringModel model_at(const ScatteringFamily& family, const VectorX
 }
 
 void add_penalties(const ScatteringFamily& family, ceres::Problem& problem, double* unknowns) {
+  if (std::holds_alternative<PaperFamily>(family)) {
+    add_hinge(problem, unknowns, {{{kR0a, 1}, {kR0b, 1}}});
+    add_hinge(problem, unknowns, {{{kR2b, -1}}});
+    add_hinge(problem, unknowns, {{{kR0a, 1}}});
+    return;
+  }
   if (!std::holds_alternative<ThreadFamily>(family)) return;
   problem.AddResidualBlock(
       new ceres::AutoDiffCostFunction<EnergyTerm, kEnergyAngles, kThreadParameterCount>(new EnergyTerm), nullptr,
       unknowns);
-  // Huber's loss is linear beyond the rounding: half of it times the scale is gamma |x|.
-  problem.AddResidualBlock(
-      new ceres::AutoDiffCostFunction<TrendTerm, 1, kThreadParameterCount>(new TrendTerm),
-      new ceres::ScaledLoss(new ceres::HuberLoss(kTrendRounding), kGamma / kTrendRounding, ceres::TAKE_OWNERSHIP),
-      unknowns);
+  add_hinge(problem, unknowns, {{{kL1, 1}, {kL0, -1}}});  // lambda_0(1) - lambda_0(0)
 }
 
 BlockShader shader_at(const ScatteringFamily& family, const VectorXd& u) {

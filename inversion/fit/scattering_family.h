@@ -1,11 +1,13 @@
 // A family of scattering models as a fit sees it: a vector of unknowns with bounds and starts, and the shading of
-// recorded light paths with its slopes. There are three: the thread model (the default) and, to compare it with, a
-// single fiber and a yarn aggregated analytically.
+// recorded light paths with its slopes. There are four: the thread model (the default) and, to compare it with, a
+// single fiber, a yarn aggregated analytically, and the thread model as the paper fits it.
 //
 //   family | unknowns | what they are
 //   thread | 16       | thread_unknowns.h
 //   fiber  | 5        | sigma_a (R G B, per thread radius), beta_m, beta_n; index of refraction 1.55
 //   yarn   | 6        | sigma_a (R G B, per thread radius), beta_r, beta_tt, gamma_tt; the number of fibers is given
+//   paper  | 16       | the thread's parameters as printed (renderer/scattering/thread.h); energies may be negative, and
+//          |          | light leaves where it came in
 #pragma once
 
 #include <Eigen/Core>
@@ -31,10 +33,8 @@ struct FiberFamily {};
 struct YarnFamily {
   int fiber_count;
 };
-using ScatteringFamily = std::variant<ThreadFamily, FiberFamily, YarnFamily>;
-
-// The family that the model is one of.
-ScatteringFamily family_of(const renderer::ScatteringModel& model);
+struct PaperFamily {};
+using ScatteringFamily = std::variant<ThreadFamily, FiberFamily, YarnFamily, PaperFamily>;
 
 struct FamilyUnknowns {
   std::vector<std::string> names;
@@ -47,7 +47,7 @@ renderer::ScatteringModel model_at(const ScatteringFamily& family, const Eigen::
 
 // Adds what the loss asks for besides agreement with the views; `unknowns` is the problem's only parameter block.
 // Threads pay for lobes' energies whose sum exceeds 1 at some angle, and for lambda_0(1) > lambda_0(0) [Xia 2025,
-// eq. 6].
+// eq. 6]; the paper's thread pays the three hinges of eq. 6 alone.
 void add_penalties(const ScatteringFamily& family, ceres::Problem& problem, double* unknowns);
 
 // A family's model at some unknowns, prepared to shade blocks.

@@ -31,7 +31,6 @@ renderer::ThreadParameters parameters_of(const ThreadUnknowns& u) {
 }
 
 ThreadJacobian parameters_by_unknowns(const ThreadUnknowns& u) {
-  constexpr int kR0a = 9, kR0b = 10, kR0c = 11, kR1 = 12, kR2a = 13, kR2b = 14, kR2c = 15;
   ThreadJacobian j = ThreadJacobian::Zero();
   for (int i = 0; i < kL0; ++i) j(i, i) = 1;
   j(kR0a, kConcavity) = -1;

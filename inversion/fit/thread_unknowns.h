@@ -23,6 +23,8 @@ enum Unknown {
   kLogR2b,
   kN2
 };  // from kL0 on: EnergyUnknown
+// The energies among a thread's parameters as printed (renderer::thread_parameters).
+enum PrintedEnergy { kR0a = kL0, kR0b, kR0c, kR1, kR2a, kR2b, kR2c };
 using ThreadUnknowns = Eigen::Matrix<double, renderer::kThreadParameterCount, 1>;
 using ThreadJacobian = Eigen::Matrix<double, renderer::kThreadParameterCount, renderer::kThreadParameterCount>;
 

@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace inversion {
 namespace {
@@ -47,19 +48,82 @@ MatrixXd spread(const MatrixXd& matrix, const std::vector<int>& chosen, Eigen::I
   return whole;
 }
 
-// A symmetric matrix of all unknowns in the scaled free ones.
-MatrixXd in_free(const LinearisedFit& fit, const MatrixXd& matrix, const std::vector<int>& free) {
+// A symmetric matrix of all unknowns in the scaled chosen ones.
+MatrixXd in_chosen(const LinearisedFit& fit, const MatrixXd& matrix, const std::vector<int>& chosen) {
   const MatrixXd scaled = fit.scales.asDiagonal() * matrix * fit.scales.asDiagonal();
-  return columns(columns(scaled, free).transpose(), free);
+  return columns(columns(scaled, chosen).transpose(), chosen);
 }
 
-// The data's Hessian in the scaled free unknowns. Noise may have made it indefinite; then it is J' J, which makes the
+// The data's Hessian in the scaled chosen unknowns. Noise may have made it indefinite; then it is J' J, which makes the
 // fit look too certain.
-MatrixXd data_hessian(const LinearisedFit& fit, const MatrixXd& jacobian, const std::vector<int>& free) {
+MatrixXd data_hessian(const LinearisedFit& fit, const MatrixXd& jacobian, const std::vector<int>& chosen) {
   const MatrixXd square = jacobian.transpose() * jacobian;
   if (fit.hessian.size() == 0) return square;
-  const MatrixXd kept = in_free(fit, fit.hessian, free);
+  const MatrixXd kept = in_chosen(fit, fit.hessian, chosen);
   return Eigen::SelfAdjointEigenSolver<MatrixXd>(kept).eigenvalues().minCoeff() > 0 ? kept : square;
+}
+
+// What is known of some of the unknowns while the others stay where they are, in units of the scales.
+struct Known {
+  std::vector<int> chosen;
+  MatrixXd hessian;  // with the prior's and the penalties' part
+  MatrixXd by_noise, total;
+};
+
+Known known_of(const LinearisedFit& fit, const std::vector<int>& chosen) {
+  // All is in units of the scales, so that numbers of unlike size are inverted together.
+  const auto scaled = [&](const MatrixXd& rows) { return columns(rows * fit.scales.asDiagonal(), chosen); };
+  const MatrixXd jacobian = scaled(fit.jacobian);
+  const MatrixXd identity = MatrixXd::Identity(jacobian.cols(), jacobian.cols());
+  MatrixXd hessian = data_hessian(fit, jacobian, chosen), prior = MatrixXd::Zero(jacobian.cols(), jacobian.cols());
+  for (const MatrixXd* rows : {&fit.penalty_jacobian, &fit.prior_jacobian})
+    if (rows->rows() > 0) hessian += scaled(*rows).transpose() * scaled(*rows);
+  if (fit.prior_jacobian.rows() > 0) prior = scaled(fit.prior_jacobian).transpose() * scaled(fit.prior_jacobian);
+  const double mean_square = fit.residuals.squaredNorm() / static_cast<double>(fit.residuals.size());
+  const double floor = 1e-12 * hessian.diagonal().maxCoeff();
+  const MatrixXd noise = fit.gradient_covariance.size() > 0
+                             ? in_chosen(fit, fit.gradient_covariance, chosen)
+                             : MatrixXd(jacobian.transpose() * fit.variances.asDiagonal() * jacobian);
+  const MatrixXd inverse = (hessian + floor * identity).ldlt().solve(identity);
+  // The deviation of 1 is one more piece of information on each unknown.
+  const MatrixXd weak = (hessian + (mean_square + floor) * identity).ldlt().solve(identity);
+  const MatrixXd total =
+      weak * (noise + misfit_part(fit, jacobian) + mean_square * prior + mean_square * mean_square * identity) * weak;
+  return {chosen, hessian, inverse * noise * inverse, total};
+}
+
+// Of a distance t from the bound, over the variance without the bound.
+struct OneSided {
+  double truth = 0;   // E[t^2] of the t > 0 of a normal density whose middle is `beyond` deviations below 0
+  double spread = 0;  // the variance of what is left of such numbers when those below 0 become 0
+};
+
+OneSided one_sided_moments(double beyond) {
+  constexpr double kFar = 20;  // from there on E[t^2] = 2 / beyond^2, to a hundredth
+  if (beyond > kFar) return {.truth = 2 / (beyond * beyond)};
+  const double density = std::exp(-0.5 * beyond * beyond) / std::sqrt(2 * std::numbers::pi),
+               above = 0.5 * std::erfc(beyond / std::numbers::sqrt2);
+  const double square = (1 + beyond * beyond) * above - beyond * density, mean = density - beyond * above;
+  return {.truth = square / above, .spread = square - mean * mean};
+}
+
+// What an unknown at a bound, the last of those that `with_it` knows, adds to the covariance of all unknowns.
+MatrixXd one_sided(const LinearisedFit& fit, const Known& with_it, const MatrixXd& covariance,
+                   double OneSided::*moment) {
+  const Eigen::Index free = covariance.rows() - 1;
+  const int bound = with_it.chosen.back();
+  const double variance = covariance(free, free);
+  double beyond = 0;
+  if (fit.gradient.size() > 0 && variance > 0) {
+    const VectorXd gradient = columns((fit.gradient.cwiseProduct(fit.scales)).transpose(), with_it.chosen).transpose();
+    const double minimum = -with_it.hessian.ldlt().solve(gradient)[free];
+    beyond = std::max(0.0, fit.bounds[static_cast<std::size_t>(bound)] * minimum / std::sqrt(variance));
+  }
+  VectorXd moved = VectorXd::Ones(free + 1);  // all unknowns, when the one at the bound moves by 1
+  if (free > 0)
+    moved.head(free) = -with_it.hessian.topLeftCorner(free, free).ldlt().solve(with_it.hessian.col(free).head(free));
+  return spread(variance * one_sided_moments(beyond).*moment * moved * moved.transpose(), with_it.chosen,
+                fit.scales.size());
 }
 
 }  // namespace
@@ -68,44 +132,40 @@ Certainty certainty_of(const LinearisedFit& fit) {
   const Eigen::Index unknowns = fit.jacobian.cols();
   Certainty certainty{.noise_covariance = MatrixXd::Zero(unknowns, unknowns),
                       .covariance = MatrixXd::Zero(unknowns, unknowns),
-                      .at_bound = fit.fixed};
+                      .at_bound = std::vector<bool>(static_cast<std::size_t>(unknowns), false)};
   certainty.misfit = std::sqrt(fit.residuals.squaredNorm() /
                                std::max(fit.variances.sum(), 1e-12 * fit.residuals.squaredNorm() + 1e-300));
-  std::vector<int> free;
-  for (int k = 0; k < unknowns; ++k)
-    if (!fit.fixed[static_cast<std::size_t>(k)]) free.push_back(k);
-  if (free.empty()) return certainty;
-
-  // All is in units of the scales, so that numbers of unlike size are inverted together.
-  const VectorXd all_scales = fit.scales;
-  const auto scaled = [&](const MatrixXd& rows) { return columns(rows * all_scales.asDiagonal(), free); };
-  const MatrixXd jacobian = scaled(fit.jacobian);
-  const MatrixXd identity = MatrixXd::Identity(jacobian.cols(), jacobian.cols());
-  MatrixXd hessian = data_hessian(fit, jacobian, free), prior = MatrixXd::Zero(jacobian.cols(), jacobian.cols());
-  for (const MatrixXd* rows : {&fit.penalty_jacobian, &fit.prior_jacobian})
-    if (rows->rows() > 0) hessian += scaled(*rows).transpose() * scaled(*rows);
-  if (fit.prior_jacobian.rows() > 0) prior = scaled(fit.prior_jacobian).transpose() * scaled(fit.prior_jacobian);
-  const double mean_square = fit.residuals.squaredNorm() / static_cast<double>(fit.residuals.size());
-  const double floor = 1e-12 * hessian.diagonal().maxCoeff();
-  const MatrixXd noise = fit.gradient_covariance.size() > 0
-                             ? in_free(fit, fit.gradient_covariance, free)
-                             : MatrixXd(jacobian.transpose() * fit.variances.asDiagonal() * jacobian);
-  const MatrixXd inverse = (hessian + floor * identity).ldlt().solve(identity);
-  const MatrixXd by_noise = inverse * noise * inverse;
-  // The deviation of 1 is one more piece of information on each unknown.
-  const MatrixXd weak = (hessian + (mean_square + floor) * identity).ldlt().solve(identity);
-  const MatrixXd total =
-      weak * (noise + misfit_part(fit, jacobian) + mean_square * prior + mean_square * mean_square * identity) * weak;
-  const auto unscaled = [&](const MatrixXd& c) {
-    return MatrixXd(all_scales.asDiagonal() * spread(c, free, unknowns) * all_scales.asDiagonal());
-  };
-  certainty.noise_covariance = unscaled(by_noise);
-  certainty.covariance = unscaled(total);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(0.5 * (total + total.transpose()));
+  std::vector<int> free, bounded;
+  for (int k = 0; k < unknowns; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    if (fit.held[i]) continue;
+    certainty.at_bound[i] = fit.bounds[i] != 0;
+    (certainty.at_bound[i] ? bounded : free).push_back(k);
+  }
+  MatrixXd by_noise = MatrixXd::Zero(unknowns, unknowns), total = by_noise;
+  if (!free.empty()) {
+    const Known known = known_of(fit, free);
+    by_noise = spread(known.by_noise, free, unknowns);
+    total = spread(known.total, free, unknowns);
+  }
+  for (const int k : bounded) {
+    std::vector<int> with_it = free;
+    with_it.push_back(k);
+    const Known known = known_of(fit, with_it);
+    by_noise += one_sided(fit, known, known.by_noise, &OneSided::spread);
+    total += one_sided(fit, known, known.total, &OneSided::truth);
+  }
+  certainty.noise_covariance = fit.scales.asDiagonal() * by_noise * fit.scales.asDiagonal();
+  certainty.covariance = fit.scales.asDiagonal() * total * fit.scales.asDiagonal();
+  std::vector<int> varied = free;
+  varied.insert(varied.end(), bounded.begin(), bounded.end());
+  if (varied.empty()) return certainty;
+  const MatrixXd of_varied = columns(columns(total, varied).transpose(), varied);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(0.5 * (of_varied + of_varied.transpose()));
   for (Eigen::Index k = axes.eigenvalues().size(); k-- > 0;) {
     VectorXd direction = VectorXd::Zero(unknowns);
-    for (std::size_t i = 0; i < free.size(); ++i)
-      direction[free[i]] = axes.eigenvectors()(static_cast<Eigen::Index>(i), k);
+    for (std::size_t i = 0; i < varied.size(); ++i)
+      direction[varied[i]] = axes.eigenvectors()(static_cast<Eigen::Index>(i), k);
     certainty.weakest.push_back({direction, std::sqrt(std::max(0.0, axes.eigenvalues()[k]))});
   }
   return certainty;

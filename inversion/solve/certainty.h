@@ -12,6 +12,12 @@
 // The total covariance contains besides: what the model cannot explain, which is a view's mean squared residual beyond
 // its noise, taken as common to all its blocks, because misfit is smooth over a view; the prior's own uncertainty; and
 // a deviation of 1 in the scales for directions that nothing speaks of.
+//
+// At a bound the truth lies on one side. What the unknown's distance t from its bound may be follows a normal density
+// around the minimum that the loss would have without the bound, cut off there; its deviation is the root of E[t^2].
+// Every other unknown moves along with it on the valley's floor, by B = -H_ff^-1 H_fb, and is uncertain by B t besides
+// what it is while the bound holds. Each unknown at a bound is treated as if it were the only one. That is the total;
+// other noise would move that minimum, and what the fit then finds is cut off at the bound, so that its spread is less.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +28,7 @@ namespace inversion {
 struct Certainty {
   Eigen::MatrixXd noise_covariance;  // unknowns x unknowns; the spread that other noise would give
   Eigen::MatrixXd covariance;        // the total, with misfit
-  std::vector<bool> at_bound;        // also true for held unknowns: not varied, no variance
+  std::vector<bool> at_bound;        // their deviation is one-sided
   // The directions that the views determine worst, worst first: unit vectors in units of the unknowns' scales
   // (LinearisedFit::scales), with the standard deviation along them.
   struct Direction {
@@ -41,8 +47,13 @@ struct LinearisedFit {
   std::vector<int> views;            // the view of each residual, from 0
   Eigen::MatrixXd penalty_jacobian;  // penalties x unknowns; may have no rows
   Eigen::MatrixXd prior_jacobian;    // the prior's terms, of variance as the residuals; may be empty
-  std::vector<bool> fixed;           // unknowns that are held or at a bound
-  Eigen::VectorXd scales;            // what counts as a large change of each unknown
+  std::vector<bool> held;            // unknowns that were not varied: no variance
+  // -1: at its lower bound, 1: at its upper one, 0: neither.
+  std::vector<int> bounds;
+  // Of the whole loss at the end of the fit; may be empty: unknowns at a bound count as if the loss were level there,
+  // which gives them the largest deviation.
+  Eigen::VectorXd gradient;
+  Eigen::VectorXd scales;  // what counts as a large change of each unknown
 };
 
 // The certainty of the unknowns of a fit that was linearised at its end.

@@ -1,5 +1,7 @@
 #include <iostream>
+#include <map>
 
+#include "inversion/fit/light_paths.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
 #include "station/documents/thread_file.h"
@@ -38,8 +40,10 @@ void add_invert_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("invert", "fit a thread to a session's developed views");
   command->add_option("session", arguments->request.session, "session folder")->required();
   command->add_option("--out", arguments->out, "write the model's file here as well");
+  std::map<std::string, inversion::ModelKind> models = names_of_models();
+  models.erase(name_of(inversion::ModelKind::paper));
   command->add_option("--model", arguments->request.fit.model, "scattering model: the thread's, or a baseline")
-      ->transform(CLI::CheckedTransformer(names_of_models()));
+      ->transform(CLI::CheckedTransformer(models));
   command->add_option("--solver", arguments->solver, "lm: Levenberg-Marquardt on recorded paths; adam: the paper's")
       ->check(CLI::IsMember({"lm", "adam"}));
   command->add_option("--exit", arguments->request.fit.start.exit, "where light leaves the thread")
@@ -61,6 +65,16 @@ void add_invert_command(CLI::App& app) {
   command->add_flag("!--eq6", arguments->request.fit.robust, "all views and blocks count as in eq. 6, none less");
   command->add_option("--prior", arguments->request.fit.prior_weight, "weight of the simulated threads' prior; 0: none")
       ->check(CLI::Range(0.0, 1000.0));
+  CLI::Option* paper = command->add_flag_callback(
+      "--paper", [arguments] { arguments->request.fit.model = inversion::ModelKind::paper; },
+      "the paper's own recipe: single pixels, eq. 6 as printed, light leaves where it came in, Adam");
+  for (const char* other : {"--model", "--solver", "--exit", "--hold", "--paths", "--eq6", "--prior"})
+    paper->excludes(command->get_option(other));
+  command
+      ->add_option("--pixel-paths", arguments->request.fit.paths_per_pixel,
+                   "light paths per pixel in each of its steps")
+      ->check(CLI::Range(inversion::kPathBatches, 100000))
+      ->needs(paper);
   command->add_option("--spp", arguments->request.samples_per_pixel, "samples per pixel of the fitted views")
       ->check(CLI::Range(1, 65536));
   command->add_option("--seed", arguments->request.fit.seed, "of the light paths");

@@ -73,7 +73,8 @@ json rounds_json(const inversion::ViewFit& fit) {
 std::map<std::string, inversion::ModelKind> names_of_models() {
   return {{"thread", inversion::ModelKind::thread},
           {"fiber", inversion::ModelKind::fiber},
-          {"yarn", inversion::ModelKind::yarn}};
+          {"yarn", inversion::ModelKind::yarn},
+          {"paper", inversion::ModelKind::paper}};
 }
 
 std::string name_of(inversion::ModelKind model) {
@@ -111,12 +112,13 @@ json fit_document(const inversion::ViewFit& fit, const inversion::FitOptions& op
     (view.transmission ? transmission : reflection).push_back(view.agreement);
   }
   for (inversion::ParameterGroup group : options.held) held.push_back(name_of(group));
+  const bool paper = options.model == inversion::ModelKind::paper;
   json document{{"model", name_of(options.model)},
-                {"solver", name_of(options.solver)},
+                {"solver", name_of(paper ? inversion::Solver::adam : options.solver)},
                 {"seed", options.seed},
                 {"prior_weight", options.model == inversion::ModelKind::thread ? options.prior_weight : 0.0},
                 {"held", held},
-                {"robust", options.robust},
+                {"robust", options.robust && !paper},
                 {"block_px", fit.block_px},
                 {"blocks", fit.blocks},
                 {"start", fit.start},

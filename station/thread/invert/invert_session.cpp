@@ -155,8 +155,10 @@ std::string uncertain_text(const json& unknowns, std::size_t first, std::size_t 
   std::string text;
   for (std::size_t k = first; k < first + count; ++k) {
     const json& unknown = unknowns.at(k);
+    const double sigma = unknown.at("sigma");
     text += (k > first ? ", " : "") + number_text(unknown.at("value"), 3) +
-            (unknown.at("at_bound").get<bool>() ? " (at its bound)" : " +- " + number_text(unknown.at("sigma"), 3));
+            (sigma > 0 ? " +- " + number_text(sigma, 3) : std::string(" (held)")) +
+            (unknown.at("at_bound").get<bool>() ? " (at its bound)" : "");
   }
   return text;
 }
@@ -168,7 +170,7 @@ std::string thread_text(const renderer::ThreadParameters& p, const json& fit) {
   text += "beta    " + uncertain_text(unknowns, 6, 3) + "\n";
   text += "r0 " + numbers_text({p.r0a, p.r0b, p.r0c}, 3) + "   r1 " + number_text(p.r1a, 3) + "   r2 " +
           numbers_text({p.r2a, p.r2b, p.r2c}, 3) + "\n";
-  for (const json& band : fit.at("bands"))
+  for (const json& band : fit.value("bands", json::array()))
     if (const double c = band.at("cosine"); c > 0.55 && std::lround(10 * c) % 2 == 0)
       text += "energies at cos theta " + number_text(c, 1) + ": R " + number_text(band.at("lambda")[0], 3) + " +- " +
               number_text(band.at("sigma")[0], 3) + ", TT " + number_text(band.at("lambda")[1], 3) + " +- " +

@@ -24,7 +24,7 @@ struct InvertRequest {
 
 struct InvertResult {
   renderer::ScatteringModel model;
-  std::filesystem::path file;  // the model's: thread.json, fiber.json or yarn.json
+  std::filesystem::path file;  // the model's: thread.json, fiber.json, yarn.json or paper.json
   std::vector<FittedView> views{};
   nlohmann::json fit{};               // the report of fit_document.h
   double relative_rmse = 0;           // over the fitted views (inversion/view/agreement.h)
@@ -33,7 +33,7 @@ struct InvertResult {
 
 // Fits a session. Written are result/thread.json, result/fitted/<view>.exr and result/residual/<view>.exr (fitted minus
 // photographed; both linear camera RGB, radiance unit, zero outside the mask); for a baseline the same with fit.json,
-// in result/fiber/ or result/yarn/. Views that are held out are drawn and compared like the others. Ctrl-C stops it;
+// in result/fiber/ or result/yarn/, and in result/paper/ for the paper's recipe. Views that are held out are drawn and compared like the others. Ctrl-C stops it;
 // the model is written last, so that it always belongs to whole pictures. Errors: those of read_views, held_out_views
 // and fit_views; std::runtime_error for what cannot be written.
 InvertResult invert_session(const InvertRequest& request);

@@ -53,8 +53,10 @@ TEST(FitCertaintyTest, PredictedDeviationsMatchTheSpreadOverFiftyDrawsOfNoise) {
     std::printf("%-10s %8.4f  observed %.5f  predicted %.5f  ratio %.2f\n", names[static_cast<std::size_t>(k)].c_str(),
                 mean[k], std::sqrt(variance[k]), std::sqrt(predicted[k]), std::sqrt(predicted[k] / variance[k]));
   const auto ratio = [&](int k) { return std::sqrt(predicted[k] / variance[k]); };
-  for (const int k : std::vector<int>{0, 1, 2, kAlpha + 1, kBeta + 1, kBeta + 2, kL0, kConcavity, kR1a, kN2})
-    EXPECT_NEAR(ratio(k), 1, 0.3) << names[static_cast<std::size_t>(k)];
+  for (const int k : std::vector<int>{0, 1, 2, kAlpha + 1, kBeta + 1, kBeta + 2, kL0, kConcavity, kR1a, kN2}) {
+    EXPECT_GT(ratio(k), 0.7) << names[static_cast<std::size_t>(k)];
+    EXPECT_LT(ratio(k), 1.4) << names[static_cast<std::size_t>(k)];
+  }
   // These come to the minimum of the mean of all sets of paths, and the prediction has the noise of one set: it is up to
   // twice the spread, which is open. So is r2, whose shape has a valley that no linearised covariance follows.
   for (const int k : std::vector<int>{kAlpha, kAlpha + 2, kBeta, kL1}) {

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <cmath>
+#include <limits>
 #include <random>
+#include <vector>
 
 namespace inversion {
 namespace {
@@ -21,7 +25,8 @@ LinearisedFit random_fit(int unknowns, double sigma) {
   fit.residuals = VectorXd::NullaryExpr(kRows, [&] { return sigma * normal(random); });
   fit.variances = VectorXd::Constant(kRows, sigma * sigma);
   for (int row = 0; row < kRows; ++row) fit.views.push_back(row < kRows / 2 ? 0 : 1);
-  fit.fixed.assign(static_cast<std::size_t>(unknowns), false);
+  fit.held.assign(static_cast<std::size_t>(unknowns), false);
+  fit.bounds.assign(static_cast<std::size_t>(unknowns), 0);
   fit.scales = VectorXd::Ones(unknowns);
   return fit;
 }
@@ -67,14 +72,107 @@ TEST(CertaintyTest, MisfitCommonToAViewAddsToTheTotalOnly) {
   EXPECT_GT(after.misfit, 5);
 }
 
-TEST(CertaintyTest, FixedUnknownsHaveNoVarianceAndDoNotWidenTheOthers) {
+TEST(CertaintyTest, HeldUnknownsHaveNoVarianceAndDoNotWidenTheOthers) {
   LinearisedFit fit = random_fit(3, 0.1);
-  fit.fixed[1] = true;
+  fit.held[1] = true;
   const Certainty certainty = certainty_of(fit);
   EXPECT_EQ(certainty.covariance.row(1).norm(), 0);
   MatrixXd two(fit.jacobian.rows(), 2);
   two << fit.jacobian.col(0), fit.jacobian.col(2);
   EXPECT_NEAR(certainty.noise_covariance(2, 2), 0.01 * (two.transpose() * two).inverse()(1, 1), 1e-12);
+}
+
+// Two unknowns that trade with each other.
+LinearisedFit traded_fit() {
+  LinearisedFit fit = random_fit(2, 0.1);
+  fit.jacobian.col(1) += 2 * fit.jacobian.col(0);
+  return fit;
+}
+
+// What the unknowns may be, when all that lie on this side of the bound are as likely beforehand: by summing their
+// probability over a grid, about the best of them.
+MatrixXd summed_covariance(const LinearisedFit& fit, const Eigen::Vector2d& unbounded, double bound, int side,
+                           Eigen::Vector2d& best) {
+  const MatrixXd square = fit.jacobian.transpose() * fit.jacobian / fit.variances[0];
+  const auto misfit = [&](const Eigen::Vector2d& x) { return (x - unbounded).dot(square * (x - unbounded)); };
+  constexpr int kSteps = 800;
+  const double step = 0.0002;
+  double least = std::numeric_limits<double>::max(), sum = 0;
+  std::vector<Eigen::Vector2d> places;
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < 2 * kSteps; ++j)
+      places.push_back({bound - side * step * (i + 0.5), unbounded.y() + step * (j - kSteps)});
+  for (const Eigen::Vector2d& place : places)
+    if (const double here = misfit({bound, place.y()}); here < least) least = here, best = {bound, place.y()};
+  MatrixXd covariance = MatrixXd::Zero(2, 2);
+  for (const Eigen::Vector2d& place : places) {
+    const double likely = std::exp(-0.5 * (misfit(place) - least));
+    sum += likely;
+    covariance += likely * (place - best) * (place - best).transpose();
+  }
+  return covariance / sum;
+}
+
+TEST(CertaintyTest, AtABoundDeviationsAreOneSidedAndWhatTradesWithTheUnknownIsUncertainByThat) {
+  LinearisedFit fit = traded_fit();
+  fit.residuals.setZero();  // no misfit
+  const MatrixXd square = fit.jacobian.transpose() * fit.jacobian;
+  const Eigen::Vector2d unbounded(0.3, -0.2);
+  for (const int side : {-1, 1})
+    for (const double beyond : {0.0, 0.01, 0.03}) {
+      const double bound = unbounded.x() - side * beyond;
+      Eigen::Vector2d best;
+      const MatrixXd expected = summed_covariance(fit, unbounded, bound, side, best);
+      fit.bounds[0] = side;
+      fit.gradient = square * (best - unbounded);
+      const Certainty certainty = certainty_of(fit);
+      EXPECT_TRUE(certainty.at_bound[0]);
+      EXPECT_FALSE(certainty.at_bound[1]);
+      EXPECT_TRUE(certainty.covariance.isApprox(expected, 0.02)) << "side " << side << ", " << beyond << " beyond:\n"
+                                                                 << certainty.covariance << "\nby summing:\n"
+                                                                 << expected;
+    }
+  // Without a gradient it is as if the minimum lay on the bound.
+  fit.gradient = VectorXd();
+  const double level = certainty_of(fit).covariance(0, 0);
+  fit.bounds[0] = 0;
+  EXPECT_NEAR(level / certainty_of(fit).covariance(0, 0), 1, 1e-9);
+}
+
+TEST(CertaintyTest, AtABoundTheSpreadIsThatOfFitsWithOtherNoise) {
+  LinearisedFit fit = traded_fit();
+  const double sigma = 0.1;
+  const MatrixXd square = fit.jacobian.transpose() * fit.jacobian;
+  const MatrixXd root = (sigma * sigma * square.inverse()).llt().matrixL();
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  for (const double beyond : {0.0, 0.005, 0.01}) {
+    const Eigen::Vector2d minimum(0.3, -0.2);  // without the bound, which is above
+    const double bound = minimum.x() - beyond;
+    // Of the unknown that trades with the first one, where that stays at the bound.
+    const auto at_bound = [&](const Eigen::Vector2d& unbounded) {
+      const double moved = square(1, 0) / square(1, 1) * (unbounded.x() - bound);
+      return Eigen::Vector2d(bound, unbounded.y() + moved);
+    };
+    constexpr int kDraws = 200000;
+    Eigen::Vector2d sum(0, 0);
+    Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+    for (int i = 0; i < kDraws; ++i) {
+      const Eigen::Vector2d drawn = minimum + root * Eigen::Vector2d(normal(random), normal(random));
+      const Eigen::Vector2d off = (drawn.x() > bound ? at_bound(drawn) : drawn) - minimum;
+      sum += off;
+      squares += off * off.transpose();
+    }
+    const Eigen::Matrix2d expected = squares / kDraws - sum * sum.transpose() / kDraws / kDraws;
+    fit.bounds[0] = 1;
+    fit.gradient = square * (at_bound(minimum) - minimum);
+    const Certainty certainty = certainty_of(fit);
+    EXPECT_TRUE(certainty.noise_covariance.isApprox(expected, 0.02)) << beyond << " beyond:\n"
+                                                                     << certainty.noise_covariance << "\nby drawing:\n"
+                                                                     << expected;
+    for (int k = 0; k < 2; ++k)
+      EXPECT_NEAR(certainty.noise_covariance(k, k) / expected(k, k), 1, 0.03) << beyond << ", unknown " << k;
+  }
 }
 
 TEST(CertaintyTest, TheWorstDirectionIsTheOneThatNothingShows) {

@@ -132,6 +132,29 @@ TEST_F(HeldOutFit, IsToldApartInTheFileTheTextAndTheReportBesideTheBaselines) {
   EXPECT_THAT(text_of(session / "report.html"), HasSubstr("The fiber was fitted with other views held out"));
 }
 
+TEST_F(HeldOutFit, ByThePapersRecipeStandsBesideOurs) {
+  const TemporaryFolder folder;
+  const fs::path session = folder / "session";
+  fs::copy(recorded_session(), session, fs::copy_options::recursive);
+  develop_session(session, ProgressStyle::quiet);
+  inverted(session, inversion::ModelKind::thread, 2);
+  InvertRequest request{.session = session, .held_out = 2, .samples_per_pixel = 2};
+  request.progress_style = ProgressStyle::quiet;
+  request.fit.model = inversion::ModelKind::paper;
+  request.fit.adam_steps = 2, request.fit.adam_paths = 16, request.fit.paths_per_pixel = 4;
+  const InvertResult paper = invert_session(request);
+  EXPECT_EQ(paper.file, session / "result/paper/paper.json");
+  EXPECT_EQ(read_json_file(paper.file).at("parameters").at("exit"), "entry_point");
+  EXPECT_EQ(paper.fit.at("solver"), "adam");
+  EXPECT_EQ(paper.fit.at("robust"), false);
+  EXPECT_EQ(paper.fit.at("block_px"), read_json_file(session / "result/thread.json").at("fit").at("block_px"));
+  EXPECT_THAT(describe(paper), testing::AllOf(HasSubstr("sigma_a 0."), HasSubstr("paper.json")));
+  write_session_report(session);
+  const std::string page = text_of(session / "report.html");
+  EXPECT_THAT(page, HasSubstr("<th>paper</th>"));
+  EXPECT_THAT(page, HasSubstr("transmission-3 paper residual"));
+}
+
 // The fit without two views is the fit to a session that never had them.
 TEST_F(HeldOutFit, DoesNotSeeThem) {
   const TemporaryFolder folder;
