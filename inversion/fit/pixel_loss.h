@@ -19,9 +19,9 @@ class PixelLoss {
   // Refers to the views, which must outlive it and be usable (ViewObjective refuses others).
   PixelLoss(const WrappedSpool& spool, const std::vector<View>& views, const ScatteringFamily& family);
 
-  // sum over views w_i sum over masked pixels ||I_i - I_ref,i||^2 in units of the diffuser's radiance, w_i = 1 / masked
-  // pixels, without the paths' noise: it may be below zero. Traces paths_per_pixel >= kPathBatches paths anew, a part of
-  // a view at a time, so that memory does not grow with the pictures.
+  // sum over views w_i sum over masked pixels ||I_i - I_ref,i||^2 in units of the diffuser's radiance, w_i = 1 /
+  // masked pixels, without the paths' noise: it may be below zero. Traces paths_per_pixel >= kPathBatches paths anew, a
+  // part of a view at a time, so that memory does not grow with the pictures.
   double at(const Eigen::VectorXd& unknowns, int paths_per_pixel, std::uint64_t seed, Eigen::VectorXd& gradient) const;
 
  private:

@@ -6,8 +6,8 @@
 //   thread | 16       | thread_unknowns.h
 //   fiber  | 5        | sigma_a (R G B, per thread radius), beta_m, beta_n; index of refraction 1.55
 //   yarn   | 6        | sigma_a (R G B, per thread radius), beta_r, beta_tt, gamma_tt; the number of fibers is given
-//   paper  | 16       | the thread's parameters as printed (renderer/scattering/thread.h); energies may be negative, and
-//          |          | light leaves where it came in
+//   paper  | 16       | the thread's parameters as printed (renderer/scattering/thread.h); energies may be negative,
+//          |          | and light leaves where it came in
 #pragma once
 
 #include <Eigen/Core>

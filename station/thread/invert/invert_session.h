@@ -33,9 +33,9 @@ struct InvertResult {
 
 // Fits a session. Written are result/thread.json, result/fitted/<view>.exr and result/residual/<view>.exr (fitted minus
 // photographed; both linear camera RGB, radiance unit, zero outside the mask); for a baseline the same with fit.json,
-// in result/fiber/ or result/yarn/, and in result/paper/ for the paper's recipe. Views that are held out are drawn and compared like the others. Ctrl-C stops it;
-// the model is written last, so that it always belongs to whole pictures. Errors: those of read_views, held_out_views
-// and fit_views; std::runtime_error for what cannot be written.
+// in result/fiber/ or result/yarn/, and in result/paper/ for the paper's recipe. Views that are held out are drawn and
+// compared like the others. Ctrl-C stops it; the model is written last, so that it always belongs to whole pictures.
+// Errors: those of read_views, held_out_views and fit_views; std::runtime_error for what cannot be written.
 InvertResult invert_session(const InvertRequest& request);
 
 std::string describe(const InvertResult& result);
