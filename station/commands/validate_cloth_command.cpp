@@ -24,7 +24,7 @@ void add_validate_cloth_command(CLI::App& app) {
   command->add_option("--draft", request.drafts, "draft files, one or more; all ends are warp, all picks weft")
       ->required();
   command->add_option("--out", request.out, "folder of photographs, pictures and results")->required();
-  command->add_option("--model", request.models, "models to fit: thread, fiber, yarn; all without this")
+  command->add_option("--model", request.models, "models to fit; thread, fiber and yarn without this")
       ->transform(CLI::CheckedTransformer(names_of_models()));
   command->add_option("--exit", request.exit, "where light leaves the thread, in the thread model's fits and pictures")
       ->transform(CLI::CheckedTransformer(thread_exits()));
