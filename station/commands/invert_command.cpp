@@ -1,7 +1,6 @@
 #include <iostream>
 #include <map>
 
-#include "inversion/fit/light_paths.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
 #include "station/documents/thread_file.h"
