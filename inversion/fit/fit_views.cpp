@@ -318,7 +318,7 @@ ViewFit fit_family(const WrappedSpool& spool, const std::vector<View>& views, co
       .view_weights = best.view_weights.empty() ? std::vector<double>(views.size(), 1.0) : std::move(best.view_weights),
       .block_px = objective.block_px(),
       .blocks = objective.block_count()};
-  if (auto* thread = std::get_if<renderer::ThreadParameters>(&fit.model)) thread->limit_energy = true;
+  if (auto* thread = std::get_if<renderer::ThreadParameters>(&fit.model)) thread->limit_energy = !by_pixels;
   return fit;
 }
 

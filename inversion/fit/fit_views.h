@@ -40,7 +40,7 @@ struct FitOptions {
   // The start of the thread model, with the rule by which light leaves threads; the baselines have starts of their own.
   renderer::ThreadParameters start = starting_thread();
   std::vector<renderer::ThreadParameters> other_starts = other_starting_threads();  // may be empty
-  // Of ModelKind::paper, which adam_steps steps are for and nothing else here but the seed.
+  // Of ModelKind::paper. Of the other options it heeds the seed, adam_steps and, to say how certain it is, adam_paths.
   int paths_per_pixel = 8;
   // Paths per block in each round, of which there is at least one. Every start goes through all rounds but the last,
   // which is for the one that has got farthest. Adam goes from `start` alone, with adam_paths paths a step.
@@ -77,7 +77,7 @@ struct FitRound {
 
 struct ViewFit {
   ScatteringFamily family;
-  renderer::ScatteringModel model;  // of a thread: with limit_energy on
+  renderer::ScatteringModel model;  // of a thread: with limit_energy on, but as fitted by the paper's recipe
   Eigen::VectorXd unknowns;
   std::vector<std::string> unknown_names;
   Certainty certainty;

@@ -96,7 +96,7 @@ TEST(PixelLossTest, HasNoPartOfThePathsNoise) {
   EXPECT_THROW(pixels.at(truth, 3, 1, gradient), std::invalid_argument);
 }
 
-// What follows it are hinges, whose corners are rounded within a thousandth: half of that is missing.
+// The hinges' corners are rounded within a thousandth: half of that is missing of each.
 TEST(PaperFamilyTest, PaysTheHingesOfEquation6AndNothingElse) {
   OtherTerms terms(PaperFamily{}, 0);
   VectorXd u = printed(thread_of_the_paper());

@@ -149,7 +149,6 @@ TEST_P(Wire, APlugPulledWhileTheLineIsOpenedStaysPulled) {
   EXPECT_FALSE(rig.port->plugged());
 }
 
-// The links that the system keeps below /dev/serial; a link to a link is one, too.
 // A board hears what was written just before its program ended, be it a stop, even when it is slow to listen.
 TEST_P(Wire, WhatWasWrittenJustBeforeTheLineIsClosedIsHeard) {
   class SlowToListen final : public PassedOn {
@@ -180,6 +179,7 @@ TEST_P(Wire, WhatWasWrittenJustBeforeTheLineIsClosedIsHeard) {
   EXPECT_EQ(rig.port->operations(), before + 1);
 }
 
+// The links that the system keeps below /dev/serial; a link to a link is one, too.
 TEST_P(Wire, APortIsOpenedByALinkToIt) {
   const FolderOfLinks links;
   const std::string id = links.make("by-id", server->path()), mine = links.make("turntable", id);
