@@ -18,6 +18,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "station/serve/left_jobs.h"
+
 extern char** environ;
 
 namespace station {
@@ -70,8 +72,10 @@ class Job::Process {
       : title_(request.title),
         changed_(std::move(changed)),
         output_(with_ending(request.said, ".out")),
-        progress_(with_ending(request.said, ".progress")) {
+        progress_(with_ending(request.said, ".progress")),
+        process_file_(with_ending(request.said, kProcessFile)) {
     start(request);
+    note_process(process_file_, process_);
     follower_ = std::jthread([this](const std::stop_token& stop) { follow(stop); });
   }
 
@@ -160,6 +164,7 @@ class Job::Process {
         }
         changed_();
       }
+      if (ended) std::filesystem::remove(process_file_);
       if (ended) return;
       std::this_thread::sleep_for(kBetweenLooks);
     }
@@ -207,6 +212,7 @@ class Job::Process {
   pid_t process_ = -1;
   int input_ = -1;
   Growing output_, progress_;  // the follower's
+  const std::filesystem::path process_file_;
 
   mutable std::mutex mutex_;
   std::optional<int> status_;

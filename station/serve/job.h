@@ -19,7 +19,7 @@ inline constexpr const char* kThisProgram = "/proc/self/exe";
 struct JobRequest {
   std::string title;
   std::vector<std::string> arguments;  // of this program; --json is added
-  std::filesystem::path said;          // said.out and said.progress are written
+  std::filesystem::path said;          // said.out and said.progress are written; said.process while it runs
   std::filesystem::path program = kThisProgram;
 };
 

@@ -8,6 +8,7 @@
 
 #include "station/serve/checked_devices.h"
 #include "station/serve/job_command.h"
+#include "station/serve/left_jobs.h"
 #include "station/serve/page_answers.h"
 #include "station/serve/page_files.h"
 #include "station/serve/page_pictures.h"
@@ -82,13 +83,17 @@ bool TechnicianPage::in_control(const json& asked) const {
 std::optional<HttpResponse> TechnicianPage::urgent(const HttpRequest& request) {
   if (request.method != "POST" || request.path != "/api/stop") return std::nullopt;
   std::shared_ptr<Job> running;
+  fs::path own;
   {
     const std::scoped_lock lock(mutex_);
     ++stops_;
     running = job_;
+    own = job_said_;
   }
-  if (!running || !running->running()) return said(200, "nothing is running");
-  running->stop_now();
+  const bool runs = running && running->running();
+  if (runs) running->stop_now();
+  if (!stop_left_jobs(workspace_.folder() / "jobs", own += kProcessFile) && !runs)
+    return said(200, "nothing is running");
   return said(200, "stopped");
 }
 
@@ -220,11 +225,9 @@ HttpResponse TechnicianPage::start(const json& asked) {
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     const auto number = std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
     job_kind_ = text_of(asked, "kind");
+    job_said_ = workspace_.folder() / "jobs" / (std::to_string(number) + "-" + job_kind_);
     job_ = std::make_shared<Job>(
-        JobRequest{.title = command.title,
-                   .arguments = command.arguments,
-                   .said = workspace_.folder() / "jobs" / (std::to_string(number) + "-" + job_kind_),
-                   .program = program_},
+        JobRequest{.title = command.title, .arguments = command.arguments, .said = job_said_, .program = program_},
         changed_);
     ++jobs_;
   }

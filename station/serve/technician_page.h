@@ -16,7 +16,7 @@
 //   POST /api/spool {"client", ...}               spool_form.h
 //   POST /api/answer {"client", "question", "answer"}  to the question with this id that the job asks (job.h)
 //   POST /api/pause {"client"}
-//   POST /api/stop                                 emergency stop: any browser's, at once
+//   POST /api/stop          emergency stop: any browser's, at once, also of a job that an earlier server has left
 #pragma once
 
 #include <filesystem>
@@ -68,9 +68,10 @@ class TechnicianPage {
   mutable std::mutex mutex_;
   std::shared_ptr<Job> job_;
   std::string job_kind_;
-  int jobs_ = 0;            // that were started
-  int stops_ = 0;           // emergency stops that were asked for; a job is not started over one
-  std::string controller_;  // client in control; empty: nobody yet
+  std::filesystem::path job_said_;  // JobRequest::said
+  int jobs_ = 0;                    // that were started
+  int stops_ = 0;                   // emergency stops that were asked for; a job is not started over one
+  std::string controller_;          // client in control; empty: nobody yet
 };
 
 }  // namespace station

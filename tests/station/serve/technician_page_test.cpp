@@ -239,5 +239,27 @@ TEST_F(TechnicianPage, AStopWhileAJobIsBeingStartedKeepsItFromStarting) {
   EXPECT_FALSE(std::filesystem::exists(file("home")));
 }
 
+// Its program counts how often it is told.
+TEST_F(TechnicianPage, TheEmergencyStopReachesAJobThatAnEarlierServerHasLeft) {
+  const auto file = [&](const char* name) { return folder_ / name; };
+  std::ofstream(file("program")) << "#!/bin/sh\ncd \"${0%/*}\"\n"
+                                    "trap 'touch told' INT\ntouch began\n"
+                                    "until [ -e told ]; do sleep 0.02; done\n";
+  std::filesystem::permissions(file("program"), std::filesystem::perms::owner_all);
+  const auto serve_again = [&] {
+    page_ = std::make_unique<station::TechnicianPage>(
+        file("rig.json"), file("bench"), [] {}, file("program"));
+  };
+  const auto stop = [&] { return json::parse(post("/api/stop", {{"client", "a watcher"}}).body).at("message"); };
+  serve_again();
+  post("/api/control", {{"client", "me"}});
+  ASSERT_EQ(post("/api/job", {{"client", "me"}, {"kind", "home"}}).status, 200);
+  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(file("began")); }));
+  serve_again();
+  EXPECT_EQ(stop(), "stopped");
+  EXPECT_TRUE(eventually([&] { return std::filesystem::exists(file("told")); }));
+  EXPECT_TRUE(eventually([&] { return stop() == "nothing is running"; }));
+}
+
 }  // namespace
 }  // namespace station_test
