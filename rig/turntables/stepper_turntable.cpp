@@ -248,7 +248,7 @@ class StepperTurntable final : public Turntable {
       const std::int64_t began_at = stands_at;
       stands_at = turn_on_leash(stands_at, target, leash, tolerance);
       if (std::abs(stands_at - target) <= tolerance) return;
-      stands_at = standing_steps();  // the next piece begins there
+      stands_at = standing_steps();                               // the next piece begins there
       if (std::abs(stands_at - began_at) > tolerance) tries = 0;  // only a part of the way was lost
     }
     throw std::runtime_error("the platform was asked to turn to " + place(target) + " " + std::to_string(kMostTries) +

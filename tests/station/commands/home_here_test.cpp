@@ -25,6 +25,13 @@ struct HomeHere : testing::Test {
             "--spool", spool,   "--out",        lab.in("out"),   "--accept-calibration"};
   }
   std::vector<std::string> resume() const { return {"capture", "--resume", "--out", lab.in("out")}; }
+  static void interrupt_twice(pid_t process) {
+    kill(process, SIGINT);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // two at once may count as one
+    kill(process, SIGINT);
+    ASSERT_TRUE(ends(process));
+    wait_for(process);
+  }
   void expect_at_zero() const {
     EXPECT_NEAR(lab.angle_deg(), 0, 0.03);
     EXPECT_NEAR(lab.remembered_deg().value_or(999), 0, 0.03);
@@ -64,9 +71,7 @@ TEST_F(HomeHere, AStopOnTheWayBackToZeroLeavesTheSessionComplete) {
   while (!complete() && !has_ended(process)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   lab.set_pace(kSlow);
   ASSERT_TRUE(turns(lab, 1, process)) << "it came back before it was stopped";
-  for (int i = 0; i < 2; ++i) kill(process, SIGINT);
-  ASSERT_TRUE(ends(process));
-  wait_for(process);
+  interrupt_twice(process);
   EXPECT_TRUE(complete());
   EXPECT_EQ(events("stop").size(), 1U);
   EXPECT_GT(std::abs(lab.angle_deg()), 1);
@@ -74,6 +79,19 @@ TEST_F(HomeHere, AStopOnTheWayBackToZeroLeavesTheSessionComplete) {
   lab.set_pace(kQuickest);
   EXPECT_EQ(lab.run({"home", "--rig", lab.rig_file()}), 0);
   expect_at_zero();
+}
+
+// The board takes a second and a half to stand.
+TEST_F(HomeHere, AStopAtOnceWaitsUntilThePlatformStands) {
+  const pid_t process = lab.start(capture());
+  ASSERT_TRUE(turns(lab, 3, process));
+  const double from_deg = lab.angle_deg();
+  while (std::abs(lab.angle_deg() - from_deg) < 8 && !has_ended(process))
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  lab.set_pace(kSlow);
+  interrupt_twice(process);
+  EXPECT_EQ(events("stop").back().at("outcome"), "aborted");
+  EXPECT_NEAR(lab.remembered_deg().value_or(999), lab.angle_deg(), 0.03);
 }
 
 TEST_F(HomeHere, SomebodyWhoSaysThatItStandsAtItsMarkIsBelieved) {

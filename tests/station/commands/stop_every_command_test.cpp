@@ -1,8 +1,8 @@
 // Every command of the program that opens a turntable is stopped in its own motions, by everything that stops a
 // program, on every board. The program lists these commands itself; here stands only what their options need.
 //
-// Each stop has a bench of its own (lab.h) and runs the program as a person does. THREADSTATION_STOPS in the environment
-// says how many there are; as it is, every command, board and ending meet once.
+// Each stop has a bench of its own (lab.h) and runs the program as a person does. THREADSTATION_STOPS in the
+// environment says how many there are; as it is, every command, board and ending meet once.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
