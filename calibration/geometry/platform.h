@@ -1,4 +1,4 @@
-// The fit of the platform's rotation axis and the world frame: one joint bundle over tagged views (calibration.md 1d).
+// The fit of the platform's rotation axis and the world frame: one joint bundle over pictures that show tags.
 //
 // World: origin = where the axis meets the table plane; +z = axis, up; +x = horizontal projection of the direction to
 // the camera centre; right-handed; mm.

@@ -2,7 +2,7 @@
 // each yarn against contact with the others, in a cell that repeats.
 //
 // The energy is that of yarn_elasticity.h and yarn_contact.h; contact stiffens in steps until yarns overlap by no more
-// than `overlap_goal`. Source: models.md section 4.2, after Leaf et al. 2018.
+// than `overlap_goal`. Source: after Leaf et al. 2018.
 #pragma once
 
 #include <Eigen/Core>

@@ -123,7 +123,7 @@ std::variant<renderer::Draft, renderer::YarnPatch> parse_weave(ObjectReader& clo
                                                                const std::filesystem::path& folder) {
   if (cloth.has("patch") == cloth.has("draft"))
     cloth.refuse("draft", "give either a draft or a patch, not both and not none");
-  if (cloth.has("patch")) return read_chip(folder / cloth.text("patch"));
+  if (cloth.has("patch")) return read_patch(folder / cloth.text("patch"));
   renderer::Draft draft = read_draft(folder / cloth.text("draft"));
   replace_threads(cloth, "warp_threads", draft.warp);
   replace_threads(cloth, "weft_threads", draft.weft);

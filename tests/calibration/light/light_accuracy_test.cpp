@@ -92,7 +92,7 @@ std::vector<Accuracy> accuracy(const char* what, int solves, unsigned first_seed
 
 constexpr double kPatchReading = 0.001;  // how well a reference chip in the picture tells the lamp's output
 
-// The plan of the guided calibration (station/calibrate), with a reference chip.
+// The plan of the guided calibration (station/bench/calibrate), with a reference chip.
 TEST(LightAccuracy, PlannedPosesAndAReferencePatchGiveLampAndIrradianceAsAsked) {
   const auto a = accuracy("as planned, patch to 0.1 %", 100, 1000, 16, 12, {.monitored = kPatchReading});
   // asked of the front lamp: 2.5 mm rms, 5 mm at worst, 0.5 %; of the back lamp: 5 mm, 1 %; pictures held out: 0.5 %

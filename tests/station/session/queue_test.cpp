@@ -47,7 +47,6 @@ TEST_F(Queue, TheDocumentedTableIsRead) {
   for (const QueuedSpool& spool : queue) EXPECT_TRUE(std::filesystem::exists(spool.spool)) << spool.spool;
 }
 
-// Rows 32 and 45 of the station's faults.
 TEST_F(Queue, WhatSpreadsheetsWriteIsReadOrRefusedAndNeverMisread) {
   EXPECT_EQ(read("\xEF\xBB\xBF"
                  "barcode,spool\r\n1,a.json\r\n2,\r\n")

@@ -45,7 +45,7 @@ TEST_F(ThreadLibrary, RefusesWhatItHasAlreadyAndWhatIsNoThread) {
   EXPECT_THAT(message_of([&] { Library((folder / "letter.txt").parent_path(), true); }), HasSubstr("other files"));
 }
 
-// Row 30 of the station's faults: a flipped bit is not passed on.
+// A flipped bit is not passed on.
 TEST_F(ThreadLibrary, ExportsTheFileAsItWasAddedOrNothing) {
   Library library(place, true);
   library.add(thread("silk_blue"), kNow);

@@ -326,7 +326,7 @@ TEST_F(RunnerTest, AViewTakenAgainAtAnotherExposureGetsItsOwnDark) {
   EXPECT_TRUE(verify_session(path).sound());
 }
 
-// Row 47 of the station's faults; at the first and the last poll as well.
+// The stop comes at every poll in turn.
 TEST_F(RunnerTest, ARunThatIsPausedOrAbortedIsNeverComplete) {
   for (const StopWish wish : {StopWish::pause, StopWish::now}) {
     RunState state = RunState::running;
@@ -347,7 +347,6 @@ TEST_F(RunnerTest, ARunThatIsPausedOrAbortedIsNeverComplete) {
   }
 }
 
-// Row 48.
 TEST_F(RunnerTest, TheStopIsOnTheDiskBeforeThePlatformIsStoppedAndDevicesAreLeft) {
   fake.options.stop_wish = [&] { return fake.camera.captures > 3 ? StopWish::now : StopWish::none; };
   std::string seen;

@@ -11,7 +11,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-// Row 49 of the station's faults.
 TEST(SessionReport, IsMadeFromTheJournalAndAgainAfterACrash) {
   const TemporaryFolder folder;
   const fs::path session = folder / "session";
