@@ -70,7 +70,7 @@ std::vector<BlockPair> block_pairs(const cv::Mat3f& photograph, const cv::Mat3f&
   return pairs;
 }
 
-// Of each column inside the mask; black where it has no pixel.
+// The mean of each column inside the mask; black where it has no pixel.
 std::vector<Eigen::Array3d> column_means(const cv::Mat3f& picture, const cv::Mat1b& mask, double scale) {
   std::vector<Eigen::Array3d> means;
   for (int column = 0; column < picture.cols; ++column) {

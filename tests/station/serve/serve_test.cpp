@@ -103,7 +103,8 @@ class RunningServer {
           return std::nullopt;
         },
         handle ? handle : [](const HttpRequest& request) {
-          return request.path == "/events" ? HttpResponse{.stream = true} : HttpResponse{.body = request.path + request.body};
+          if (request.path == "/events") return HttpResponse{.stream = true};
+          return HttpResponse{.body = request.path + request.body};
         }, limits),
         thread_([this] { server_.run(); }) {}
   ~RunningServer() { server_.stop(); }
