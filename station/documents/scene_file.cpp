@@ -363,7 +363,7 @@ SceneFile parse_scene(const json& document, const std::string& source, const std
     reader.refuse("lights", "the list is empty and the picture would be black; add a light");
   scene.camera = parse_camera(reader.object("camera"));
   if (reader.has("samples_per_pixel")) scene.samples_per_pixel = reader.integer("samples_per_pixel", 1, 1 << 20);
-  if (reader.has("exposure")) scene.exposure = reader.number("exposure", 1e-12, 1e12);
+  if (reader.has("exposure")) scene.brightness = reader.number("exposure", 1e-12, 1e12);
   reader.finish();
   return scene;
 }

@@ -67,7 +67,7 @@ struct SceneFile {
   std::optional<renderer::EnvironmentLight> surroundings{};  // as a picture
   renderer::Camera camera{};
   int samples_per_pixel = 64;
-  std::optional<double> exposure{};  // radiance times this is shown as white = 1; from the picture when left out
+  std::optional<double> brightness{};  // radiance times this is shown as white = 1; from the picture when left out
 };
 
 SceneFile parse_scene(const nlohmann::json& document, const std::string& source, const std::filesystem::path& folder);

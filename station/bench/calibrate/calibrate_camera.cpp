@@ -151,9 +151,9 @@ LensFile calibrate_camera(const CalibrateCameraRequest& request) {
   if (seen.with_board == 0) refuse_unseen(request, board, seen);
   const calibration::LensOptions options{.working_distance_mm = request.working_distance_mm,
                                          .taped_distance_mm = request.taped_distance_mm};
-  const auto guess = [&](const std::vector<calibration::BoardPicture>& views, const calibration::Lattice& lattice) {
+  const auto guess = [&](const std::vector<calibration::BoardPicture>& pictures, const calibration::Lattice& lattice) {
     return request.focal_guess_px > 0.0 ? request.focal_guess_px
-                                        : calibration::guess_focal_px(views, lattice, seen.size);
+                                        : calibration::guess_focal_px(pictures, lattice, seen.size);
   };
   if (const auto* lattice = std::get_if<calibration::Lattice>(&board.pattern)) {
     result.fit =
@@ -161,9 +161,10 @@ LensFile calibrate_camera(const CalibrateCameraRequest& request) {
   } else {
     const auto& tags = std::get<calibration::TagLayout>(board.pattern);
     const calibration::TagLattice on = calibration::lattice_of(tags);
-    std::vector<calibration::BoardPicture> views;
-    for (const calibration::TagObservation& view : seen.tags) views.push_back(calibration::on_lattice(on, tags, view));
-    result.fit = calibration::fit_lens(seen.tags, tags, seen.size, guess(views, on.lattice), options);
+    std::vector<calibration::BoardPicture> pictures;
+    for (const calibration::TagObservation& tagged : seen.tags)
+      pictures.push_back(calibration::on_lattice(on, tags, tagged));
+    result.fit = calibration::fit_lens(seen.tags, tags, seen.size, guess(pictures, on.lattice), options);
   }
   result.board = board.name;
   result.utc = rig::SystemClock().utc();

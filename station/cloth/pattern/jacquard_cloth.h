@@ -20,7 +20,7 @@ struct JacquardRequest {
   std::filesystem::path warp_thread, weft_thread;
   std::filesystem::path draft;  // gives yarns and sett; its structure is not used
   int ends = 0;                 // across the picture; 0: one per pixel
-  double exposure = 1;          // factor of the picture's brightness
+  double brightness = 1;        // factor of the picture's brightness
   std::uint64_t seed = 1;
   ProgressStyle progress_style = ProgressStyle::automatic;
 };

@@ -119,7 +119,7 @@ Pattern weave_pattern(const PatternRequest& request) {
   Base base = base_of(request);
   const SceneFile scene = parse_scene(base.document, base.source, base.folder);
   const inversion::TexturedCloth woven = cloth_of(scene, request);
-  const cv::Mat3f picture = picture_of_crossings(request.image, request.ends, request.exposure, woven.crossing_mm());
+  const cv::Mat3f picture = picture_of_crossings(request.image, request.ends, request.brightness, woven.crossing_mm());
   make_folder(request.out);
   ProgressDisplay progress("pattern", request.progress_style);
   const Eigen::Matrix3d to_srgb = srgb_from_camera(scene);

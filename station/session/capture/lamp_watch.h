@@ -27,7 +27,7 @@ struct LampSettling {
 
 // The warning, also written to the journal, about a lamp that cannot be read.
 inline constexpr const char* kLampNotWatched =
-    "the lamp is not watched while it warms up: its reference patch cannot be read; see that it stands free and lit, "
+    "the lamp is not watched while it warms up: its reference chip cannot be read; see that it stands free and lit, "
     "or wait until the lamp is warm before the next session";
 
 // Reads the lamp's strength in a test picture, in any unit; nothing where it cannot be read.

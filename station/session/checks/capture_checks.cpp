@@ -115,7 +115,7 @@ class CaptureChecks::Work {
       if (calibration_.sensor) check_dark(step, raw);
       return verdict_;
     }
-    if (step.kind == StepKind::exposure) return verdict_;  // its view has been looked at
+    if (step.kind == StepKind::bracket) return verdict_;  // its view has been looked at
     Seen seen{.step = step,
               .raw = raw,
               .reading_rad = reading_rad,
@@ -261,7 +261,7 @@ class CaptureChecks::Work {
                     " s: more than 5 % of the threads' window is saturated; move the lamp away, then resume"
               : name + " has " + percent_text(saturated) + " of the threads' window saturated; look at its bracket");
     check_focus(seen, region);
-    // A blurred picture of the small patch says nothing about the lamp.
+    // A blurred picture of the small chip says nothing about the lamp.
     if (verdict_.findings.back().grade != Grade::bad) check_lamp(seen);
     const double level = bright_level(seen.raw, region, ExposureAim{}.percentile);
     found("exposure", level < kUnderExposed ? Grade::bad : Grade::good, 100 * level,

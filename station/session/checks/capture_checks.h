@@ -30,8 +30,8 @@ namespace station {
 //   shadows      % of the range below which a tenth of the window lies; never bad
 //   lamp, lamp_side   lamp_checks.h
 //   dark         % of the range above the calibration's dark level; limit 0.1
-// A check gives no finding when the picture lacks what it needs (no tags in the picture, no patch on the rig, a
-// mounting whose pose picture shows fewer than two tags).
+// A check gives no finding when the picture lacks what it needs (no tags in the picture, no reference chip on the rig,
+// a mounting whose pose picture shows fewer than two tags).
 class CaptureChecks {
  public:
   // `session` and `asked` must outlive the checks. `in_order`: a file that is older than the one before it is stale.
@@ -42,7 +42,7 @@ class CaptureChecks {
   // or is of another camera; at a pose step, while the holder can still be put right, also for a bench that does not
   // stand as it was calibrated.
   ExposureChoice choose_exposure(const PlanStep& step, const rig::Picture& test);
-  // The strength of the lamp at the reference chip, 1 = as calibrated; nothing where there is no patch, it cannot be
+  // The strength of the lamp at the reference chip, 1 = as calibrated; nothing where there is no chip, it cannot be
   // read or the lamp is off. Errors: std::runtime_error for a picture that cannot be read.
   std::optional<double> read_lamp(const PlanStep& step, const rig::Picture& test);
   // Makes all checks of a picture. Errors: std::runtime_error for a picture that cannot be read or is of another

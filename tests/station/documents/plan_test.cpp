@@ -45,7 +45,7 @@ TEST(Plan, HasTwelveReflectionsFiveTransmissionsAndADarkForEach) {
 TEST(Plan, ABracketsExposuresFollowTheirViewUnderTheSameLight) {
   const Plan plan = make_capture_plan({.bracket_stops = {-2, 1.5}});
   EXPECT_EQ(view_count(plan), 17U);
-  EXPECT_EQ(count(plan, [](const PlanStep& step) { return step.kind == StepKind::exposure; }), 34);
+  EXPECT_EQ(count(plan, [](const PlanStep& step) { return step.kind == StepKind::bracket; }), 34);
   EXPECT_EQ(count(plan, [](const PlanStep& step) { return step.kind == StepKind::dark; }), 17);
   for (std::size_t i = 0; i < plan.steps.size(); ++i) {
     const PlanStep& view = plan.steps[i];

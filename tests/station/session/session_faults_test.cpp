@@ -143,7 +143,7 @@ TEST(SessionFaults, ALampOnTheWrongSideIsFoundInTheFirstView) {
 }
 
 // 8 % of the light are missing at first.
-TEST(SessionFaults, ALampThatWarmsUpIsWaitedForByItsPatch) {
+TEST(SessionFaults, ALampThatWarmsUpIsWaitedForByItsChip) {
   RecordedBench bench;
   bench.asked.rig.lamp_watch_s = 10;
   bench.asked.rig.simulation->truth.lamp_changes.warm_up = 0.08;
@@ -161,7 +161,7 @@ TEST(SessionFaults, ALampThatWarmsUpIsWaitedForByItsPatch) {
   EXPECT_EQ(std::ranges::count(records, "lamp_watch", &JournalRecord::event), 1);
   const auto pictures = pictures_of(bench.path);
   const auto lamp = [&](const char* step) { return *pictures.at(step).verdict.find("lamp")->value; };
-  // What the lamp then still lacks changes by less than a percent in the seconds of three views; the patch is read to
+  // What the lamp then still lacks changes by less than a percent in the seconds of three views; the chip is read to
   // 0.3 %.
   EXPECT_NEAR(lamp("reflection-horizontal-3"), lamp("reflection-horizontal-1"), 1.5);
 }

@@ -246,7 +246,7 @@ TEST_F(RunnerTest, ABracketsExposureIsItsViewsTimeSoManyStopsLongerAndIsTakenAga
   EXPECT_EQ(dimmer.run(path, plan), RunState::complete);
   const auto pictures = pictures_of(path);
   for (const PlanStep& step : plan.steps) {
-    if (step.kind == StepKind::exposure) {
+    if (step.kind == StepKind::bracket) {
       const double ratio = pictures.at(step.id).asked.exposure_s / pictures.at(step.exposure_of).asked.exposure_s;
       EXPECT_NEAR(std::log2(ratio), -2, 1.0 / 6) << step.id;
     }
@@ -291,7 +291,7 @@ TEST_F(RunnerTest, AnExposureThatTheRangeDoesNotNeedIsLeftOutAndTheSessionIsComp
   const auto pictures = pictures_of(path);
   std::vector<std::string> exposures;
   for (const auto& [step, picture] : pictures)
-    if (picture.kind == StepKind::exposure) exposures.push_back(step);
+    if (picture.kind == StepKind::bracket) exposures.push_back(step);
   EXPECT_THAT(exposures,
               testing::ElementsAre("bracket-reflection-horizontal-2-minus-2", "bracket-transmission-1-plus-2"));
   const VerifyReport report = verify_session(path);
