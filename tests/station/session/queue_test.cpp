@@ -6,7 +6,6 @@
 
 #include "station/bench/bench_fault.h"
 #include "station/documents/disk/file_name.h"
-#include "station/documents/text_table.h"
 #include "station/session/spool_queue.h"
 #include "tests/places.h"
 #include "tests/station/session/capture/fakes.h"
