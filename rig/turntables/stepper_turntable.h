@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 
@@ -41,7 +42,7 @@ class PlatformMemory {
 
 struct StepperSetup {
   HomeBy home_by = HomeBy::here;
-  double limit_rad = 6.283185307179586;  // largest angle either way: one turn
+  double limit_rad = 2 * std::numbers::pi;  // largest angle either way: one turn
   double backlash_rad = 0;
   double move_timeout_s = 120;  // for one move or one homing
   double stall_timeout_s = 3;   // for a move during which the reading does not change

@@ -24,6 +24,8 @@ const SimulatedFibers& simulated_fibers(const Spool& spool);
 std::vector<Eigen::Vector2d> fiber_centres(const Spool& spool, std::uint64_t seed, double flatness = 1);
 // The distance between the seeds of two threads. It is large, because fiber_centres also tries the seeds after its own.
 inline constexpr std::uint64_t kFiberSeedStep = 1000003;
+// The seeds that a spool has for its threads, from its own seed times this number on.
+inline constexpr std::uint64_t kSeedsPerSpool = 1000;
 
 // Every thread of the spool as its fibers, holder frame (mm).
 renderer::CurveSet spool_fibers(const Spool& spool);

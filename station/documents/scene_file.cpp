@@ -29,7 +29,6 @@ constexpr double kLeastTexel = 1e-4;                  // mm
 constexpr double kMostDiameter = 10;                  // mm, of a sewing thread
 constexpr double kMostAbsorption = 1000;              // per thread radius
 constexpr int kMostSide = 16384;                      // pixels
-constexpr double kMostPixels = 1e8;
 
 Isometry3d pose(ObjectReader& reader, const std::string& key) {
   if (!reader.has(key)) return Isometry3d::Identity();
@@ -309,7 +308,7 @@ renderer::Camera parse_camera(ObjectReader reader) {
   renderer::Camera camera = renderer::look_at(eye, target, up);
   camera.width = reader.integer("width_px", 1, kMostSide);
   camera.height = reader.integer("height_px", 1, kMostSide);
-  if (static_cast<double>(camera.width) * camera.height > kMostPixels)
+  if (static_cast<double>(camera.width) * camera.height > renderer::kMostPicturePixels)
     reader.refuse("width_px", "the picture has more than 100 million pixels; make it smaller");
   camera.fx = camera.fy = reader.number("focal_length_px", 1, 1e7);
   camera.cx = (camera.width - 1) / 2.0, camera.cy = (camera.height - 1) / 2.0;

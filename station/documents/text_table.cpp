@@ -119,7 +119,8 @@ TextTable read_text_table(const std::filesystem::path& file, const Cells& requir
                  std::to_string(table.columns.size()) + " columns; put texts with commas into double quotes");
     table.rows.push_back({number, cells});
   }
-  if (table.columns.empty()) refuse(file, 0, "is empty; the first line must name columns; known are " + known(required, optional));
+  if (table.columns.empty())
+    refuse(file, 0, "is empty; its first line must name columns of " + known(required, optional));
   if (table.rows.empty()) refuse(file, 0, "has no rows below its column names; add some");
   return table;
 }

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "calibration/develop/develop.h"
+#include "calibration/develop/linear_grey.h"
 #include "calibration/geometry/chessboard.h"
 #include "calibration/sensor/sensor_file.h"
 #include "rig/devices/clock.h"
@@ -15,6 +16,7 @@
 #include "station/documents/board_file.h"
 #include "station/documents/disk/sha256.h"
 #include "station/documents/session_file.h"
+#include "station/documents/text_pieces.h"
 
 namespace station {
 namespace {
@@ -24,9 +26,7 @@ namespace fs = std::filesystem;
 enum class FileKind { photograph, raw, other };
 
 FileKind kind_of(const fs::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case(file.extension().string());
   for (const char* known : {".jpg", ".jpeg", ".png", ".tif", ".tiff"})
     if (extension == known) return FileKind::photograph;
   return is_raw_file(file) ? FileKind::raw : FileKind::other;
@@ -68,7 +68,7 @@ struct GreyPicture {
 GreyPicture read_picture(const fs::path& file) {
   GreyPicture picture;
   if (kind_of(file) == FileKind::raw) {
-    picture.linear = linear_grey(calibration::read_sensor_file(file));
+    picture.linear = calibration::linear_grey(calibration::read_sensor_file(file));
     double white = 0.0;
     cv::minMaxLoc(picture.linear, nullptr, &white);
     display_from_linear(picture.linear, std::max(1e-12F, static_cast<float>(white)))

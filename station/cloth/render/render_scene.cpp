@@ -15,15 +15,12 @@
 #include "station/output/display.h"
 #include "station/output/interrupt.h"
 #include "station/output/picture_destination.h"
+#include "station/output/progress.h"
 
 namespace station {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 void check_destination(const RenderRequest& request) {
   check_picture_destination(request.out);

@@ -23,18 +23,17 @@
 #include "station/bench/exposure.h"
 #include "station/bench/metering.h"
 #include "station/bench/mounted_holder.h"
+#include "station/bench/picture_measures.h"
 #include "station/documents/degree.h"
 #include "station/documents/number_text.h"
 #include "station/documents/plan_file.h"
 #include "station/session/checks/lamp_checks.h"
-#include "station/session/checks/picture_measures.h"
 #include "station/session/record/picture_record.h"
 
 namespace station {
 namespace {
 
 constexpr double kMostSaturated = 0.05, kSomeSaturated = 0.005, kUnderExposed = 0.02;
-constexpr double kMostBlur_px = 3, kMuchBlur_px = 2;
 constexpr double kLeastSharpness = 0.4, kLittleSharpness = 0.6;  // of the median of the views before
 constexpr std::size_t kFewestCompared = 3;
 constexpr double kShadowsPercentile = 10;
@@ -211,9 +210,9 @@ class CaptureChecks::Work {
     const auto blur = edge_blur_px(seen.grey, seen.tags);
     if (blur)
       found("focus",
-            *blur > kMostBlur_px   ? Grade::bad
-            : *blur > kMuchBlur_px ? Grade::doubtful
-                                   : Grade::good,
+            *blur > kBadBlur_px        ? Grade::bad
+            : *blur > kDoubtfulBlur_px ? Grade::doubtful
+                                       : Grade::good,
             blur,
             "'" + seen.step.id + "' is out of focus: printed edges are " + number_text(*blur, 1) +
                 " px soft; the lens is calibrated at its taped focus: turn the ring back to it, or focus and "
