@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "station/bench/mounted_holder.h"
 #include "station/session/checks/capture_checks.h"
 #include "station/session/replay/device_log.h"
 

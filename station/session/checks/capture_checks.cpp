@@ -370,21 +370,6 @@ Verdict CaptureChecks::judge(const PlanStep& step, const rig::Picture& picture, 
   return work_->judge(step, picture, platform_reading_rad);
 }
 
-Eigen::Isometry3d nominal_holder_pose(const RigFile& rig, const inversion::WrappedSpool& spool,
-                                      rig::Mounting mounting) {
-  const bool vertical = mounting == rig::Mounting::vertical;
-  const double half_height_mm = (vertical ? spool.frame_width_mm : spool.frame_height_mm) / 2;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translation().z() = rig.platform_height_mm + half_height_mm;
-  if (vertical) pose.rotate(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX()));
-  return pose;
-}
-
-Eigen::Isometry3d nominal_pose(const RigFile& rig, const Spool& spool, rig::Mounting mounting) {
-  if (!spool.fabric) return nominal_holder_pose(rig, spool.wrapping, mounting);
-  return Eigen::Isometry3d(Eigen::Translation3d(0, 0, rig.platform_height_mm));
-}
-
 cv::Mat1b metered_region(const SessionFile& asked, const RigCalibration& calibration, const PlanStep& step) {
   const Eigen::Isometry3d world_from_object = Eigen::AngleAxisd(step.platform_angle_rad, Eigen::Vector3d::UnitZ()) *
                                               nominal_pose(asked.rig, asked.spool, step.mounting);

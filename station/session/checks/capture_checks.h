@@ -58,11 +58,4 @@ class CaptureChecks {
 // a cylinder with cloth.
 cv::Mat1b metered_region(const SessionFile& asked, const RigCalibration& calibration, const PlanStep& step);
 
-// The nominal pose of the holder in the world frame at platform angle 0: upright on the platform, its front over the
-// axis; turned a quarter for vertical threads.
-Eigen::Isometry3d nominal_holder_pose(const RigFile& rig, const inversion::WrappedSpool& spool, rig::Mounting mounting);
-// The nominal pose of what is photographed: the holder's, or that of a cylinder, which stands upright in the middle of
-// the platform.
-Eigen::Isometry3d nominal_pose(const RigFile& rig, const Spool& spool, rig::Mounting mounting);
-
 }  // namespace station

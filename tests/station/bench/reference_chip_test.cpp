@@ -9,9 +9,9 @@
 #include "calibration/light/spectralon.h"
 #include "station/bench/bench_picture.h"
 #include "station/bench/camera_adapter.h"
+#include "station/bench/mounted_holder.h"
 #include "station/documents/rig_file.h"
 #include "station/documents/spool.h"
-#include "station/session/checks/capture_checks.h"
 #include "tests/places.h"
 
 namespace station {

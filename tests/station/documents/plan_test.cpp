@@ -8,7 +8,9 @@
 
 #include "station/documents/plan_file.h"
 #include "tests/places.h"
-#include "tests/station/session/capture/fakes.h"
+#include "tests/station/documents/small_plan.h"
+#include "tests/support/message_of.h"
+#include "tests/support/temporary_folder.h"
 
 namespace station {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "station/bench/bench_picture.h"
+#include "station/bench/mounted_holder.h"
 #include "station/documents/degree.h"
-#include "station/session/checks/capture_checks.h"
 #include "tests/station/session/recorded_bench.h"
 
 namespace station {

@@ -6,7 +6,8 @@
 
 #include "station/documents/manifest.h"
 #include "tests/places.h"
-#include "tests/station/session/capture/fakes.h"
+#include "tests/support/message_of.h"
+#include "tests/support/temporary_folder.h"
 
 namespace station {
 namespace {
