@@ -17,8 +17,9 @@ struct ContractRow {
 };
 
 // Turns the platform, which must be free to turn, through a few angles between 0 and 90 degrees and back to 0. Readings
-// may differ from the angles asked for by `tolerance_rad` (one step of the device).
-std::vector<ContractRow> check_turntable(Turntable& turntable, double tolerance_rad);
+// may differ from the angles asked for by `tolerance_rad` (one step of the device). A platform with a motor is stopped
+// before it is turned for longer: it must stand within 5 degrees.
+std::vector<ContractRow> check_turntable(Turntable& turntable, double tolerance_rad, bool has_motor = true);
 
 // Takes four short pictures of whatever stands in front of the camera; changes the exposure settings.
 std::vector<ContractRow> check_camera(Camera& camera);

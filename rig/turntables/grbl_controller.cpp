@@ -140,8 +140,10 @@ class GrblController final : public MotionController, public GrblSettingsPort {
  private:
   void write_stop() { line_->write(homing_ ? std::string_view("\x18") : std::string_view("!\x85")); }
 
-  // A stop that another thread wrote just before is written again, because it may have come before this command.
+  // Nothing turns after a stop. One that another thread wrote just before is written again, because it may have come
+  // before this command.
   void begin(std::string_view command) {
+    if (stopped_) return;
     line_->write(command);
     if (stopped_) write_stop();
   }
@@ -157,6 +159,7 @@ class GrblController final : public MotionController, public GrblSettingsPort {
   void remember(const GrblReply& reply) {
     if (const auto* status = std::get_if<GrblStatus>(&reply)) {
       work_offset_deg_ = status->work_offset_deg ? status->work_offset_deg : work_offset_deg_;
+      if (status->state == GrblState::home) homing_ = home_seen_ = true;
     } else if (const auto* noise = std::get_if<GrblNoise>(&reply)) {
       noise_ = noise->text;
     } else if (const auto* alarm = std::get_if<GrblAlarm>(&reply)) {
@@ -206,6 +209,7 @@ class GrblController final : public MotionController, public GrblSettingsPort {
     }
     if (identity_.firmware.empty()) identity_.firmware = banner;
     listen(kQuietS, [](const GrblReply&) { return false; });
+    homing_ = false;
     on_guard_ = guarded;
   }
 
@@ -303,23 +307,22 @@ class GrblController final : public MotionController, public GrblSettingsPort {
     }
   }
 
-  // During homing the firmware answers late or not at all; its ok comes at the end. Should the ok be lost, a report of
-  // "idle" after one of "home" says the same.
+  // During homing the firmware answers late or not at all; its ok comes at the end. Homing has ended with the first
+  // report of "idle" behind that or behind a report of "home": an ok alone may be a late one of something else.
   MotionStatus homing_status() {
     if (stopped_) return {Motion::held, 0};
     bool done = false;
     std::optional<GrblError> refused;
     std::optional<GrblStatus> seen;
     listen(kLookS, [&](const GrblReply& reply) {
-      done = done || is<GrblOk>(reply);
+      home_seen_ = home_seen_ || is<GrblOk>(reply);
       if (const auto* error = std::get_if<GrblError>(&reply)) {
         refused = *error;
       } else if (const auto* status = std::get_if<GrblStatus>(&reply)) {
         seen = *status;
-        home_seen_ = home_seen_ || status->state == GrblState::home;
-        done = done || (home_seen_ && status->state == GrblState::idle);
+        done = home_seen_ && status->state == GrblState::idle;
       }
-      return done || refused || seen;
+      return refused || seen;
     });
     if (refused) {
       homing_ = false;
@@ -340,10 +343,10 @@ class GrblController final : public MotionController, public GrblSettingsPort {
   GrblFirmware firmware_;
   LineFrames frames_;
   std::optional<double> work_offset_deg_;
-  std::string noise_;              // the last noise heard
-  std::optional<int> alarm_code_;  // since the last reset
-  bool on_guard_ = false;          // true: an alarm or a banner means that the position is lost
-  bool home_seen_ = false;
+  std::string noise_;                                   // the last noise heard
+  std::optional<int> alarm_code_;                       // since the last reset
+  bool on_guard_ = false;                               // true: an alarm or a banner means that the position is lost
+  bool home_seen_ = false;                              // homing has begun
   std::atomic<bool> homing_ = false, stopped_ = false;  // stop() comes from other threads
 };
 

@@ -42,10 +42,10 @@ class ZaberController final : public MotionController {
 
   void start_home() override {
     homing_ = true;
-    ask("home");
+    begin("home");
   }
 
-  void start_move(std::int64_t steps) override { ask("move abs " + std::to_string(steps) + move_speed_); }
+  void start_move(std::int64_t steps) override { begin("move abs " + std::to_string(steps) + move_speed_); }
 
   MotionStatus status() override {
     const ZaberReply reply = ask("get pos");
@@ -104,9 +104,11 @@ class ZaberController final : public MotionController {
     return found;
   }
 
-  // Repeats a question that gets no answer. Moves are absolute, so repeating them does no harm.
-  ZaberReply try_to_ask(const std::string& command) {
+  // Repeats a question that gets no answer. Moves are absolute, so repeating them does no harm. Nothing when `turns` and
+  // a stop was asked for: what begins a motion is not written after it, and status() says "held".
+  std::optional<ZaberReply> try_to_ask(const std::string& command, bool turns) {
     for (int tries = 0; tries < kMostTries; ++tries) {
+      if (turns && stopped_) return std::nullopt;
       identity_.repeated += tries > 0;
       if (auto reply = exchange(command, setup_.reply_timeout_s / kMostTries)) return *reply;
     }
@@ -120,8 +122,13 @@ class ZaberController final : public MotionController {
                   "it");
   }
 
-  ZaberReply ask(const std::string& command) {
-    ZaberReply reply = try_to_ask(command);
+  ZaberReply ask(const std::string& command) { return accepted(command, *try_to_ask(command, false)); }
+
+  void begin(const std::string& command) {
+    if (const auto reply = try_to_ask(command, true)) accepted(command, *reply);
+  }
+
+  static const ZaberReply& accepted(const std::string& command, const ZaberReply& reply) {
     if (!reply.accepted && (reply.warning == "WR" || reply.warning == "WH")) {
       throw PositionLost("the turntable was asked \"" + command + "\" and reports " +
                          zaber_warning_words(reply.warning));

@@ -55,7 +55,7 @@ std::vector<DeviceCheck> check_rig(const RigFile& rig, const std::optional<RigCa
   std::vector<DeviceCheck> checks;
   checks.push_back(checked(turntable_name(rig), [&] {
     const RigDevices devices = open_turntable(rig, &asked);
-    return rig::check_turntable(*devices.turntable, turntable_step_rad(rig));
+    return rig::check_turntable(*devices.turntable, turntable_step_rad(rig), rig.turntable_driver != "manual");
   }));
   const std::string port = rig.camera_wire ? " at " + rig.camera_wire->setup.port : "";
   checks.push_back(checked("camera (" + rig.camera_driver + port + ")", [&] {

@@ -176,7 +176,7 @@ RigDevices open_rig(const RigFile& rig, const std::optional<Spool>& spool, rig::
 }
 
 RigDevices open_turntable(const RigFile& rig, rig::AskedPerson* asked) {
-  constexpr double kPace = 0.01;  // a check looks at it from another thread while it turns
+  constexpr double kPace = 0.02;  // a check looks at it from another thread while it turns
   require_person(rig, asked);
   RigDevices devices = undrawn_bench(rig, turns_the_bench(rig), kPace);
   connect_turntable(rig, devices, asked);

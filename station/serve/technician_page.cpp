@@ -80,7 +80,12 @@ bool TechnicianPage::in_control(const json& asked) const {
 
 std::optional<HttpResponse> TechnicianPage::urgent(const HttpRequest& request) {
   if (request.method != "POST" || request.path != "/api/stop") return std::nullopt;
-  const std::shared_ptr<Job> running = job();
+  std::shared_ptr<Job> running;
+  {
+    const std::scoped_lock lock(mutex_);
+    ++stops_;
+    running = job_;
+  }
   if (!running || !running->running()) return said(200, "nothing is running");
   running->stop_now();
   return said(200, "stopped");
@@ -202,9 +207,14 @@ void TechnicianPage::end_live_view() {
 
 HttpResponse TechnicianPage::start(const json& asked) {
   const JobCommand command = job_command(asked, workspace_, rig_file_);
+  const int stops = [&] {
+    const std::scoped_lock lock(mutex_);
+    return stops_;
+  }();
   end_live_view();
   {
     const std::scoped_lock lock(mutex_);
+    if (stops_ != stops) throw Refused(409, "stopped before it began; start it again when it is safe");
     if (job_ && job_->running()) throw Refused(409, "a job is running; wait for it, or pause it");
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     const auto number = std::chrono::duration_cast<std::chrono::milliseconds>(now).count();

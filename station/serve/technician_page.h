@@ -69,6 +69,7 @@ class TechnicianPage {
   std::shared_ptr<Job> job_;
   std::string job_kind_;
   int jobs_ = 0;            // that were started
+  int stops_ = 0;           // emergency stops that were asked for; a job is not started over one
   std::string controller_;  // client in control; empty: nobody yet
 };
 

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <stdexcept>
@@ -10,6 +11,7 @@
 #include "station/bench/bench_fault.h"
 #include "station/bench/calibration_validity.h"
 #include "station/bench/drawing_operator.h"
+#include "station/bench/guarded_turntable.h"
 #include "station/bench/platform_memory.h"
 #include "station/bench/rig_devices.h"
 #include "station/documents/calibration_file.h"
@@ -37,20 +39,22 @@ StopWish wish() {
   return interrupts() == 0 ? StopWish::none : interrupts() == 1 ? StopWish::pause : StopWish::now;
 }
 
-// Ends the process at the second ctrl-C. The stop is on the disk before anything else. A platform that turns is given a
-// second to stand and to say where; nobody waits longer for a device that hangs.
-[[noreturn]] void stop_now(SessionFolder& session, RigDevices& devices) {
+// Ends the process at the second ctrl-C. The stop of a session under way is on the disk before anything else. A platform
+// that turns is given some seconds to stand and to say where; nobody waits longer for a device that hangs.
+[[noreturn]] void stop_now(SessionFolder* session, RigDevices& devices) {
   try {
-    session.append_last("stop", {{"outcome", state_name(RunState::aborted)}});
+    if (session) session->append_last("stop", {{"outcome", state_name(RunState::aborted)}});
   } catch (...) {
   }
   try {
     devices.turntable->stop();
-    for (int looks = 0; looks < 50 && devices.turntable->state() == rig::TurntableState::moving; ++looks)
+    for (int looks = 0; looks < 200 && devices.turntable->state() == rig::TurntableState::moving; ++looks)
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
   } catch (...) {
   }
-  std::fputs("threadstation: capture was stopped at once; go on with capture --resume\n", stderr);
+  std::fputs(session ? "threadstation: capture was stopped at once; go on with capture --resume\n"
+                     : "threadstation: the platform was stopped on its way back to 0; the session is complete\n",
+             stderr);
   ::_exit(1);
 }
 
@@ -108,16 +112,24 @@ RunState run(SessionFolder& session, RigDevices& devices, const SessionFile& ask
     options.settle_place = [&](double reading_rad, double differ_rad) {
       return ask_where_it_stands(request.asked, reading_rad, reading_rad + differ_rad / calibration.platform.scale);
     };
-  watch_interrupts(2);
+  watch_more_interrupts(2);
+  std::atomic<bool> taken = false;
   const StopOnInterrupt emergency(
-      [&] { display.note("pausing after the picture under way; ctrl-C again stops at once"); },
-      [&] { stop_now(session, devices); });
+      [&] {
+        if (!taken) display.note("pausing after the picture under way; ctrl-C again stops at once");
+      },
+      [&] { stop_now(taken ? nullptr : &session, devices); });
   std::unique_ptr<rig::Operator> drawing;
   if (asked.rig.operator_driver == "console") drawing = make_drawing_operator(*devices.person, *request.asked);
   const RunDevices run_devices{*devices.camera, *devices.turntable, drawing ? *drawing : *devices.person,
                                *devices.clock};
   const RunState state = run_session(session, run_devices, asked, calibration, request, options);
-  if (state == RunState::complete) leave_at_zero(asked.rig, *devices.turntable);
+  taken = state == RunState::complete;
+  try {
+    if (taken) leave_at_zero(asked.rig, *devices.turntable);
+  } catch (const Interrupted& stopped) {
+    display.note(stopped.what());  // nothing of the session is missing
+  }
   display.finish(last_line(state, session.path().string()));
   return state;
 }

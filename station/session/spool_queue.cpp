@@ -9,6 +9,7 @@
 #include "station/bench/bench_fault.h"
 #include "station/documents/disk/file_name.h"
 #include "station/documents/text_table.h"
+#include "station/output/interrupt.h"
 #include "station/session/record/session_folder.h"
 #include "station/session/record/verify.h"
 
@@ -119,6 +120,7 @@ std::vector<QueueResult> capture_queue(const std::filesystem::path& table, const
   std::vector<QueueResult> results;
   bool sound = true, stopped = false;  // the bench; the queue, by somebody
   for (const QueuedSpool& spool : read_queue(table)) {
+    if (stopped || interrupted()) break;
     QueueResult result{.spool = spool, .outcome = QueueOutcome::waiting, .problem = {}};
     const CaptureRequest one = request_for(request, spool);
     try {
@@ -142,7 +144,6 @@ std::vector<QueueResult> capture_queue(const std::filesystem::path& table, const
       result.problem = error.what();
     }
     results.push_back(result);
-    if (stopped) break;
   }
   return results;
 }

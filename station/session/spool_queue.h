@@ -42,9 +42,9 @@ struct QueueResult {
 
 // Captures each spool of the table, by `capture` and a copy of `request`. That asks for a new session without spool and
 // sample, and its `session` is the folder that holds all sessions. `next` asks the person for the next spool and says
-// whether to go on; empty: nobody is asked. The queue ends early when a session is paused or aborted, or `next` says
-// so; after a BenchFault nobody is asked for another spool. The same call goes on where it ended. Errors: those of
-// read_queue.
+// whether to go on; empty: nobody is asked. The queue ends early when a session is paused or aborted, when ctrl-C came,
+// or when `next` says so; after a BenchFault nobody is asked for another spool. The same call goes on where it ended.
+// Errors: those of read_queue.
 std::vector<QueueResult> capture_queue(const std::filesystem::path& table, const CaptureRequest& request,
                                        const std::function<bool(const QueuedSpool&)>& next,
                                        const std::function<RunState(const CaptureRequest&)>& capture = capture_session);

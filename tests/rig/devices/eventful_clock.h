@@ -2,9 +2,11 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "rig/devices/clock.h"
@@ -16,6 +18,7 @@ class EventfulClock final : public rig::Clock {
   double monotonic_s() override { return elapsed_s_; }
   std::string utc() override { return "2026-11-21T10:20:30.123Z"; }
   void sleep_s(double duration_s) override {
+    if (pace > 0) std::this_thread::sleep_for(std::chrono::duration<double>(duration_s * pace));
     elapsed_s_ += duration_s;
     if (planned_ && elapsed_s_ >= planned_->at_s) std::exchange(planned_, std::nullopt)->event();
   }
@@ -26,6 +29,8 @@ class EventfulClock final : public rig::Clock {
     planned_ = Planned{.at_s = elapsed_s_ + delay_s, .event = std::move(event)};
   }
   bool planned() const { return planned_.has_value(); }
+
+  double pace = 0;  // real seconds for each of its own, so that another thread can look on
 
  private:
   struct Planned {

@@ -37,7 +37,7 @@ struct ManualTurntable : testing::Test {
 }  // namespace
 
 TEST_F(ManualTurntable, KeepsTheContractOfTurntablesWhenThePersonConfirms) {
-  for (const rig::ContractRow& row : rig::check_turntable(with(std::string(100, '\n')), kDegree / 2))
+  for (const rig::ContractRow& row : rig::check_turntable(with(std::string(100, '\n')), kDegree / 2, false))
     EXPECT_TRUE(row.passed) << row.name << ": " << row.what;
 }
 

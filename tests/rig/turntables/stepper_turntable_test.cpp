@@ -30,17 +30,17 @@ using Rig = WiredBench<EventfulClock>;
 // A line on which something happens right before a write reaches the firmware.
 class WatchedLine final : public rig::ByteLine {
  public:
-  WatchedLine(std::unique_ptr<rig::ByteLine> line, std::function<void()> before_write)
+  WatchedLine(std::unique_ptr<rig::ByteLine> line, std::function<void(std::string_view)> before_write)
       : line_(std::move(line)), before_write_(std::move(before_write)) {}
   std::string read(double timeout_s) override { return line_->read(timeout_s); }
   void write(std::string_view bytes) override {
-    before_write_();
+    before_write_(bytes);
     line_->write(bytes);
   }
 
  private:
   std::unique_ptr<rig::ByteLine> line_;
-  std::function<void()> before_write_;
+  std::function<void(std::string_view)> before_write_;
 };
 
 // The line of a program that is killed: from then on nothing is written and nothing heard.
@@ -76,7 +76,7 @@ struct StepperTurntable : testing::TestWithParam<Protocol> {
       std::unique_ptr<rig::Turntable> table;
       int writes = 0;
       double angle_rad = 0, told_s = -1;
-      const auto before_write = [&] {
+      const auto before_write = [&](std::string_view) {
         if (writes >= 0 && ++writes == at) {
           writes = -1;  // the stop's own
           angle_rad = own.true_angle_rad();
@@ -492,6 +492,80 @@ TEST(GrblSettings, ReportsInWorkCoordinatesGiveTheSamePosition) {
   table->move_to(30 * kDegree);
   EXPECT_NEAR(rig.true_angle_rad(), 30 * kDegree, 1e-12);
   EXPECT_NEAR(table->angle_rad(), 30 * kDegree, 1e-12);
+}
+
+namespace {
+
+struct Heard {
+  int at_operation = 0;  // the first `command`
+  int after_stop = 0;    // so many more of them
+};
+
+// Homes and turns a stage that is stopped while the answer to the first `command` is awaited.
+Heard heard_of(const std::string& command, const rig::LineFaultPlan& faults) {
+  Rig rig(Protocol::zaber, rig::HomeBy::home_switch, faults);
+  Heard heard;
+  bool stopped = false;
+  std::unique_ptr<rig::Turntable> table;
+  const auto before_write = [&](std::string_view bytes) {
+    if (bytes.find(command) == std::string_view::npos) return;
+    heard.after_stop += stopped;
+    if (std::exchange(heard.at_operation, rig.port->operations() + 1) != 0) return;
+    rig.clock.plan(0, [&] {
+      table->stop();
+      stopped = true;
+    });
+  };
+  rig.open_line = [&] {
+    return std::make_unique<WatchedLine>(rig::open_simulated_line(rig.port, rig.clock), before_write);
+  };
+  table = rig.make_turntable();
+  EXPECT_THAT(refusal([&] {
+                table->home();
+                table->move_to(90 * kDegree);
+              }),
+              HasSubstr("was stopped"));
+  return heard;
+}
+
+}  // namespace
+
+// A program that is killed between the command and the stop behind it would leave a stage that turns unattended.
+TEST(ZaberStop, ACommandThatGotNoAnswerIsNotRepeatedAfterAStop) {
+  for (const std::string command : {"home", "move abs"}) {
+    const int at = heard_of(command, {}).at_operation;
+    EXPECT_EQ(heard_of(command, {{.at_operation = at, .fault = rig::LineFault::lost_reply}}).after_stop, 0) << command;
+  }
+}
+
+// A late "ok" of something else says that homing has ended; a stop must not be the one that homing ignores.
+TEST(GrblStop, StopsAHomingThatSeemedToHaveEnded) {
+  Rig rig(Protocol::grbl);
+  struct FalseOk final : rig::ByteLine {
+    explicit FalseOk(std::unique_ptr<rig::ByteLine> to) : line(std::move(to)) {}
+    std::string read(double timeout_s) override {
+      return homes && !std::exchange(said, true) ? "ok\r\n" : line->read(timeout_s);
+    }
+    void write(std::string_view bytes) override {
+      homes = homes || bytes.find("$H") != std::string_view::npos;
+      line->write(bytes);
+    }
+    std::unique_ptr<rig::ByteLine> line;
+    bool homes = false, said = false;
+  };
+  rig.open_line = [&] { return std::make_unique<FalseOk>(rig::open_simulated_line(rig.port, rig.clock)); };
+  const auto table = rig.make_turntable();
+  double told_rad = 0;
+  rig.clock.plan(0.5, [&] {
+    rig.port->transmit();
+    told_rad = rig.true_angle_rad();
+    table->stop();
+  });
+  EXPECT_THAT(refusal([&] { table->home(); }), HasSubstr("home it again"));
+  rig.clock.sleep_s(5);
+  rig.port->transmit();
+  EXPECT_LT(told_rad, 50 * kDegree);
+  EXPECT_NEAR(rig.true_angle_rad(), told_rad, 5 * kDegree);
 }
 
 TEST(ZaberSetup, NeedsTheStagesOwnHome) {

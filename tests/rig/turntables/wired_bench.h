@@ -65,7 +65,7 @@ struct WiredBench {
  private:
   static ClockKind make_clock() {
     if constexpr (std::is_same_v<ClockKind, rig::SimulatedClock>)
-      return rig::SimulatedClock(1.8e9, 0.005);  // another thread may look on
+      return rig::SimulatedClock(1.8e9, 0.02);  // another thread may look on
     else
       return {};
   }

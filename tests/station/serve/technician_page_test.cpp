@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <future>
 #include <string>
 #include <vector>
 
@@ -95,7 +96,7 @@ class TurnedByHand : public TechnicianPage {
 
 TEST_F(TurnedByHand, IsCheckedFromThePage) {
   const std::vector<std::string> asked = attend({{"client", "me"}, {"kind", "check"}});
-  ASSERT_GT(asked.size(), 10U);
+  ASSERT_GE(asked.size(), 10U);
   EXPECT_NE(asked[1].find("Turn the platform to 30.0 deg"), std::string::npos) << asked[1];
   EXPECT_EQ(get("/api/bench").at("devices")[0].at("passed"), true);
 }
@@ -213,6 +214,29 @@ TEST_F(TechnicianPage, ALiveViewEndsForTheNextJob) {
   const HttpResponse next = post("/api/job", {{"client", "me"}, {"kind", "calibrate"}, {"name", "monday"}});
   EXPECT_EQ(next.status, 200) << next.body;
   EXPECT_EQ(job().at("kind"), "calibrate");
+}
+
+// The next job waits for the live view to end; its program here ends when the test says so.
+TEST_F(TechnicianPage, AStopWhileAJobIsBeingStartedKeepsItFromStarting) {
+  const auto file = [&](const char* name) { return folder_ / name; };
+  std::ofstream(file("program")) << "#!/bin/sh\ncd \"${0%/*}\"\n"
+                                    "if [ $1 != preview ]; then touch $1; exit; fi\n"
+                                    "trap 'touch told' INT\ntouch shown\n"
+                                    "until [ -e over ]; do sleep 0.02; done\n";
+  std::filesystem::permissions(file("program"), std::filesystem::perms::owner_all);
+  page_ = std::make_unique<station::TechnicianPage>(
+      file("rig.json"), file("bench"), [] {}, file("program"));
+  post("/api/control", {{"client", "me"}});
+  ASSERT_EQ(post("/api/job", {{"client", "me"}, {"kind", "preview"}}).status, 200);
+  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(file("shown")); }));
+  auto next = std::async(std::launch::async, [&] { return post("/api/job", {{"client", "me"}, {"kind", "home"}}); });
+  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(file("told")); }));
+  EXPECT_EQ(post("/api/stop", {{"client", "a watcher"}}).status, 200);
+  std::ofstream(file("over")) << "";
+  EXPECT_EQ(next.get().status, 409);
+  ASSERT_TRUE(eventually([&] { return job().at("running") == false; }));
+  EXPECT_EQ(job().at("kind"), "preview");
+  EXPECT_FALSE(std::filesystem::exists(file("home")));
 }
 
 }  // namespace

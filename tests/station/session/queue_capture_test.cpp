@@ -11,6 +11,8 @@
 
 #include "rig/devices/clock.h"
 #include "station/documents/reader.h"
+#include "station/output/interrupt.h"
+#include "station/session/capture_session.h"
 #include "tests/places.h"
 #include "tests/station/commands/program.h"
 #include "tests/station/commands/simulated_hardware.h"
@@ -104,6 +106,18 @@ TEST_F(QueueCapture, KilledInASpoolItCapturesThatOneToItsEndAndTheRest) {
   EXPECT_EQ(rest.status, 0) << rest.error;
   EXPECT_THAT(rest.out, HasSubstr("4711-A-1: captured to its end\n4712: captured\n4713: captured\n"));
   for (const char* session : {"4711-A-1", "4712", "4713"}) EXPECT_TRUE(verifies(session)) << session;
+}
+
+TEST_F(QueueCapture, CtrlCWhileTheDevicesAreConnectedPausesTheSession) {
+  station::watch_interrupts(2);
+  ::raise(SIGINT);
+  station::CaptureRequest request{
+      .session = folder / "one",
+      .new_session = station::NewSession{
+          .rig = folder / "rig.json", .calibration = folder / "calibration", .spool = fixture("spools/silk_red")}};
+  request.progress_style = station::ProgressStyle::quiet;
+  EXPECT_EQ(station::capture_session(request), station::RunState::paused);
+  station::watch_interrupts();
 }
 
 std::size_t count(const std::string& text, const std::string& word) {

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <csignal>
 
 #include "station/bench/bench_fault.h"
 #include "station/documents/disk/file_name.h"
+#include "station/output/interrupt.h"
 #include "station/session/spool_queue.h"
 #include "tests/places.h"
 #include "tests/station/session/capture/fakes.h"
@@ -136,6 +138,23 @@ TEST_F(FakeQueue, WhatIsCompleteAlreadyDoesNotWaitForTheBench) {
   const auto lost = run([](const std::string&) { throw BenchFault("the camera is gone"); });
   EXPECT_THAT(outcomes(lost), testing::ElementsAre(bench_fault, waiting, kept));
   EXPECT_THAT(pause_line(lost).value_or(""), HasSubstr("done: 4713; waiting: 4711, 4712;"));
+}
+
+TEST_F(FakeQueue, CtrlCAsksForNoFurtherSpoolWhateverItEnds) {
+  using enum QueueOutcome;
+  watch_interrupts();
+  const auto complete = run([](const std::string&) {
+    if (!interrupted()) std::raise(SIGINT);
+  });
+  EXPECT_THAT(outcomes(complete), testing::ElementsAre(captured));
+  watch_interrupts();
+  const auto failed_then = run([](const std::string&) {
+    std::raise(SIGINT);
+    throw std::runtime_error("the platform was stopped");
+  });
+  EXPECT_THAT(outcomes(failed_then), testing::ElementsAre(kept, failed));
+  EXPECT_THAT(asked, testing::ElementsAre("4712"));
+  watch_interrupts();
 }
 
 TEST_F(FakeQueue, AFaultOfOneSpoolHoldsUpNoOther) {
