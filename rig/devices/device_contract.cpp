@@ -121,7 +121,7 @@ Stop stop_on_the_way(Turntable& turntable) {
 }
 
 // A very quick device may arrive before the stop reaches it, and this thread may be held up between a reading and its
-// stop, so there are several tries. A platform that a hand turns is never seen on its way.
+// stop, so there are several tries.
 Verdict stopping(Turntable& turntable, double tolerance_rad, bool has_motor) {
   if (!has_motor) return {true, "a hand turns it, there is nothing to stop"};
   Stop stop;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -291,7 +292,7 @@ class SimulatedGrbl final : public SimulatedController {
     }
     state_ = State::home;
     homing_ = true;
-    motor_.go_to(motor_.counted_at_true_zero(), motor_.full_speed_deg_s());
+    motor_.go_to(motor_.counted_at_true_zero(), std::min(settings_.at(25), settings_.at(110)) / 60);
     return std::nullopt;
   }
 

@@ -1,11 +1,13 @@
 #include "rig/simulated/simulated_grbl_settings.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <string_view>
 
 #include "rig/turntables/grbl_code.h"
 #include "rig/turntables/number_text.h"
+#include "rig/turntables/stopping.h"
 
 namespace rig {
 
@@ -28,7 +30,7 @@ SimulatedGrblSettings::SimulatedGrblSettings(const SimulatedMotor& motor, bool w
              {22, with_switch ? 1.0 : 0.0},
              {23, 0},
              {24, deg_min / 10},
-             {25, deg_min},
+             {25, std::min(deg_min, 60 * stoppable_speed_deg_s(motor.acceleration_deg_s2()))},
              {26, 250},
              {27, 2},
              {30, 1000},

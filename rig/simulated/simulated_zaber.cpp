@@ -8,12 +8,14 @@
 
 #include "rig/simulated/simulated_controller.h"
 #include "rig/turntables/number_text.h"
+#include "rig/turntables/stopping.h"
 #include "rig/turntables/zaber_reply.h"
 
 namespace rig {
 namespace {
 
 constexpr int kDevice = 1, kAxis = 1;
+constexpr const char* kHomingSpeed = "limit.approach.maxspeed";
 constexpr double kSpeedUnit = 1.6384,
                  kAccelerationUnit = 1.6384e-4;  // of a microstep per second, and per second squared
 
@@ -112,12 +114,24 @@ class SimulatedZaber final : public SimulatedController {
     else if (setting == "limit.cycle.dist")
       reply(command, std::to_string(std::llround(motor_.steps_per_deg() * 360)));
     else if (setting == "maxspeed")
-      reply(command, std::to_string(std::lround(motor_.full_speed_deg_s() * motor_.steps_per_deg() * kSpeedUnit)));
+      reply(command, std::to_string(stored(motor_.full_speed_deg_s())));
+    else if (setting == kHomingSpeed)
+      reply(command, std::to_string(homing_speed_));
     else if (setting == "accel")
       reply(command,
             std::to_string(std::lround(motor_.acceleration_deg_s2() * motor_.steps_per_deg() * kAccelerationUnit)));
     else
       reply(command, "BADCOMMAND", false);
+  }
+
+  // A speed as the stage stores it.
+  long stored(double speed_deg_s) const { return std::lround(speed_deg_s * motor_.steps_per_deg() * kSpeedUnit); }
+
+  void set(const Command& command) {
+    const auto value = number_from<long>(command.words[2]);
+    const bool known = command.words[1] == kHomingSpeed && value && *value > 0;
+    if (known) homing_speed_ = *value;
+    reply(command, known ? "0" : "BADDATA", known);
   }
 
   void act(const Command& command) {
@@ -130,8 +144,12 @@ class SimulatedZaber final : public SimulatedController {
     } else if (words[0] == "home" && words.size() == 1) {
       stalled_ = interrupted_ = false;
       homing_ = true;
-      motor_.go_to(motor_.counted_at_true_zero(), motor_.full_speed_deg_s());
+      motor_.go_to(motor_.counted_at_true_zero(),
+                   std::min(static_cast<double>(homing_speed_) / kSpeedUnit / motor_.steps_per_deg(),
+                            motor_.full_speed_deg_s()));
       reply(command, "0");
+    } else if (words[0] == "set" && words.size() == 3) {
+      set(command);
     } else if (words[0] == "move" && (words.size() == 3 || words.size() == 4) &&
                (words[1] == "abs" || words[1] == "rel")) {
       move(command);
@@ -157,6 +175,7 @@ class SimulatedZaber final : public SimulatedController {
   }
 
   std::string line_;
+  long homing_speed_ = stored(stoppable_speed_deg_s(motor_.acceleration_deg_s2()));
   bool homed_ = false, homing_ = false, stalled_ = false, interrupted_ = false;
 };
 

@@ -17,12 +17,12 @@
 #include "rig/turntables/grbl_reply.h"
 #include "rig/turntables/grbl_settings.h"
 #include "rig/turntables/line_frames.h"
-#include "rig/turntables/stopping.h"
 
 namespace rig {
 namespace {
 
 constexpr int kMostTries = 4;        // of a question: asked once and repeated three times
+constexpr double kMuteS = 0.3;       // a board that is silent for so long does not hear
 constexpr double kQuietS = 0.1;      // a silence of this length: nothing more is coming
 constexpr double kHoldTimeoutS = 3;  // from the hold to standing still
 constexpr double kLookS = 0.02;      // the wait per look for homing's answer, which may come much later
@@ -46,6 +46,7 @@ class GrblController final : public MotionController, public GrblSettingsPort {
   // Asks the controller who it is; its settings may be wrong until check_settings().
   GrblController(std::shared_ptr<ByteLine> line, Clock& clock, const ControllerSetup& setup)
       : line_(std::move(line)), clock_(clock), setup_(setup) {
+    hold();
     reset();
     identify();
   }
@@ -55,7 +56,8 @@ class GrblController final : public MotionController, public GrblSettingsPort {
     const GrblSettings found = read_settings();
     require_grbl_settings(found, setup_, firmware_);
     identity_.steps_per_deg = found.at(100);
-    identity_.speed_deg_s = stoppable_speed(found);
+    boots_locked_ = found.contains(22) && found.at(22) != 0;
+    identity_.speed_deg_s = grbl_stoppable_speed_deg_s(found);
     // Positions come with three decimals.
     identity_.reading_tolerance_steps = static_cast<int>(std::floor(0.0005 * found.at(100) + 0.5));
     on_guard_ = true;
@@ -87,6 +89,7 @@ class GrblController final : public MotionController, public GrblSettingsPort {
     on_guard_ = false;  // an alarm that homing will clear is no error
     const bool locked = ask_status().state == GrblState::alarm;
     if (setup_.home_by == HomeBy::here) {
+      identity_.count_lost = identity_.count_lost || (locked && !boots_locked_);
       if (locked) ask("$X");
       on_guard_ = true;
       return;
@@ -164,6 +167,7 @@ class GrblController final : public MotionController, public GrblSettingsPort {
       noise_ = noise->text;
     } else if (const auto* alarm = std::get_if<GrblAlarm>(&reply)) {
       alarm_code_ = alarm->code;
+      identity_.count_lost = true;
       if (on_guard_) throw_alarm();
     } else if (is<GrblBanner>(reply)) {
       alarm_code_.reset();
@@ -182,6 +186,23 @@ class GrblController final : public MotionController, public GrblSettingsPort {
   [[noreturn]] void throw_no_reply(const std::string& message) const {
     if (alarm_code_) throw_alarm();
     throw NoReply(message);
+  }
+
+  // Ends what an earlier program left turning, before the reset: the count is kept when the motor stands. A board that
+  // says nothing starts anew, or is none.
+  void hold() {
+    const double until_s = clock_.monotonic_s() + kHoldTimeoutS;
+    line_->write("!");
+    for (double heard_s = clock_.monotonic_s(); clock_.monotonic_s() < std::min(until_s, heard_s + kMuteS);) {
+      std::optional<GrblState> state;
+      line_->write("?");
+      listen(kPollS, [&](const GrblReply& reply) {
+        if (const auto* status = std::get_if<GrblStatus>(&reply)) state = status->state;
+        return state.has_value();
+      });
+      if (state) heard_s = clock_.monotonic_s();
+      if (state && *state != GrblState::run && *state != GrblState::jog && *state != GrblState::hold_moving) return;
+    }
   }
 
   // Ends any motion and clears alarms. GRBL keeps its position if the motor stood still.
@@ -250,15 +271,6 @@ class GrblController final : public MotionController, public GrblSettingsPort {
     throw std::runtime_error(
         "the device on the turntable's port started like GRBL and did not say its version; it "
         "needs GRBL 1.1, grblHAL or FluidNC");
-  }
-
-  // By its own limits of speed ($110, deg/min) and acceleration ($120, deg/s^2).
-  static double stoppable_speed(const GrblSettings& found) {
-    const auto fastest = found.find(110), acceleration = found.find(120);
-    const bool known = acceleration != found.end() && acceleration->second > 0;
-    const double speed_deg_s = known ? stoppable_speed_deg_s(acceleration->second) : kSureSpeedDegS;
-    const bool limited = fastest != found.end() && fastest->second > 0;
-    return limited ? std::min(speed_deg_s, fastest->second / kSecondsPerMinute) : speed_deg_s;
   }
 
   GrblStatus ask_status() {
@@ -346,6 +358,7 @@ class GrblController final : public MotionController, public GrblSettingsPort {
   std::string noise_;                                   // the last noise heard
   std::optional<int> alarm_code_;                       // since the last reset
   bool on_guard_ = false;                               // true: an alarm or a banner means that the position is lost
+  bool boots_locked_ = false;                           // an alarm after a reset is no news
   bool home_seen_ = false;                              // homing has begun
   std::atomic<bool> homing_ = false, stopped_ = false;  // stop() comes from other threads
 };

@@ -6,11 +6,14 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "rig/turntables/stopping.h"
+
 namespace rig {
 namespace {
 
-constexpr double kSameRatio = 1e-4;            // rounding when steps per degree are written down in two places
-constexpr double kWrittenRatio = 1e-5;         // rounding of what the firmware prints with three decimals
+constexpr double kSameRatio = 1e-4;     // rounding when steps per degree are written down in two places
+constexpr double kWrittenRatio = 1e-5;  // rounding of what the firmware prints with three decimals
+constexpr double kSecondsPerMinute = 60;
 constexpr double kTravelDeg = 360;             // 1.5 x $130 passes the switch even when it begins just behind it
 constexpr int kHomingOn = 1, kSingleAxis = 2;  // bits of grblHAL's $22; other firmware has the first alone
 
@@ -33,12 +36,11 @@ struct Rows {
   }
 };
 
+// The firmware ends a homing that is stopped without slowing down, and the platform's own weight takes it further.
 void add_homing_speed(Rows& rows, int number, const char* meaning, double part_of_largest) {
-  const double largest = rows.at(110);
-  if (!(largest > 0)) return;
-  const double now = rows.at(number);
+  const double largest = grbl_stoppable_speed_deg_s(rows.found) * kSecondsPerMinute, now = rows.at(number);
   rows.add(number, meaning, now > 0 && now <= largest * (1 + kWrittenRatio), largest * part_of_largest,
-           "above 0, at most " + grbl_number(largest) + " ($110)");
+           "above 0, at most " + grbl_number(largest) + ", to be stopped within 5 degrees");
 }
 
 void add_homing(Rows& rows, const GrblFirmware& firmware) {
@@ -90,6 +92,14 @@ std::vector<GrblSettingRow> grbl_setting_rows(const GrblSettings& found, const C
              "at least " + grbl_number(kTravelDeg));
   }
   return rows.rows;
+}
+
+double grbl_stoppable_speed_deg_s(const GrblSettings& found) {
+  const auto fastest = found.find(110), acceleration = found.find(120);
+  const bool known = acceleration != found.end() && acceleration->second > 0;
+  const double speed_deg_s = known ? stoppable_speed_deg_s(acceleration->second) : kSureSpeedDegS;
+  const bool limited = fastest != found.end() && fastest->second > 0;
+  return limited ? std::min(speed_deg_s, fastest->second / kSecondsPerMinute) : speed_deg_s;
 }
 
 std::optional<std::string> grbl_homing_command(const ControllerSetup& setup, const GrblFirmware& firmware) {

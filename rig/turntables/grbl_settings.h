@@ -42,6 +42,10 @@ struct GrblSettingRow {
 std::vector<GrblSettingRow> grbl_setting_rows(const GrblSettings& found, const ControllerSetup& setup,
                                               const GrblFirmware& firmware);
 
+// The speed from which a stop ends in time (stopping.h), by the controller's own limits of speed ($110, deg/min) and
+// acceleration ($120, deg/s^2).
+double grbl_stoppable_speed_deg_s(const GrblSettings& found);
+
 // The command that homes the platform, "$HX" or "$H"; nothing when no command homes it without the other axes.
 std::optional<std::string> grbl_homing_command(const ControllerSetup& setup, const GrblFirmware& firmware);
 

@@ -34,6 +34,7 @@ struct ControllerIdentity {
   double steps_per_deg = 0;         // as the controller is set up
   double speed_deg_s = 0;           // of its moves; a stop ends within 5 degrees (stopping.h)
   int reading_tolerance_steps = 0;  // by how much a reported position may be rounded
+  bool count_lost = false;          // it reported an alarm since it was opened: its count says nothing
   int repeated = 0;                 // number of questions asked again because the answer was noise or missing
 };
 

@@ -172,20 +172,31 @@ class StepperTurntable final : public Turntable {
     state_ = TurntableState::moving;
   }
 
-  // Without a home switch a platform that was left somewhere is turned back from there. A controller whose board was
+  // Why the place that is remembered says nothing about the present one; empty: it does. A controller whose board was
   // reset counts from 0; then the place is known only if the platform stood.
+  std::string doubt(const PlatformPlace& left, std::int64_t counted) {
+    const ControllerIdentity identity = controller()->identity();
+    if (!left.doubt.empty()) return left.doubt;
+    if (identity.count_lost) return "its controller reported an alarm";
+    if (counted == 0)
+      return left.turning ? "it was turning when the last program ended, and its controller has been reset since" : "";
+    const bool moved = !left.turning && std::abs(counted - left.steps) > identity.reading_tolerance_steps;
+    return moved ? "its controller counts otherwise than when the last program left it" : "";
+  }
+
+  // Without a home switch a platform that was left somewhere is turned back from there.
   void return_from_where_it_was_left(std::int64_t counted) {
     const std::optional<PlatformPlace> left = setup_.memory->recall();
     zero_known_ = true;
     if (!left) return keep_place(counted, false);
     const bool reset = counted == 0 && left->steps != 0;
-    if (left->turning && counted == 0) {
+    if (const std::string why = doubt(*left, counted); !why.empty()) {
       zero_known_ = false;
       state_ = TurntableState::unknown_position;
-      if (!setup_.memory->ask_for_mark("the last program ended while the platform was turning"))
-        throw PositionLost(
-            "the platform was turning when the last program ended, and its controller has been reset since; turn the "
-            "platform to its mark, then say so with \"threadstation home --mark\"");
+      setup_.memory->keep({left->steps, left->angle_rad, left->turning, why});  // the next program hears no alarm
+      if (!setup_.memory->ask_for_mark(why))
+        throw PositionLost("nobody knows where the platform stands: " + why +
+                           "; turn it to its mark, then say so with \"threadstation home --mark\"");
       zero_steps_ = standing_steps();
       zero_known_ = true;
       state_ = TurntableState::idle;

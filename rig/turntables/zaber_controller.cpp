@@ -104,8 +104,8 @@ class ZaberController final : public MotionController {
     return found;
   }
 
-  // Repeats a question that gets no answer. Moves are absolute, so repeating them does no harm. Nothing when `turns` and
-  // a stop was asked for: what begins a motion is not written after it, and status() says "held".
+  // Repeats a question that gets no answer. Moves are absolute, so repeating them does no harm. Nothing when `turns`
+  // and a stop was asked for: what begins a motion is not written after it, and status() says "held".
   std::optional<ZaberReply> try_to_ask(const std::string& command, bool turns) {
     for (int tries = 0; tries < kMostTries; ++tries) {
       if (turns && stopped_) return std::nullopt;
@@ -140,8 +140,9 @@ class ZaberController final : public MotionController {
     return reply;
   }
 
-  double ask_number(const std::string& setting) {
-    const ZaberReply reply = ask("get " + setting);
+  double ask_number(const std::string& setting) { return number_of(setting, ask("get " + setting)); }
+
+  static double number_of(const std::string& setting, const ZaberReply& reply) {
     const auto value = number_from<double>(reply.data);
     if (!value) {
       throw std::runtime_error("the turntable was asked for its " + setting + " and answered \"" +
@@ -170,7 +171,8 @@ class ZaberController final : public MotionController {
     limit_speed(number_from<double>(version).value_or(0));
   }
 
-  // Older firmware moves at the speed that is stored in the stage, which is not changed behind its owner's back.
+  // Older firmware moves at the speed that is stored in the stage, and every stage homes at one: neither is changed
+  // behind its owner's back.
   void limit_speed(double version) {
     const double unit = kSpeedUnit * identity_.steps_per_deg;
     const double stored_deg_s = ask_number("maxspeed") / unit;
@@ -179,11 +181,19 @@ class ZaberController final : public MotionController {
     identity_.speed_deg_s = std::min(stored_deg_s, most_deg_s);
     const std::string most = std::to_string(static_cast<long>(most_deg_s * unit));
     if (stored_deg_s <= most_deg_s) return;
-    if (version < kTakesSpeed) {
-      throw std::runtime_error("the turntable turns at " + std::to_string(stored_deg_s) +
-                               " deg/s, too fast to be stopped within 5 degrees; send \"set maxspeed " + most + "\" (" +
-                               std::to_string(most_deg_s) + " deg/s)");
-    }
+    const auto refuse = [&](const std::string& does, double speed_deg_s, const std::string& setting) {
+      throw std::runtime_error("the turntable " + does + " at " + std::to_string(speed_deg_s) +
+                               " deg/s, too fast to be stopped within 5 degrees; send \"set " + setting + " " + most +
+                               "\" (" + std::to_string(most_deg_s) + " deg/s)");
+    };
+    if (version < kTakesSpeed) refuse("turns", stored_deg_s, "maxspeed");
+    // Some stages do not let everybody see the speed at which they home; it is maxspeed at most.
+    const std::string setting = "limit.approach.maxspeed";
+    const ZaberReply approach = *try_to_ask("get " + setting, false);
+    const double homes_deg_s =
+        approach.accepted ? std::min(stored_deg_s, number_of(setting, approach) / unit) : stored_deg_s;
+    if (homes_deg_s > most_deg_s * (1 + kSameRatio))
+      refuse("looks for its home", homes_deg_s, approach.accepted ? setting : "maxspeed");
     move_speed_ = " " + most;
   }
 

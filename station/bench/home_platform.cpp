@@ -1,5 +1,7 @@
 #include "station/bench/home_platform.h"
 
+#include <optional>
+
 #include "station/bench/platform_memory.h"
 #include "station/bench/rig_devices.h"
 #include "station/output/interrupt.h"
@@ -9,8 +11,9 @@ namespace station {
 double home_platform(const HomeRequest& request) {
   watch_interrupts();
   const RigFile rig = read_rig(request.rig);
-  if (request.stands_at_mark) forget_platform(platform_memory_file(rig));
+  const auto memory = request.stands_at_mark ? std::optional(platform_memory_file(rig)) : std::nullopt;
   const RigDevices devices = open_turntable(rig, request.asked);
+  if (memory) forget_platform(*memory);  // not before: somebody may look for the turntable first, and turn it
   devices.turntable->home();
   return devices.turntable->angle_rad();
 }

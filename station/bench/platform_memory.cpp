@@ -1,5 +1,6 @@
 #include "station/bench/platform_memory.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <stdexcept>
@@ -37,17 +38,20 @@ class FileMemory final : public rig::PlatformMemory {
     place.steps = static_cast<std::int64_t>(reader.number("steps", -1e9, 1e9));
     place.angle_rad = reader.number("angle_deg", -720, 720) * kDegree;
     place.turning = reader.flag("turning");
+    if (reader.has("doubt")) place.doubt = reader.text("doubt");
     reader.finish();
     return place;
   }
 
   void keep(const rig::PlatformPlace& place) override {
     fs::create_directories(file_.parent_path());
-    write_json_file(file_, {{"format", std::string("threadstation/") + kKind},
+    nlohmann::json document{{"format", std::string("threadstation/") + kKind},
                             {"version", kVersion},
                             {"steps", place.steps},
                             {"angle_deg", place.angle_rad / kDegree},
-                            {"turning", place.turning}});
+                            {"turning", place.turning}};
+    if (!place.doubt.empty()) document["doubt"] = place.doubt;
+    write_json_file(file_, document);
   }
 
   bool ask_for_mark(const std::string& why) override {
@@ -74,11 +78,22 @@ fs::path platform_memory_file(const RigFile& rig) {
     throw std::runtime_error(
         "rig \"" + rig.name +
         "\" has no turntable whose place is remembered: it finds its home by itself or is turned by hand");
-  const rig::SerialPortChoice& port = rig.turntable_wire->port;
-  std::string name = port.usb_serial.empty() ? port.port : port.usb_serial;
+  const bool serial = rig.turntable_wire->line == TurntableWire::Line::serial;
+  std::string name =
+      lasting_name(rig.turntable_wire->port, serial ? rig::find_serial_ports() : std::vector<rig::FoundDevice>());
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '-') c = '_';
   return state_folder() / ("platform" + (name.starts_with('_') ? name : "_" + name) + ".json");
+}
+
+std::string lasting_name(const rig::SerialPortChoice& port, const std::vector<rig::FoundDevice>& found) {
+  std::error_code nowhere;
+  const std::string device = fs::canonical(port.port, nowhere).string();
+  const auto same = std::ranges::find_if(found, [&](const rig::FoundDevice& one) {
+    return port.usb_serial.empty() ? one.port == device : one.serial == port.usb_serial;
+  });
+  if (same != found.end()) return same->recommended;
+  return port.usb_serial.empty() ? port.port : port.usb_serial;
 }
 
 std::shared_ptr<rig::PlatformMemory> remember_platform(const fs::path& file, rig::AskedPerson* asked) {

@@ -1,13 +1,17 @@
 // The place where a turntable without a home switch was left, in a file that the next program reads.
 //
 // A platform stays where it is whoever starts the next program, so the file belongs to the turntable and not to a
-// folder of sessions: $XDG_STATE_HOME/threadstation (~/.local/state/threadstation), one file for each port. Its key
-// "turning" is true when the program was ended in the middle of a move.
+// folder of sessions: $XDG_STATE_HOME/threadstation (~/.local/state/threadstation), one file for each port, whatever link
+// to it is used. Its key "turning" is true when the program was ended in the middle of a move; "doubt", where it is there,
+// says why nobody knows where the platform stands.
 #pragma once
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
+#include "rig/devices/detect.h"
 #include "rig/people/asked_person.h"
 #include "rig/turntables/stepper_turntable.h"
 #include "station/documents/rig_file.h"
@@ -20,6 +24,9 @@ bool remembers_its_place(const RigFile& rig);
 
 // The file for a rig's turntable. Throws std::runtime_error when the rig names no port or there is no home folder.
 std::filesystem::path platform_memory_file(const RigFile& rig);
+
+// The name under which a port is remembered: the one that `found` recommends for it, however the rig file names it.
+std::string lasting_name(const rig::SerialPortChoice& port, const std::vector<rig::FoundDevice>& found);
 
 // What `file` remembers. `asked`, who must outlive the memory, turns the platform to its mark when the place is not
 // known; nobody does where it is null. Reading refuses a damaged file with std::runtime_error.

@@ -39,8 +39,8 @@ StopWish wish() {
   return interrupts() == 0 ? StopWish::none : interrupts() == 1 ? StopWish::pause : StopWish::now;
 }
 
-// Ends the process at the second ctrl-C. The stop of a session under way is on the disk before anything else. A platform
-// that turns is given some seconds to stand and to say where; nobody waits longer for a device that hangs.
+// Ends the process at the second ctrl-C. The stop of a session under way is on the disk before anything else. A
+// platform that turns is given some seconds to stand and to say where; nobody waits longer for a device that hangs.
 [[noreturn]] void stop_now(SessionFolder* session, RigDevices& devices) {
   try {
     if (session) session->append_last("stop", {{"outcome", state_name(RunState::aborted)}});

@@ -6,6 +6,7 @@
 #include "rig/devices/device_contract.h"
 #include "rig/turntables/grbl_settings.h"
 #include "tests/rig/turntables/documented_bench.h"
+#include "tests/rig/turntables/ended_program.h"
 #include "tests/rig/turntables/wired_bench.h"
 
 namespace {
@@ -99,7 +100,7 @@ TEST(DocumentedTurntable, FindsItsHomeFromAnywhere) {
 TEST(DocumentedTurntable, AsItComesIsRefusedAtOnceWithAllThatMustDiffer) {
   DocumentedBench bench(DocumentedBench::as_it_comes());
   const std::string said = refusal([&] { bench.make_turntable(); });
-  EXPECT_THAT(said, AllOf(HasSubstr("type: $1=255, $22=1, $100=40, $130=360"), HasSubstr("homes Z first"),
+  EXPECT_THAT(said, AllOf(HasSubstr("type: $1=255, $22=1, $25=480, $100=40, $130=360"), HasSubstr("homes Z first"),
                           testing::Not(HasSubstr("alarm"))));
   EXPECT_THAT(bench.board.log(), testing::IsEmpty());
 }
@@ -160,6 +161,63 @@ TEST(DocumentedTurntable, WithoutASwitchIsHomeWhereItStands) {
   table->home();
   table->move_to(30 * kDegree);
   EXPECT_NEAR(bench.board.platform_deg(), 80, 1e-9);
+}
+
+namespace {
+
+// A board without a home switch that its port does not reset, with its mark where it stands.
+struct KeptBoard : DocumentedBench {
+  static DocumentedGrblOptions options() {
+    auto options = as_it_comes();
+    options.resets_when_opened = false;
+    return options;
+  }
+  KeptBoard() : DocumentedBench(options(), {{1, 255}, {100, 40}, {110, 1800}, {120, 150}}) {
+    setup.home_by = stepper.home_by = rig::HomeBy::here;
+    stepper.memory = memory;
+  }
+  std::unique_ptr<rig::Turntable> make_turntable() {
+    return rig::make_stepper_turntable(
+        [this] { return rig::connect_grbl(std::make_unique<MortalLine>(board.open(), clock, killed), clock, setup); },
+        clock, stepper);
+  }
+  // Kills the program in a move; the platform turns on for as long as its leash is.
+  void kill_on_the_way() {
+    auto table = make_turntable();
+    table->home();
+    clock.plan(2, [this] {
+      killed = true;
+      throw std::runtime_error("killed");
+    });
+    EXPECT_THAT(refusal([&] { table->move_to(90 * kDegree); }), HasSubstr("killed"));
+    table.reset();
+    EXPECT_TRUE(board.turning());
+    killed = false;
+  }
+  std::shared_ptr<Memory> memory = std::make_shared<Memory>();
+  std::atomic<bool> killed = false;
+};
+
+}  // namespace
+
+TEST(DocumentedTurntable, ThatAKilledProgramLeftTurningIsHeldBeforeItsResetAndTurnedBack) {
+  KeptBoard bench;
+  bench.kill_on_the_way();
+  bench.make_turntable()->home();
+  EXPECT_NEAR(bench.board.platform_deg(), 50, 1e-9);
+  EXPECT_EQ(bench.memory->asked, 0);
+}
+
+// Something else than this program has reset it meanwhile.
+TEST(DocumentedTurntable, WhoseCountAnAlarmHasSpoiltIsNotBelieved) {
+  KeptBoard bench;
+  bench.kill_on_the_way();
+  bench.board.open()->write("\x18");
+  EXPECT_THAT(refusal([&] { bench.make_turntable()->home(); }),
+              AllOf(HasSubstr("reported an alarm"), HasSubstr("threadstation home --mark")));
+  bench.memory->turn_to_mark = [] {};
+  bench.make_turntable()->home();
+  EXPECT_EQ(bench.memory->asked, 2);
 }
 
 TEST(DocumentedTurntable, IsSetUpWithWhatItNeeds) {

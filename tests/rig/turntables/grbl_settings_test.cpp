@@ -35,7 +35,7 @@ rig::GrblSettings as_they_come() {
 
 rig::GrblSettings right() {
   rig::GrblSettings settings = as_they_come();
-  for (const auto& [number, value] : rig::GrblSettings{{1, 255}, {22, 1}, {100, 40}, {130, 360}})
+  for (const auto& [number, value] : rig::GrblSettings{{1, 255}, {22, 1}, {25, 480}, {100, 40}, {130, 360}})
     settings[number] = value;
   return settings;
 }
@@ -65,7 +65,8 @@ std::string said_with(int number, double value) {
 TEST(GrblSettingsNeeded, OfAControllerAsItComesAreAllSaidAtOnce) {
   EXPECT_EQ(said(right()), "(accepted)");
   const std::string message = said(as_they_come());
-  EXPECT_THAT(message, HasSubstr("type: $1=255, $22=1, $100=40, $130=360, or let \"threadstation turntable set-up\""));
+  EXPECT_THAT(message,
+              HasSubstr("type: $1=255, $22=1, $25=480, $100=40, $130=360, or let \"threadstation turntable set-up\""));
   EXPECT_THAT(message, AllOf(HasSubstr("$100=250 (steps per degree: 40 in the rig file)"), Not(HasSubstr("\n"))));
 }
 
@@ -83,14 +84,16 @@ TEST(GrblSettingsNeeded, AreEachRefusedBesideTheirLimits) {
                                                        {100, 40.01},
                                                        {130, 359},
                                                        {24, 0},
-                                                       {24, 501},
+                                                       {24, 481},
                                                        {25, 0},
-                                                       {25, 501}})
+                                                       {25, 481}})
     EXPECT_THAT(said_with(number, value), HasSubstr("type: $" + std::to_string(number) + "=")) << value;
-  for (const auto& [number, value] : rig::GrblSettings{{100, 40.001}, {130, 1000}, {24, 0.5}, {25, 500}})
+  for (const auto& [number, value] : rig::GrblSettings{{100, 40.001}, {130, 1000}, {24, 0.5}, {25, 480}})
     EXPECT_EQ(said_with(number, value), "(accepted)") << number;
-  EXPECT_THAT(said_with(24, 0), HasSubstr("type: $24=50,"));  // a tenth of $110
-  EXPECT_THAT(said_with(25, 900), HasSubstr("type: $25=500,"));
+  // 480 deg/min: what $120 = 10 deg/s^2 can stop within 4 degrees; $110 allows 500.
+  EXPECT_THAT(said_with(24, 0), HasSubstr("type: $24=48,"));
+  EXPECT_THAT(said_with(25, 900), HasSubstr("type: $25=480,"));
+  EXPECT_THAT(said_with(110, 300), HasSubstr("type: $25=300,"));
 }
 
 TEST(GrblSettingsNeeded, ThatAFirmwareDoesNotHaveAreNotAskedFor) {

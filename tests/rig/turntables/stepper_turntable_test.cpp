@@ -9,11 +9,13 @@
 
 #include "rig/devices/device_contract.h"
 #include "rig/turntables/stopping.h"
+#include "tests/rig/turntables/ended_program.h"
 #include "tests/rig/turntables/wired_bench.h"
 
 namespace {
 
 using rig::kDegree;
+using testing::AllOf;
 using testing::HasSubstr;
 
 std::string refusal(const std::function<void()>& action) {
@@ -41,26 +43,6 @@ class WatchedLine final : public rig::ByteLine {
  private:
   std::unique_ptr<rig::ByteLine> line_;
   std::function<void(std::string_view)> before_write_;
-};
-
-// The line of a program that is killed: from then on nothing is written and nothing heard.
-class MortalLine final : public rig::ByteLine {
- public:
-  MortalLine(std::unique_ptr<rig::ByteLine> line, rig::Clock& clock, const std::atomic<bool>& killed)
-      : line_(std::move(line)), clock_(clock), killed_(killed) {}
-  std::string read(double timeout_s) override {
-    if (!killed_) return line_->read(timeout_s);
-    clock_.sleep_s(timeout_s);
-    return {};
-  }
-  void write(std::string_view bytes) override {
-    if (!killed_) line_->write(bytes);
-  }
-
- private:
-  std::unique_ptr<rig::ByteLine> line_;
-  rig::Clock& clock_;
-  const std::atomic<bool>& killed_;
 };
 
 struct StepperTurntable : testing::TestWithParam<Protocol> {
@@ -343,22 +325,6 @@ TEST(StepperTurntableHere, TakesThePlaceWhereItStandsForZeroAndReturnsThere) {
 
 namespace {
 
-// What a program leaves behind for the next one.
-class Memory final : public rig::PlatformMemory {
- public:
-  std::optional<rig::PlatformPlace> recall() override { return place; }
-  void keep(const rig::PlatformPlace& now) override { place = now; }
-  bool ask_for_mark(const std::string&) override {
-    ++asked;
-    if (turn_to_mark) turn_to_mark();
-    return turn_to_mark != nullptr;
-  }
-
-  std::optional<rig::PlatformPlace> place;
-  std::function<void()> turn_to_mark;
-  int asked = 0;
-};
-
 // A platform without a home switch, whose mark is at the bench's true angle 0.
 struct RememberedPlatform : testing::Test {
   RememberedPlatform() {
@@ -453,6 +419,17 @@ TEST_F(RememberedPlatform, IsCountedByABoardThatWasNotReset) {
   next->home();
   EXPECT_NEAR(rig.true_angle_rad(), 0, 1e-12);
   EXPECT_EQ(memory->asked, 0);
+}
+
+// Somebody else's program turned it, or its board was reset and then turned.
+TEST_F(RememberedPlatform, IsAskedForWhenItsControllerCountsOtherwise) {
+  keep_board_running();
+  rig.make_turntable()->home();
+  rig.port->receive("G90 G53 G1 X80 F600\n");
+  rig.clock.sleep_s(10);
+  EXPECT_THAT(refusal([&] { rig.make_turntable()->home(); }),
+              AllOf(HasSubstr("counts otherwise"), HasSubstr("threadstation home --mark")));
+  EXPECT_EQ(memory->asked, 1);
 }
 
 TEST_F(RememberedPlatform, TakesAMeasuredAngleForItsOwn) {
@@ -566,6 +543,18 @@ TEST(GrblStop, StopsAHomingThatSeemedToHaveEnded) {
   rig.port->transmit();
   EXPECT_LT(told_rad, 50 * kDegree);
   EXPECT_NEAR(rig.true_angle_rad(), told_rad, 5 * kDegree);
+}
+
+// 120 deg/s, which takes 12 degrees to stand; 31.7 deg/s are 2080 of the stage's units.
+TEST(ZaberSetup, AHomingThatIsTooFastToStopIsRefusedWithTheLineToType) {
+  Rig rig(Protocol::zaber, rig::HomeBy::home_switch, {}, 120);
+  rig.port->receive("/1 1 set limit.approach.maxspeed 100000\n");
+  const std::string said = refusal([&] { rig.make_turntable(); });
+  EXPECT_THAT(said, testing::AllOf(HasSubstr("looks for its home at 119.99"), HasSubstr("too fast"),
+                                   HasSubstr("send \"set limit.approach.maxspeed 2080\"")));
+  rig.port->receive("/1 1 set limit.approach.maxspeed 2080\n");
+  rig.make_turntable()->home();
+  EXPECT_NEAR(rig.true_angle_rad(), 0, 1e-12);
 }
 
 TEST(ZaberSetup, NeedsTheStagesOwnHome) {

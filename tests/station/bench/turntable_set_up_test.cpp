@@ -54,7 +54,7 @@ TEST_F(TurntableSetUp, ShowsWhatDiffersAndChangesNothing) {
     EXPECT_FALSE(row.meaning.empty());
     if (row.needed) needed[row.number] = *row.needed;
   }
-  EXPECT_EQ(needed, (std::map<int, double>{{1, 255}, {22, 1}, {100, 44.4}, {130, 360}}));
+  EXPECT_EQ(needed, (std::map<int, double>{{1, 255}, {22, 1}, {25, 480}, {100, 44.4}, {130, 360}}));
   EXPECT_THAT(report.homing_problem, HasSubstr("homes Z first"));
   EXPECT_EQ(board.settings(), former);
 }
@@ -63,7 +63,7 @@ TEST_F(TurntableSetUp, WritesWhatDiffersAndPutsItBack) {
   const std::filesystem::path back_up = folder / "before.json";
   const SetUpReport written = set_up({.write = true, .back_up = back_up, .restore = {}});
   std::map<int, double> right = former;
-  for (const auto& [number, value] : std::map<int, double>{{1, 255}, {22, 1}, {100, 44.4}, {130, 360}})
+  for (const auto& [number, value] : std::map<int, double>{{1, 255}, {22, 1}, {25, 480}, {100, 44.4}, {130, 360}})
     right[number] = value;
   EXPECT_EQ(board.settings(), right);
   for (const SetUpRow& row : written.rows) EXPECT_EQ(row.after.has_value(), row.needed.has_value()) << row.number;
@@ -71,7 +71,7 @@ TEST_F(TurntableSetUp, WritesWhatDiffersAndPutsItBack) {
   for (const SetUpRow& row : set_up({}).rows) EXPECT_FALSE(row.needed) << row.number;
   const SetUpReport restored = set_up({.write = false, .back_up = {}, .restore = back_up});
   EXPECT_EQ(board.settings(), former);
-  EXPECT_EQ(std::ranges::count_if(restored.rows, [](const SetUpRow& row) { return row.after.has_value(); }), 4);
+  EXPECT_EQ(std::ranges::count_if(restored.rows, [](const SetUpRow& row) { return row.after.has_value(); }), 5);
 }
 
 TEST_F(TurntableSetUp, PutsSoftLimitsBackAfterTheHomingThatTheyNeed) {
