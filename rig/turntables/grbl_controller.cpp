@@ -200,8 +200,10 @@ class GrblController final : public MotionController, public GrblSettingsPort {
         if (const auto* status = std::get_if<GrblStatus>(&reply)) state = status->state;
         return state.has_value();
       });
-      if (state) heard_s = clock_.monotonic_s();
-      if (state && *state != GrblState::run && *state != GrblState::jog && *state != GrblState::hold_moving) return;
+      if (!state) continue;
+      if (*state != GrblState::run && *state != GrblState::jog && *state != GrblState::hold_moving) return;
+      heard_s = clock_.monotonic_s();
+      clock_.sleep_s(kPollS);
     }
   }
 

@@ -151,11 +151,26 @@ class StepperTurntable final : public Turntable {
       work();
     } catch (const Stopped&) {
       throw;
-    } catch (...) {
-      state_ = TurntableState::unknown_position;
-      lost_ = true;
-      stop_quietly();
+    } catch (const PositionLost&) {
+      if (state_ == TurntableState::moving) lose_place();
+      give_up();
       throw;
+    } catch (...) {
+      give_up();
+      throw;
+    }
+  }
+
+  void give_up() noexcept {
+    state_ = TurntableState::unknown_position;
+    lost_ = true;
+    stop_quietly();
+  }
+
+  void lose_place() noexcept {
+    try {
+      if (setup_.memory) setup_.memory->keep({.lost = true});
+    } catch (...) {  // its disk is full; the error that is being handled is the one to be said
     }
   }
 
@@ -176,7 +191,7 @@ class StepperTurntable final : public Turntable {
   // reset counts from 0; then the place is known only if the platform stood.
   std::string doubt(const PlatformPlace& left, std::int64_t counted) {
     const ControllerIdentity identity = controller()->identity();
-    if (!left.doubt.empty()) return left.doubt;
+    if (left.lost) return "a program before this one has lost it";
     if (identity.count_lost) return "its controller reported an alarm";
     if (counted == 0)
       return left.turning ? "it was turning when the last program ended, and its controller has been reset since" : "";
@@ -193,7 +208,7 @@ class StepperTurntable final : public Turntable {
     if (const std::string why = doubt(*left, counted); !why.empty()) {
       zero_known_ = false;
       state_ = TurntableState::unknown_position;
-      setup_.memory->keep({left->steps, left->angle_rad, left->turning, why});  // the next program hears no alarm
+      lose_place();
       if (!setup_.memory->ask_for_mark(why))
         throw PositionLost("nobody knows where the platform stands: " + why +
                            "; turn it to its mark, then say so with \"threadstation home --mark\"");

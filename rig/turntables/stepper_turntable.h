@@ -28,7 +28,7 @@ struct PlatformPlace {
   std::int64_t steps = 0;  // in the controller's count, which begins at 0 when its board is reset
   double angle_rad = 0;
   bool turning = false;  // a move was begun there and its end was not written
-  std::string doubt{};   // why nobody knows where it stands; empty: it is known
+  bool lost = false;     // nobody knows where it stands
 };
 
 // What a turntable without a home switch knows from one program to the next.

@@ -13,7 +13,7 @@ double home_platform(const HomeRequest& request) {
   const RigFile rig = read_rig(request.rig);
   const auto memory = request.stands_at_mark ? std::optional(platform_memory_file(rig)) : std::nullopt;
   const RigDevices devices = open_turntable(rig, request.asked);
-  if (memory) forget_platform(*memory);  // not before: somebody may look for the turntable first, and turn it
+  if (memory) forget_platform(*memory);  // not before: where there is no turntable, nobody has turned it
   devices.turntable->home();
   return devices.turntable->angle_rad();
 }

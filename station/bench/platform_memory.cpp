@@ -38,20 +38,19 @@ class FileMemory final : public rig::PlatformMemory {
     place.steps = static_cast<std::int64_t>(reader.number("steps", -1e9, 1e9));
     place.angle_rad = reader.number("angle_deg", -720, 720) * kDegree;
     place.turning = reader.flag("turning");
-    if (reader.has("doubt")) place.doubt = reader.text("doubt");
+    place.lost = document.contains("lost") && reader.flag("lost");
     reader.finish();
     return place;
   }
 
   void keep(const rig::PlatformPlace& place) override {
     fs::create_directories(file_.parent_path());
-    nlohmann::json document{{"format", std::string("threadstation/") + kKind},
+    write_json_file(file_, {{"format", std::string("threadstation/") + kKind},
                             {"version", kVersion},
                             {"steps", place.steps},
                             {"angle_deg", place.angle_rad / kDegree},
-                            {"turning", place.turning}};
-    if (!place.doubt.empty()) document["doubt"] = place.doubt;
-    write_json_file(file_, document);
+                            {"turning", place.turning},
+                            {"lost", place.lost}});
   }
 
   bool ask_for_mark(const std::string& why) override {

@@ -216,7 +216,7 @@ TEST(DocumentedTurntable, WhoseCountAnAlarmHasSpoiltIsNotBelieved) {
   EXPECT_THAT(refusal([&] { bench.make_turntable()->home(); }),
               AllOf(HasSubstr("reported an alarm"), HasSubstr("threadstation home --mark")));
   bench.memory->turn_to_mark = [] {};
-  bench.make_turntable()->home();
+  bench.make_turntable()->home();  // the alarm was cleared, the place is still lost
   EXPECT_EQ(bench.memory->asked, 2);
 }
 
