@@ -7,11 +7,10 @@
 #include <string>
 
 #include "calibration/sensor/developable.h"
+#include "calibration/sensor/sensor_range.h"
 
 namespace calibration {
 namespace {
-
-constexpr double kBrightest = 0.92, kSaturated = 0.98;  // parts of the range
 
 std::string size_text(const cv::Size& size) {
   return std::to_string(size.width) + " x " + std::to_string(size.height);
@@ -26,8 +25,7 @@ struct Exposure {
 std::vector<Exposure> by_time(const std::vector<SensorPicture>& bracket, const SensorResponse& response) {
   std::vector<Exposure> exposures;
   for (const SensorPicture& raw : bracket) {
-    const double range = raw.white_level_dn - raw.black_level_dn;
-    cv::Mat1b saturated(raw.mosaic > raw.black_level_dn + kSaturated * range);
+    cv::Mat1b saturated(raw.mosaic > dn_at(raw, kSaturated));
     cv::dilate(saturated, saturated, cv::Mat1b::ones(3, 3));
     exposures.push_back({&raw, true_exposure_s(response, raw.exposure_s), saturated});
   }
@@ -96,8 +94,7 @@ LinearMosaic merge_exposures(const std::vector<SensorPicture>& bracket, const Se
         return linear_signal(response, (exposure.raw->mosaic(row, column) - dark) / range);
       };
       const auto usable = [&](const Exposure& exposure) {
-        return !exposure.beside_saturated(row, column) &&
-               exposure.raw->mosaic(row, column) < first.black_level_dn + kBrightest * range;
+        return !exposure.beside_saturated(row, column) && exposure.raw->mosaic(row, column) < dn_at(first, kBrightest);
       };
       double light = 0, time_s = 0;
       for (const Exposure& exposure : exposures)
@@ -118,8 +115,7 @@ LinearMosaic merge_exposures(const std::vector<SensorPicture>& bracket, const Se
         const double value = light_of(shortest);
         radiance = value / shortest.time_s;
         information = gain > 0 ? shortest.time_s * shortest.time_s / (gain * std::max(value, 0.0) + read_variance) : 1;
-        if (shortest.raw->mosaic(row, column) > first.black_level_dn + kSaturated * range)
-          out.saturated(row, column) = 255;
+        if (shortest.raw->mosaic(row, column) > dn_at(first, kSaturated)) out.saturated(row, column) = 255;
       }
       const double flat = maps.flat.empty() ? 1.0 : static_cast<double>(maps.flat(row, column));
       out.radiance(row, column) = static_cast<float>(radiance / flat);

@@ -33,17 +33,17 @@ std::optional<BoardPicture> find_chessboard(const cv::Mat1b& grey, int columns, 
   const int window = window_px(corners, columns, rows);
   cv::cornerSubPix(grey, corners, {window, window}, {-1, -1},
                    cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 100, 1e-4));
-  BoardPicture view;
+  BoardPicture picture;
   for (int row = 0; row < rows; ++row)  // OpenCV counts rows downwards
     for (int column = 0; column < columns; ++column) {
       const cv::Point2f& corner = corners[static_cast<std::size_t>(row * columns + column)];
-      view.push_back({column, rows - 1 - row, {corner.x, corner.y}});
+      picture.push_back({column, rows - 1 - row, {corner.x, corner.y}});
     }
   // OpenCV may begin at any corner of a board whose two directions it cannot tell apart.
-  const std::optional<BoardCheck> check = check_view(view);
+  const std::optional<BoardCheck> check = check_board(picture);
   if (check && check->mirrored)
-    for (LatticeCorner& corner : view) corner.column = columns - 1 - corner.column;
-  return view;
+    for (LatticeCorner& corner : picture) corner.column = columns - 1 - corner.column;
+  return picture;
 }
 
 }  // namespace calibration

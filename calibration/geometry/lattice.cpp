@@ -59,15 +59,15 @@ TagLattice lattice_of(const TagLayout& board) {
 }
 
 BoardPicture on_lattice(const TagLattice& tags, const TagLayout& board, const TagObservation& seen) {
-  BoardPicture view;
-  for (const Corner& corner : match_corners(board, seen)) view.push_back(corner_at(tags, corner));
-  return view;
+  BoardPicture picture;
+  for (const Corner& corner : match_corners(board, seen)) picture.push_back(corner_at(tags, corner));
+  return picture;
 }
 
-std::optional<BoardCheck> check_view(const BoardPicture& view) {
-  if (view.size() < 8) return std::nullopt;
+std::optional<BoardCheck> check_board(const BoardPicture& picture) {
+  if (picture.size() < 8) return std::nullopt;
   std::vector<cv::Point2d> nodes, pixels;
-  for (const LatticeCorner& corner : view) {
+  for (const LatticeCorner& corner : picture) {
     nodes.emplace_back(corner.column, corner.row);
     pixels.emplace_back(corner.pixel.x(), corner.pixel.y());
   }
@@ -75,7 +75,7 @@ std::optional<BoardCheck> check_view(const BoardPicture& view) {
   cv::Mat1b inside;
   constexpr double kSpacing = 1.0;
   const cv::Mat1d map = cv::findHomography(pixels, nodes, cv::RANSAC, kSpacing, inside, 2000, 0.9999);
-  if (map.empty() || cv::countNonZero(inside) * 2 < static_cast<int>(view.size())) return std::nullopt;
+  if (map.empty() || cv::countNonZero(inside) * 2 < static_cast<int>(picture.size())) return std::nullopt;
   BoardCheck check;
   for (int i = 0; i < inside.rows; ++i) check.displaced.push_back(inside(i) == 0);
   // Pixel rows count downwards and lattice rows upwards, so the map of a board seen from the front reverses
@@ -83,12 +83,12 @@ std::optional<BoardCheck> check_view(const BoardPicture& view) {
   Eigen::Matrix3d lattice_from_pixel;
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column) lattice_from_pixel(row, column) = map(row, column);
-  const double depth = lattice_from_pixel.row(2).dot(view.front().pixel.homogeneous());
+  const double depth = lattice_from_pixel.row(2).dot(picture.front().pixel.homogeneous());
   check.mirrored = lattice_from_pixel.determinant() * depth > 0.0;
   return check;
 }
 
-std::string displaced_tags(const TagLattice& tags, const TagLayout& board, const std::vector<BoardPicture>& views) {
+std::string displaced_tags(const TagLattice& tags, const TagLayout& board, const std::vector<BoardPicture>& pictures) {
   std::map<std::pair<int, int>, int> tag_at;  // lattice node -> id
   for (const Tag& tag : board.tags)
     for (const Eigen::Vector3d& point : corners_in_object(tag)) {
@@ -96,12 +96,12 @@ std::string displaced_tags(const TagLattice& tags, const TagLayout& board, const
       tag_at[{node.column, node.row}] = tag.id;
     }
   std::map<int, int> seen, displaced;  // numbers of pictures, by tag
-  for (const BoardPicture& view : views) {
-    const std::optional<BoardCheck> check = check_view(view);
+  for (const BoardPicture& picture : pictures) {
+    const std::optional<BoardCheck> check = check_board(picture);
     if (!check) continue;
     std::map<int, int> corners_displaced;
-    for (std::size_t c = 0; c < view.size(); ++c)
-      corners_displaced[tag_at.at({view[c].column, view[c].row})] += check->displaced[c] ? 1 : 0;
+    for (std::size_t c = 0; c < picture.size(); ++c)
+      corners_displaced[tag_at.at({picture[c].column, picture[c].row})] += check->displaced[c] ? 1 : 0;
     for (const auto& [id, corners] : corners_displaced) {
       ++seen[id];
       displaced[id] += corners >= 3 ? 1 : 0;  // a good tag may share one or two nodes with a displaced neighbour

@@ -48,12 +48,12 @@ struct BoardCheck {
   std::vector<bool> displaced;  // one per corner; true: off by more than a lattice spacing
 };
 
-// Checks a view by the plane-to-plane mapping on which most corners agree; std::nullopt for fewer than 8 corners or
+// Checks a picture by the plane-to-plane mapping on which most corners agree; std::nullopt for fewer than 8 corners or
 // when less than half agree on one. Lens distortion of up to a tenth of a spacing across the board does not matter.
-std::optional<BoardCheck> check_view(const BoardPicture& view);
+std::optional<BoardCheck> check_board(const BoardPicture& picture);
 
 // The tags, as "tags 3, 7", that are displaced in more than half of the pictures that show them and in at least two;
 // empty when there are none.
-std::string displaced_tags(const TagLattice& tags, const TagLayout& board, const std::vector<BoardPicture>& views);
+std::string displaced_tags(const TagLattice& tags, const TagLayout& board, const std::vector<BoardPicture>& pictures);
 
 }  // namespace calibration

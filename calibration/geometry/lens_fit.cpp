@@ -18,9 +18,9 @@
 namespace calibration {
 namespace {
 
-constexpr int kFewestViews = 5;
-constexpr int kFewestViewsToHalve = 10;
-constexpr std::size_t kFewestCornersPerView = 8;
+constexpr int kFewestPictures = 5;
+constexpr int kFewestPicturesToHalve = 10;
+constexpr std::size_t kFewestCornersPerPicture = 8;
 constexpr double kSmallestTilt_deg = 20.0;
 constexpr int kFewestFields = 6;
 constexpr double kFinest_px = 0.01;  // finer than corners can be found; smaller errors mean nothing
@@ -29,9 +29,9 @@ constexpr double kFinest_px = 0.01;  // finer than corners can be found; smaller
   throw std::runtime_error("lens calibration: " + found + ": " + what_to_do);
 }
 
-struct Views {
+struct UsedPictures {
   LensBundle bundle;
-  std::vector<std::size_t> index;  // place of each of the bundle's views among those that were given
+  std::vector<std::size_t> index;  // place of each of the bundle's pictures among those that were given
 };
 
 Lens seed_lens(const cv::Size& size, double focal_px) {
@@ -43,40 +43,41 @@ Lens seed_lens(const cv::Size& size, double focal_px) {
           .cy_px = 0.5 * (size.height - 1)};
 }
 
-// The views with enough corners, each with a pose for the guessed lens. Corners more than a lattice spacing off are
+// The pictures with enough corners, each with a pose for the guessed lens. Corners more than a lattice spacing off are
 // left unused from the start, because they would bend the first solution, by which outliers are judged.
-Views gather(const std::vector<BoardPicture>& given, const Lattice& board, const cv::Size& size, double focal_px) {
+UsedPictures gather(const std::vector<BoardPicture>& given, const Lattice& board, const cv::Size& size,
+                    double focal_px) {
   if (size.width < 2 || size.height < 2 || !(focal_px > 0.0) || !std::isfinite(focal_px))
     refuse("needs the size of the pictures and a positive guess of the focal length", "check the rig file");
-  Views views;
-  views.bundle.lattice = board;
+  UsedPictures pictures;
+  pictures.bundle.lattice = board;
   const Lens lens = seed_lens(size, focal_px);
-  views.bundle.lens = {.model = LensModel::opencv5,
-                       .image_size = size,
-                       .intrinsics = {focal_px, focal_px, lens.cx_px, lens.cy_px, 0, 0, 0, 0, 0}};
+  pictures.bundle.lens = {.model = LensModel::opencv5,
+                          .image_size = size,
+                          .intrinsics = {focal_px, focal_px, lens.cx_px, lens.cy_px, 0, 0, 0, 0, 0}};
   int mirrored = 0, contradictory = 0, seen = 0;
   for (std::size_t i = 0; i < given.size(); ++i) {
     for (const LatticeCorner& corner : given[i])
       if (!corner.pixel.allFinite())
-        refuse("view " + std::to_string(i + 1) + " has a corner whose position is not a finite number",
+        refuse("picture " + std::to_string(i + 1) + " has a corner whose position is not a finite number",
                "detect its corners again");
-    if (given[i].size() < kFewestCornersPerView) continue;
+    if (given[i].size() < kFewestCornersPerPicture) continue;
     ++seen;
-    const std::optional<BoardCheck> check = check_view(given[i]);
+    const std::optional<BoardCheck> check = check_board(given[i]);
     contradictory += check ? 0 : 1;
     if (!check) continue;
     mirrored += check->mirrored ? 1 : 0;
-    BundlePicture view{.corners = given[i], .used = {}};
+    BundlePicture picture{.corners = given[i], .used = {}};
     std::vector<Corner> matched;
     for (std::size_t c = 0; c < given[i].size(); ++c) {
-      view.used.push_back(!check->displaced[c]);
-      if (view.used[c]) matched.push_back({board.point(given[i][c].column, given[i][c].row), given[i][c].pixel});
+      picture.used.push_back(!check->displaced[c]);
+      if (picture.used[c]) matched.push_back({board.point(given[i][c].column, given[i][c].row), given[i][c].pixel});
     }
     const std::optional<PoseFit> pose = fit_pose(lens, matched);
     if (!pose) continue;
-    view.camera_from_lattice = pose->camera_from_object;
-    views.bundle.views.push_back(view);
-    views.index.push_back(i);
+    picture.camera_from_lattice = pose->camera_from_object;
+    pictures.bundle.pictures.push_back(picture);
+    pictures.index.push_back(i);
   }
   if (2 * mirrored > seen)
     refuse("the board is seen mirrored, right and left exchanged, in " + std::to_string(mirrored) + " of " +
@@ -86,14 +87,14 @@ Views gather(const std::vector<BoardPicture>& given, const Lattice& board, const
     refuse("the corners of " + std::to_string(contradictory) + " of " + std::to_string(seen) +
                " pictures do not lie as on the board",
            "check that the board file is the one of this print: rows, columns and first id");
-  return views;
+  return pictures;
 }
 
-// The largest angle between the board's normals in two views.
+// The largest angle between the board's normals in two pictures.
 double tilt_spread_deg(const LensBundle& bundle) {
   double largest = 0.0;
-  for (const BundlePicture& a : bundle.views) {
-    for (const BundlePicture& b : bundle.views) {
+  for (const BundlePicture& a : bundle.pictures) {
+    for (const BundlePicture& b : bundle.pictures) {
       const double cosine = a.camera_from_lattice.linear().col(2).dot(b.camera_from_lattice.linear().col(2));
       largest = std::max(largest, std::acos(std::clamp(cosine, -1.0, 1.0)));
     }
@@ -104,8 +105,8 @@ double tilt_spread_deg(const LensBundle& bundle) {
 // The number of the picture's 3 x 3 fields in which corners were seen.
 int covered_fields(const LensBundle& bundle) {
   std::set<int> fields;
-  for (const BundlePicture& view : bundle.views) {
-    for (const LatticeCorner& corner : view.corners) {
+  for (const BundlePicture& picture : bundle.pictures) {
+    for (const LatticeCorner& corner : picture.corners) {
       const int column = std::clamp(static_cast<int>(3.0 * corner.pixel.x() / bundle.lens.image_size.width), 0, 2);
       const int row = std::clamp(static_cast<int>(3.0 * corner.pixel.y() / bundle.lens.image_size.height), 0, 2);
       fields.insert(3 * row + column);
@@ -114,34 +115,35 @@ int covered_fields(const LensBundle& bundle) {
   return static_cast<int>(fields.size());
 }
 
-// Throws when the views cannot determine a lens, which mrcal does not notice: it returns numbers from a single view.
-std::vector<Gate> require_determined(const Views& views) {
-  const auto count = static_cast<int>(views.bundle.views.size());
-  if (count < kFewestViews)
-    refuse("the board is seen in " + std::to_string(count) + " pictures, at least " + std::to_string(kFewestViews) +
+// Throws when the pictures cannot determine a lens, which mrcal does not notice: it returns numbers from a single
+// picture.
+std::vector<Gate> require_determined(const UsedPictures& pictures) {
+  const auto count = static_cast<int>(pictures.bundle.pictures.size());
+  if (count < kFewestPictures)
+    refuse("the board is seen in " + std::to_string(count) + " pictures, at least " + std::to_string(kFewestPictures) +
                " with eight corners (two tags) each are needed",
            "take more pictures of the board");
-  const double tilt_deg = tilt_spread_deg(views.bundle);
+  const double tilt_deg = tilt_spread_deg(pictures.bundle);
   if (tilt_deg < kSmallestTilt_deg)
     refuse("the board's tilts differ by " + std::to_string(std::lround(tilt_deg)) + " degrees at most, 20 are needed",
            "tilt the board to 30 or 40 degrees in several directions");
-  const int fields = covered_fields(views.bundle);
+  const int fields = covered_fields(pictures.bundle);
   if (fields < kFewestFields)
     refuse("corners lie in " + std::to_string(fields) + " of the picture's 3 x 3 fields, 6 are needed",
            "bring the board to the picture's edges too");
-  return {at_least("pictures with the board", count, kFewestViews, "fewer leave the lens undetermined; take more"),
+  return {at_least("pictures with the board", count, kFewestPictures, "fewer leave the lens undetermined; take more"),
           at_least("spread of the board's tilts, deg", tilt_deg, kSmallestTilt_deg,
-                   "views alike leave focal length and distance undetermined; tilt the board more"),
+                   "pictures alike leave focal length and distance undetermined; tilt the board more"),
           at_least("fields of the picture with corners, of 9", fields, kFewestFields,
                    "distortion is known only where corners were seen; bring the board to the edges")};
 }
 
-Eigen::Vector2d predicted(const LensBundle& bundle, const BundlePicture& view, const LatticeCorner& corner) {
+Eigen::Vector2d predicted(const LensBundle& bundle, const BundlePicture& picture, const LatticeCorner& corner) {
   const double u = static_cast<double>(corner.column) / (bundle.lattice.columns - 1);
   const double v = static_cast<double>(corner.row) / (bundle.lattice.rows - 1);
   Eigen::Vector3d point = bundle.lattice.point(corner.column, corner.row);
   point.z() = 4.0 * (bundle.warp_mm.x() * u * (1.0 - u) + bundle.warp_mm.y() * v * (1.0 - v));
-  return project_with(bundle.lens, view.camera_from_lattice * point);
+  return project_with(bundle.lens, picture.camera_from_lattice * point);
 }
 
 // Solves with regularisation in two stages: first a pinhole, by which outliers cannot be judged yet, then the whole
@@ -155,11 +157,11 @@ BundleOutcome solve_in_stages(LensBundle& bundle) {
 // Returns whether there were any.
 bool take_back(LensBundle& bundle, double sigma_px) {
   bool any = false;
-  for (BundlePicture& view : bundle.views)
-    for (std::size_t c = 0; c < view.corners.size(); ++c) {
-      const LatticeCorner& corner = view.corners[c];
-      const double error_px = (predicted(bundle, view, corner) - corner.pixel).norm();
-      if (!view.used[c] && error_px < std::max(4.0 * sigma_px, kFinest_px)) any = view.used[c] = true;
+  for (BundlePicture& picture : bundle.pictures)
+    for (std::size_t c = 0; c < picture.corners.size(); ++c) {
+      const LatticeCorner& corner = picture.corners[c];
+      const double error_px = (predicted(bundle, picture, corner) - corner.pixel).norm();
+      if (!picture.used[c] && error_px < std::max(4.0 * sigma_px, kFinest_px)) any = picture.used[c] = true;
     }
   return any;
 }
@@ -188,18 +190,19 @@ std::vector<double> sigmas_over_picture(const LensBundle& bundle, const BundleUn
 double median_distance_mm(const LensBundle& bundle) {
   const Eigen::Vector3d middle = 0.5 * bundle.lattice.point(bundle.lattice.columns - 1, bundle.lattice.rows - 1);
   std::vector<double> distances;
-  for (const BundlePicture& view : bundle.views) distances.push_back((view.camera_from_lattice * middle).norm());
+  for (const BundlePicture& picture : bundle.pictures)
+    distances.push_back((picture.camera_from_lattice * middle).norm());
   return median(std::move(distances));
 }
 
-// The difference of the lenses from even and from odd views, each fitted from the solution of the whole set. Its sigma
-// is about twice that of the whole set's lens.
+// The difference of the lenses from even and from odd pictures, each fitted from the solution of the whole set. Its
+// sigma is about twice that of the whole set's lens.
 std::optional<LensDifference> compare_halves(const LensBundle& whole, bool regularised, double distance_mm) {
-  if (static_cast<int>(whole.views.size()) < kFewestViewsToHalve) return std::nullopt;
+  if (static_cast<int>(whole.pictures.size()) < kFewestPicturesToHalve) return std::nullopt;
   std::array<LensBundle, 2> halves{whole, whole};
   for (std::size_t h = 0; h < 2; ++h) {
-    halves[h].views.clear();
-    for (std::size_t v = h; v < whole.views.size(); v += 2) halves[h].views.push_back(whole.views[v]);
+    halves[h].pictures.clear();
+    for (std::size_t v = h; v < whole.pictures.size(); v += 2) halves[h].pictures.push_back(whole.pictures[v]);
     if (!sane(halves[h], solve_bundle(halves[h], {.regularised = regularised, .reject_outliers = false})))
       return std::nullopt;
   }
@@ -214,7 +217,7 @@ LensModel determinable_model(const ModelledLens& lens) {
 }
 
 // Goes on from the regularised solution, which is stable, to the one without regularisation, which is unbiased. With
-// 600 x 400 px, f 2400 px, 15 views at 0.1 px and k2 of 0.6 / 3 / -17, projections in the inner picture are off by
+// 600 x 400 px, f 2400 px, 15 pictures at 0.1 px and k2 of 0.6 / 3 / -17, projections in the inner picture are off by
 // 0.022 / 0.024 / 0.045 px rms with regularisation and by 0.023 / 0.023 / 0.021 px without
 // (tests/calibration/geometry/lens_accuracy_test.cpp). The pull of regularisation also makes the covariance of the
 // coefficients meaningless.
@@ -247,8 +250,8 @@ void compare_with_opencv8(const LensBundle& bundle, LensFit& fit) {
     fit.opencv8 = summary(projection_differences(bundle.lens, richer.lens, fit.working_distance_mm));
 }
 
-void report(const Views& views, const BundleUncertainty& uncertainty, std::size_t given, LensFit& fit) {
-  const LensBundle& bundle = views.bundle;
+void report(const UsedPictures& pictures, const BundleUncertainty& uncertainty, std::size_t given, LensFit& fit) {
+  const LensBundle& bundle = pictures.bundle;
   const std::vector<double> p = as(LensModel::opencv5, bundle.lens).intrinsics;
   fit.lens = {.width_px = bundle.lens.image_size.width,
               .height_px = bundle.lens.image_size.height,
@@ -266,22 +269,22 @@ void report(const Views& views, const BundleUncertainty& uncertainty, std::size_
   fit.board_warp_sigma_mm = uncertainty.covariance.diagonal().tail<2>().cwiseSqrt();
   fit.picture_rms_px.assign(given, 0.0);
   fit.camera_from_lattice.assign(given, std::nullopt);
-  for (std::size_t v = 0; v < bundle.views.size(); ++v) {
-    const BundlePicture& view = bundle.views[v];
+  for (std::size_t v = 0; v < bundle.pictures.size(); ++v) {
+    const BundlePicture& picture = bundle.pictures[v];
     double squares = 0.0;
     int used = 0;
-    for (std::size_t c = 0; c < view.corners.size(); ++c) {
-      fit.corner_errors.push_back({.view = static_cast<int>(views.index[v]),
-                                   .corner = view.corners[c],
+    for (std::size_t c = 0; c < picture.corners.size(); ++c) {
+      fit.corner_errors.push_back({.picture = static_cast<int>(pictures.index[v]),
+                                   .corner = picture.corners[c],
                                    .error_px = uncertainty.errors_px[v][c],
-                                   .used = view.used[c]});
+                                   .used = picture.used[c]});
       squares += uncertainty.errors_px[v][c].squaredNorm();
-      used += view.used[c] ? 1 : 0;
+      used += picture.used[c] ? 1 : 0;
     }
-    fit.picture_rms_px[views.index[v]] = used > 0 ? std::sqrt(squares / (2.0 * used)) : 0.0;
-    fit.camera_from_lattice[views.index[v]] = view.camera_from_lattice;
+    fit.picture_rms_px[pictures.index[v]] = used > 0 ? std::sqrt(squares / (2.0 * used)) : 0.0;
+    fit.camera_from_lattice[pictures.index[v]] = picture.camera_from_lattice;
     fit.corners_used += used;
-    fit.corners_rejected += static_cast<int>(view.corners.size()) - used;
+    fit.corners_rejected += static_cast<int>(picture.corners.size()) - used;
   }
   fit.converged = converged(uncertainty);
   const std::vector<double> sigmas =
@@ -302,7 +305,7 @@ void judge(const LensBundle& bundle, double focal_guess_px, const LensOptions& o
   add(at_most("focal length over its guess, or the inverse", guess_ratio, 2.0,
               "another lens, zoom or picture size than the guess is for"));
   add(at_most("fx / fy - 1", std::abs(fit.lens.fx_px / fit.lens.fy_px - 1.0), 0.02,
-              "sensors have square pixels; the picture was stretched, or the views are too few or alike"));
+              "sensors have square pixels; the picture was stretched, or the pictures are too few or alike"));
   add(at_most("uncertainty of projections at the working distance, inner picture, px", middle_sigma_px(fit), 0.3,
               "take more pictures, with more tilt and up to the picture's edges"));
   if (fit.halves)
@@ -330,14 +333,14 @@ double middle_sigma_px(const LensFit& fit) {
   return std::sqrt(squares / count);
 }
 
-double guess_focal_px(const std::vector<BoardPicture>& views, const Lattice& board, cv::Size image_size) {
+double guess_focal_px(const std::vector<BoardPicture>& pictures, const Lattice& board, cv::Size image_size) {
   std::vector<std::vector<cv::Point3f>> points;
   std::vector<std::vector<cv::Point2f>> pixels;
-  for (const BoardPicture& view : views) {
-    if (view.size() < kFewestCornersPerView) continue;
+  for (const BoardPicture& picture : pictures) {
+    if (picture.size() < kFewestCornersPerPicture) continue;
     points.emplace_back();
     pixels.emplace_back();
-    for (const LatticeCorner& corner : view) {
+    for (const LatticeCorner& corner : picture) {
       const Eigen::Vector3f point = board.point(corner.column, corner.row).cast<float>();
       points.back().emplace_back(point.x(), point.y(), point.z());
       pixels.back().emplace_back(static_cast<float>(corner.pixel.x()), static_cast<float>(corner.pixel.y()));
@@ -349,9 +352,9 @@ double guess_focal_px(const std::vector<BoardPicture>& views, const Lattice& boa
   return matrix(0, 0) > 0.2 * width && matrix(0, 0) < 100.0 * width ? matrix(0, 0) : width;
 }
 
-LensFit fit_lens(const std::vector<BoardPicture>& views, const Lattice& board, cv::Size image_size,
+LensFit fit_lens(const std::vector<BoardPicture>& pictures, const Lattice& board, cv::Size image_size,
                  double focal_guess_px, const LensOptions& options) {
-  Views gathered = gather(views, board, image_size, focal_guess_px);
+  UsedPictures gathered = gather(pictures, board, image_size, focal_guess_px);
   LensFit fit;
   fit.gates = require_determined(gathered);
   LensBundle& bundle = gathered.bundle;
@@ -365,16 +368,16 @@ LensFit fit_lens(const std::vector<BoardPicture>& views, const Lattice& board, c
   let_go_of_regularisation(bundle, uncertainty, fit);
   compare_with_opencv8(bundle, fit);
   fit.halves = compare_halves(bundle, fit.regularised, fit.working_distance_mm);
-  report(gathered, uncertainty, views.size(), fit);
+  report(gathered, uncertainty, pictures.size(), fit);
   judge(bundle, focal_guess_px, options, fit);
   return fit;
 }
 
-LensFit fit_lens(const std::vector<TagObservation>& views, const TagLayout& board, cv::Size image_size,
+LensFit fit_lens(const std::vector<TagObservation>& pictures, const TagLayout& board, cv::Size image_size,
                  double focal_guess_px, const LensOptions& options) {
   const TagLattice tags = lattice_of(board);
   std::vector<BoardPicture> corners;
-  for (const TagObservation& view : views) corners.push_back(on_lattice(tags, board, view));
+  for (const TagObservation& picture : pictures) corners.push_back(on_lattice(tags, board, picture));
   const std::string displaced = displaced_tags(tags, board, corners);
   if (!displaced.empty())
     refuse(displaced + " do not lie where the board file says in most pictures",

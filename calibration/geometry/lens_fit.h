@@ -1,4 +1,4 @@
-// Lens calibration from the corners seen in views of a printed board: intrinsics with residuals, covariance and
+// Lens calibration from the corners seen in pictures of a printed board: intrinsics with residuals, covariance and
 // acceptance checks.
 #pragma once
 
@@ -18,14 +18,14 @@
 namespace calibration {
 
 struct CornerError {
-  int view = 0;                                        // index among the views that were given
+  int picture = 0;                                     // index among the pictures that were given
   LatticeCorner corner;                                // as seen
   Eigen::Vector2d error_px = Eigen::Vector2d::Zero();  // predicted - seen; 0 when the corner was not used
   bool used = true;
 };
 
 struct LensOptions {
-  // The distance at which the lens will be used; uncertainties and differences hold there. 0: the views' median
+  // The distance at which the lens will be used; uncertainties and differences hold there. 0: the pictures' median
   // distance.
   double working_distance_mm = 0.0;
   // The typical distance of the board from the camera by tape measure, to check the printed sizes. 0: not known.
@@ -37,7 +37,8 @@ struct LensFit {
   double rms_px = 0.0;         // per axis, over the corners used
   Eigen::MatrixXd covariance;  // 9 x 9: fx fy cx cy k1 k2 p1 p2 k3 (pixels where they have units), for the noise that
                                // the residuals show
-  std::vector<double> picture_rms_px;  // one per view; 0 for a view with fewer than eight corners, which is left out
+  // One per picture; 0 for a picture with fewer than eight corners, which is left out.
+  std::vector<double> picture_rms_px;
   // How far the board's middle stands out of the plane of its edges, along its x and its y, mm, with standard errors.
   Eigen::Vector2d board_warp_mm = Eigen::Vector2d::Zero(), board_warp_sigma_mm = Eigen::Vector2d::Zero();
   int corners_used = 0;
@@ -45,8 +46,8 @@ struct LensFit {
   bool converged = false;
 
   Lattice lattice;                                                    // the board's lattice
-  std::vector<CornerError> corner_errors;                             // of all views that are not left out
-  std::vector<std::optional<Eigen::Isometry3d>> camera_from_lattice;  // one per view
+  std::vector<CornerError> corner_errors;                             // of all pictures that are not left out
+  std::vector<std::optional<Eigen::Isometry3d>> camera_from_lattice;  // one per picture
 
   // Standard error of projections at the working distance, in the worse direction, px; kGridRows x kGridColumns.
   double working_distance_mm = 0.0;
@@ -58,8 +59,8 @@ struct LensFit {
   bool regularised = false;
   LensDifference regularisation;
   double regularisation_sigmas = 0.0;    // above 3, regularisation would have bent the lens
-  LensDifference opencv8;                // difference from a fit of a lens with twelve parameters to the same views
-  std::optional<LensDifference> halves;  // difference of fits to even and to odd views; absent for fewer than ten
+  LensDifference opencv8;                // difference from a fit of a lens with twelve parameters to the same pictures
+  std::optional<LensDifference> halves;  // difference of fits to even and to odd pictures; absent for fewer than ten
   std::vector<Gate> gates;               // the lens is accepted when all passed
   std::string messages;                  // what the solver printed
 };
@@ -68,16 +69,16 @@ struct LensFit {
 // corners, which boards seldom reach, the values are extrapolations and are left out.
 double middle_sigma_px(const LensFit& fit);
 
-// A first guess of the focal length from the perspective of the views, good to a factor of two unless all boards are
-// seen from the front; the picture's width when the views show no perspective.
-double guess_focal_px(const std::vector<BoardPicture>& views, const Lattice& board, cv::Size image_size);
+// A first guess of the focal length from the perspective of the pictures, good to a factor of two unless all boards are
+// seen from the front; the picture's width when the pictures show no perspective.
+double guess_focal_px(const std::vector<BoardPicture>& pictures, const Lattice& board, cv::Size image_size);
 
-// Fits a lens to views of a board. `focal_guess_px`: from EXIF or the rig file, good to a factor of two. Throws
-// std::runtime_error when the views cannot determine a lens (too few, all alike) or contradict the board (mirrored,
+// Fits a lens to pictures of a board. `focal_guess_px`: from EXIF or the rig file, good to a factor of two. Throws
+// std::runtime_error when the pictures cannot determine a lens (too few, all alike) or contradict the board (mirrored,
 // tags exchanged, other sizes), saying what is wrong and what to do. A chessboard seen upside down is the same board.
-LensFit fit_lens(const std::vector<BoardPicture>& views, const Lattice& board, cv::Size image_size,
+LensFit fit_lens(const std::vector<BoardPicture>& pictures, const Lattice& board, cv::Size image_size,
                  double focal_guess_px, const LensOptions& options = {});
-LensFit fit_lens(const std::vector<TagObservation>& views, const TagLayout& board, cv::Size image_size,
+LensFit fit_lens(const std::vector<TagObservation>& pictures, const TagLayout& board, cv::Size image_size,
                  double focal_guess_px, const LensOptions& options = {});
 
 }  // namespace calibration

@@ -121,10 +121,10 @@ Eigen::Isometry3d isometry_of_pose(const mrcal_pose_t& pose) {
 }
 
 void require_sound(const LensBundle& bundle) {
-  if (bundle.views.empty() || bundle.lattice.columns < 2 || bundle.lattice.rows < 2)
-    throw std::runtime_error("lens calibration: needs a board of 2 x 2 corners or more and at least one view");
-  for (const BundlePicture& view : bundle.views) {
-    for (const LatticeCorner& corner : view.corners) {
+  if (bundle.pictures.empty() || bundle.lattice.columns < 2 || bundle.lattice.rows < 2)
+    throw std::runtime_error("lens calibration: needs a board of 2 x 2 corners or more and at least one picture");
+  for (const BundlePicture& picture : bundle.pictures) {
+    for (const LatticeCorner& corner : picture.corners) {
       if (!corner.pixel.allFinite())
         throw std::runtime_error("lens calibration: a corner's position is not a finite number; detect it again");
       if (corner.column < 0 || corner.row < 0 || corner.column >= bundle.lattice.columns ||
@@ -141,7 +141,7 @@ struct Arrays {
   std::vector<mrcal_pose_t> frames;
   mrcal_calobject_warp_t warp;
   std::vector<mrcal_observation_board_t> observations;
-  std::vector<mrcal_point3_t> pool;  // view, row, column
+  std::vector<mrcal_point3_t> pool;  // picture, row, column
   std::array<int, 2> image_size;
   mrcal_problem_selections_t selections;
   mrcal_problem_constants_t constants;
@@ -166,24 +166,24 @@ struct Arrays {
     selections.do_apply_regularization = freedom.regularised;
     selections.do_apply_outlier_rejection = freedom.reject_outliers;
     constants = {.point_min_range = 0.01, .point_max_range = 100.0};  // for single points, which are not used here
-    for (const BundlePicture& view : bundle.views) {
+    for (const BundlePicture& picture : bundle.pictures) {
       observations.push_back({.icam = {0, -1}, .iframe = static_cast<int>(frames.size())});
-      frames.push_back(pose_of(view.camera_from_lattice));
+      frames.push_back(pose_of(picture.camera_from_lattice));
       const std::size_t first = pool.size();
       pool.resize(first + nodes(), mrcal_point3_t{{0.0, 0.0, -1.0}});
-      for (std::size_t c = 0; c < view.corners.size(); ++c) {
-        const LatticeCorner& corner = view.corners[c];
+      for (std::size_t c = 0; c < picture.corners.size(); ++c) {
+        const LatticeCorner& corner = picture.corners[c];
         mrcal_point3_t& point = pool[first + node(corner)];
         point.x = corner.pixel.x();
         point.y = corner.pixel.y();
-        point.z = view.used[c] ? 1.0 : -1.0;
+        point.z = picture.used[c] ? 1.0 : -1.0;
       }
     }
-    states = mrcal_num_states(1, 0, views(), 0, 0, views(), selections, &model);
-    measurements = mrcal_num_measurements(views(), 0, columns, rows, 1, 0, views(), 0, 0, selections, &model);
+    states = mrcal_num_states(1, 0, pictures(), 0, 0, pictures(), selections, &model);
+    measurements = mrcal_num_measurements(pictures(), 0, columns, rows, 1, 0, pictures(), 0, 0, selections, &model);
   }
 
-  int views() const { return static_cast<int>(frames.size()); }
+  int pictures() const { return static_cast<int>(frames.size()); }
   std::size_t nodes() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
   std::size_t node(const LatticeCorner& corner) const {
     return static_cast<std::size_t>(corner.row) * static_cast<std::size_t>(columns) +
@@ -223,7 +223,7 @@ LinearFit linear_fit(Arrays& arrays) {
   const auto states = static_cast<std::size_t>(arrays.states),
              measurements = static_cast<std::size_t>(arrays.measurements);
   const auto nonzero = static_cast<std::size_t>(
-      _mrcal_num_j_nonzero(arrays.views(), 0, arrays.columns, arrays.rows, 1, 0, arrays.views(), 0, 0,
+      _mrcal_num_j_nonzero(arrays.pictures(), 0, arrays.columns, arrays.rows, 1, 0, arrays.pictures(), 0, 0,
                            arrays.observations.data(), nullptr, arrays.selections, &arrays.model));
   LinearFit fit{.residuals = std::vector<double>(measurements),
                 .values = std::vector<double>(nonzero),
@@ -236,7 +236,7 @@ LinearFit linear_fit(Arrays& arrays) {
     const CaughtStandardError caught(messages);
     if (!mrcal_optimizer_callback(state.data(), bytes(state), fit.residuals.data(), bytes(fit.residuals), &transposed,
                                   arrays.intrinsics.data(), nullptr, arrays.frames.data(), nullptr, &arrays.warp, 1, 0,
-                                  arrays.views(), 0, 0, arrays.observations.data(), nullptr, arrays.views(), 0,
+                                  arrays.pictures(), 0, 0, arrays.observations.data(), nullptr, arrays.pictures(), 0,
                                   arrays.pool.data(), &arrays.model, arrays.image_size.data(), arrays.selections,
                                   &arrays.constants, arrays.spacing, arrays.columns, arrays.rows, false))
       throw std::runtime_error("lens calibration: mrcal could not linearise the fit: " + messages);
@@ -249,12 +249,12 @@ void add_errors(const LensBundle& bundle, const Arrays& arrays, const std::vecto
                 BundleUncertainty& result) {
   double squares = 0.0;
   int used = 0;
-  for (std::size_t v = 0; v < bundle.views.size(); ++v) {
-    const BundlePicture& view = bundle.views[v];
-    result.errors_px.emplace_back(view.corners.size(), Eigen::Vector2d::Zero());
-    for (std::size_t c = 0; c < view.corners.size(); ++c) {
-      if (!view.used[c]) continue;
-      const std::size_t row = 2 * (v * arrays.nodes() + arrays.node(view.corners[c]));
+  for (std::size_t v = 0; v < bundle.pictures.size(); ++v) {
+    const BundlePicture& picture = bundle.pictures[v];
+    result.errors_px.emplace_back(picture.corners.size(), Eigen::Vector2d::Zero());
+    for (std::size_t c = 0; c < picture.corners.size(); ++c) {
+      if (!picture.used[c]) continue;
+      const std::size_t row = 2 * (v * arrays.nodes() + arrays.node(picture.corners[c]));
       result.errors_px[v][c] = {residuals[row], residuals[row + 1]};
       squares += result.errors_px[v][c].squaredNorm();
       ++used;
@@ -268,9 +268,9 @@ void add_errors(const LensBundle& bundle, const Arrays& arrays, const std::vecto
 // What a step of 1 in each number of mrcal's state is in our units; the state begins with that many intrinsics.
 Eigen::VectorXd unit_steps(int intrinsics, const Arrays& arrays) {
   Eigen::VectorXd steps = Eigen::VectorXd::Ones(arrays.states);
-  mrcal_unpack_solver_state_vector(steps.data(), 1, 0, arrays.views(), 0, 0, arrays.selections, &arrays.model);
+  mrcal_unpack_solver_state_vector(steps.data(), 1, 0, arrays.pictures(), 0, 0, arrays.selections, &arrays.model);
   for (Eigen::Index i = intrinsics; i < arrays.states; ++i) {
-    const bool rotation = i < intrinsics + 6 * arrays.views() && (i - intrinsics) % 6 < 3;
+    const bool rotation = i < intrinsics + 6 * arrays.pictures() && (i - intrinsics) % 6 < 3;
     if (!rotation) steps[i] /= kM_per_mm;
   }
   return steps;
@@ -283,7 +283,7 @@ void add_covariance(int intrinsics, const Arrays& arrays, const LinearFit& fit, 
   using Sparse = Eigen::SparseMatrix<double>;
   const Eigen::Map<const Sparse> jt(arrays.states, arrays.measurements, static_cast<Eigen::Index>(fit.values.size()),
                                     fit.starts.data(), fit.indices.data(), fit.values.data());
-  const Sparse seen = jt.leftCols(mrcal_num_measurements_boards(arrays.views(), arrays.columns, arrays.rows));
+  const Sparse seen = jt.leftCols(mrcal_num_measurements_boards(arrays.pictures(), arrays.columns, arrays.rows));
   const Eigen::MatrixXd information = Sparse(seen * Sparse(seen.transpose()));
   const Eigen::MatrixXd curvature = Sparse(jt * Sparse(jt.transpose()));
   const Eigen::LLT<Eigen::MatrixXd> factor(curvature);
@@ -340,8 +340,8 @@ BundleOutcome solve_bundle(LensBundle& bundle, const BundleFreedom& freedom) {
     {
       const CaughtStandardError caught(outcome.messages);
       mrcal_optimize(state.data(), bytes(state), residuals.data(), bytes(residuals), arrays.intrinsics.data(), nullptr,
-                     arrays.frames.data(), nullptr, &arrays.warp, 1, 0, arrays.views(), 0, 0,
-                     arrays.observations.data(), nullptr, arrays.views(), 0, arrays.pool.data(), &arrays.model,
+                     arrays.frames.data(), nullptr, &arrays.warp, 1, 0, arrays.pictures(), 0, 0,
+                     arrays.observations.data(), nullptr, arrays.pictures(), 0, arrays.pool.data(), &arrays.model,
                      arrays.image_size.data(), arrays.selections, &arrays.constants, arrays.spacing, arrays.columns,
                      arrays.rows, false, false);
     }
@@ -350,12 +350,12 @@ BundleOutcome solve_bundle(LensBundle& bundle, const BundleFreedom& freedom) {
     outcome.finite = bundle.warp_mm.allFinite();
     for (const double value : arrays.intrinsics) outcome.finite = outcome.finite && std::isfinite(value);
     for (const double value : residuals) outcome.finite = outcome.finite && std::isfinite(value);
-    for (std::size_t v = 0; v < bundle.views.size(); ++v) {
-      BundlePicture& view = bundle.views[v];
-      view.camera_from_lattice = isometry_of_pose(arrays.frames[v]);
-      outcome.finite = outcome.finite && view.camera_from_lattice.matrix().allFinite();
-      for (std::size_t c = 0; c < view.corners.size(); ++c)
-        view.used[c] = arrays.pool[v * arrays.nodes() + arrays.node(view.corners[c])].z > 0.0;
+    for (std::size_t v = 0; v < bundle.pictures.size(); ++v) {
+      BundlePicture& picture = bundle.pictures[v];
+      picture.camera_from_lattice = isometry_of_pose(arrays.frames[v]);
+      outcome.finite = outcome.finite && picture.camera_from_lattice.matrix().allFinite();
+      for (std::size_t c = 0; c < picture.corners.size(); ++c)
+        picture.used[c] = arrays.pool[v * arrays.nodes() + arrays.node(picture.corners[c])].z > 0.0;
     }
   });
   return outcome;
@@ -390,9 +390,9 @@ Eigen::Matrix2d projection_covariance(const LensBundle& bundle, const BundleUnce
       pixel_by_point(row, column) = by_point[static_cast<std::size_t>(row)].xyz[column];
   Eigen::MatrixXd by_state = Eigen::MatrixXd::Zero(2, uncertainty.covariance.rows());
   by_state.leftCols(lens) = by_lens;
-  const double share = 1.0 / static_cast<double>(bundle.views.size());
-  for (std::size_t v = 0; v < bundle.views.size(); ++v) {
-    const Eigen::Isometry3d& pose = bundle.views[v].camera_from_lattice;
+  const double share = 1.0 / static_cast<double>(bundle.pictures.size());
+  for (std::size_t v = 0; v < bundle.pictures.size(); ++v) {
+    const Eigen::Isometry3d& pose = bundle.pictures[v].camera_from_lattice;
     const Eigen::Vector3d on_board = pose.inverse() * in_camera;
     Eigen::Matrix<double, 6, 1> motion;
     motion << rotation_vector(pose.linear()), pose.translation();

@@ -43,7 +43,7 @@ struct BundlePicture {
 struct LensBundle {
   Lattice lattice;
   ModelledLens lens;
-  std::vector<BundlePicture> views;
+  std::vector<BundlePicture> pictures;
   Eigen::Vector2d warp_mm = Eigen::Vector2d::Zero();  // how far the board's middle stands out along columns and rows
 };
 
@@ -58,17 +58,18 @@ struct BundleOutcome {
   std::string messages;  // what the library printed
 };
 
-// Solves the bundle. Throws std::runtime_error when there is no view or a corner is not finite or not on the lattice.
+// Solves the bundle. Throws std::runtime_error when there is no picture or a corner is not finite or not on the
+// lattice.
 BundleOutcome solve_bundle(LensBundle& bundle, const BundleFreedom& freedom);
 
 // The bundle linearised about its solution.
 struct BundleUncertainty {
   double rms_px = 0.0;    // per axis, over the corners used
   double sigma_px = 0.0;  // the corners' noise: rms_px with the degrees of freedom taken out
-  std::vector<std::vector<Eigen::Vector2d>> errors_px;  // per view and corner: predicted - seen; 0 for unused ones
+  std::vector<std::vector<Eigen::Vector2d>> errors_px;  // per picture and corner: predicted - seen; 0 for unused ones
   double step_px = 0.0;  // what another Gauss-Newton step would take off the residuals' length; small: converged
-  // Covariance of the intrinsics, then of (rotation vector, translation in mm) of each view's camera_from_lattice, then
-  // of the warp in mm, for noise of sigma_px. Infinite when the views leave a direction undetermined.
+  // Covariance of the intrinsics, then of (rotation vector, translation in mm) of each picture's camera_from_lattice,
+  // then of the warp in mm, for noise of sigma_px. Infinite when the pictures leave a direction undetermined.
   Eigen::MatrixXd covariance;
 };
 

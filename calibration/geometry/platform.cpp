@@ -31,7 +31,7 @@ Vector3d rotation_vector(const Eigen::Matrix3d& rotation) {
 }
 
 // The direction of the axis in the camera frame, on the side of `up`: the mean of the rotation vectors from the first
-// view, in which larger turns weigh more.
+// picture, in which larger turns weigh more.
 Vector3d axis_direction(const std::vector<Isometry3d>& poses, const Vector3d& up) {
   Vector3d sum = Vector3d::Zero();
   double largest = 0.0;
@@ -42,7 +42,7 @@ Vector3d axis_direction(const std::vector<Isometry3d>& poses, const Vector3d& up
   }
   if (largest < 20.0 * kDegree) {
     refuse("the ring turns by " + std::to_string(std::lround(largest / kDegree)) + " degrees at most, 20 are needed",
-           "check that the platform moves, and take views over a wider range");
+           "check that the platform moves, and take pictures over a wider range");
   }
   const Vector3d axis = sum.normalized();
   if (axis.dot(up) < std::cos(30.0 * kDegree)) {
@@ -52,18 +52,18 @@ Vector3d axis_direction(const std::vector<Isometry3d>& poses, const Vector3d& up
   return axis;
 }
 
-// First guesses of the angles about `axis`, counted from the first view; whole turns are taken from the readings.
-std::vector<double> seed_angles(const std::vector<Isometry3d>& poses, const std::vector<PlatformPicture>& views,
+// First guesses of the angles about `axis`, counted from the first picture; whole turns are taken from the readings.
+std::vector<double> seed_angles(const std::vector<Isometry3d>& poses, const std::vector<PlatformPicture>& pictures,
                                 const Vector3d& axis) {
   std::vector<double> angles;
   double agreement = 0.0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     angles.push_back(rotation_vector(poses[i].linear() * poses.front().linear().transpose()).dot(axis));
-    agreement += std::sin(angles[i]) * std::sin(views[i].reading_rad - views.front().reading_rad);
+    agreement += std::sin(angles[i]) * std::sin(pictures[i].reading_rad - pictures.front().reading_rad);
   }
   const double sense = agreement < 0.0 ? -1.0 : 1.0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const double expected = sense * (views[i].reading_rad - views.front().reading_rad);
+    const double expected = sense * (pictures[i].reading_rad - pictures.front().reading_rad);
     angles[i] += 2.0 * std::numbers::pi * std::round((expected - angles[i]) / (2.0 * std::numbers::pi));
   }
   return angles;
@@ -82,8 +82,8 @@ Vector3d point_on_axis(const std::vector<Isometry3d>& poses, const std::vector<d
   return normal.ldlt().solve(right);
 }
 
-// All tags of the table's sheet in one observation. No view need show the whole sheet: as it does not move, its tags
-// are gathered from all views.
+// All tags of the table's sheet in one observation. No picture need show the whole sheet: as it does not move, its tags
+// are gathered from all pictures.
 TagObservation gathered(const StillTags& still) {
   TagObservation seen;
   for (const auto& [id, corners] : still) seen.push_back({.id = id, .corners_px = corners});
@@ -98,22 +98,22 @@ void refuse_odd_tags(const std::set<int>& odd, const std::string& layout) {
          "they were moved, or stand in each other's places; put them right and take the pictures again");
 }
 
-Bundle seed(const Lens& lens, const PlatformTargets& targets, const std::vector<PlatformPicture>& views,
+Bundle seed(const Lens& lens, const PlatformTargets& targets, const std::vector<PlatformPicture>& pictures,
             const StillTags& still) {
   Bundle bundle;
   bundle.intrinsics = intrinsics_of(lens);
   bundle.sheet_height_mm = targets.table_height_mm;
   std::vector<Isometry3d> poses;
   std::set<int> odd;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    const std::string name = "view " + std::to_string(i + 1);
-    const std::optional<PoseFit> ring = fit_pose(lens, targets.ring, views[i].seen);
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const std::string name = "picture " + std::to_string(i + 1);
+    const std::optional<PoseFit> ring = fit_pose(lens, targets.ring, pictures[i].seen);
     if (!ring)
-      refuse(name + " shows no tag of \"" + targets.ring.name + "\"", "uncover the ring or leave the view out");
+      refuse(name + " shows no tag of \"" + targets.ring.name + "\"", "uncover the ring or leave the picture out");
     odd.insert(ring->odd_tags.begin(), ring->odd_tags.end());
     poses.push_back(ring->camera_from_object);
-    bundle.turning.push_back(tagged_corners(targets.ring, views[i].seen));
-    bundle.fixed.push_back(tagged_corners(targets.table, views[i].seen));
+    bundle.turning.push_back(tagged_corners(targets.ring, pictures[i].seen));
+    bundle.fixed.push_back(tagged_corners(targets.table, pictures[i].seen));
   }
   refuse_odd_tags(odd, "ring");
   const std::optional<PoseFit> sheet = fit_pose(lens, targets.table, gathered(still));
@@ -124,7 +124,7 @@ Bundle seed(const Lens& lens, const PlatformTargets& targets, const std::vector<
   const Vector3d up = sheet->camera_from_object.linear().col(2);
   const Vector3d on_table = sheet->camera_from_object.translation() - targets.table_height_mm * up;
   const Vector3d axis = axis_direction(poses, up);
-  bundle.angles_rad = seed_angles(poses, views, axis);
+  bundle.angles_rad = seed_angles(poses, pictures, axis);
   const Vector3d on_axis = point_on_axis(poses, bundle.angles_rad, axis);
   bundle.camera_from_axis = frame_with_world(axis, on_axis, up, on_table, Vector3d::Zero());
   const Isometry3d axis_from_camera = bundle.camera_from_axis.inverse();
@@ -156,35 +156,35 @@ void fit_line(PlatformFit& fit) {
   fit.angle_rms_rad = std::sqrt(squares / n);
 }
 
-void check(const PlatformTargets& targets, const std::vector<PlatformPicture>& views) {
-  if (views.size() < 3) {
-    refuse(std::to_string(views.size()) + " views of the turning platform were given, at least 3 are needed",
+void check(const PlatformTargets& targets, const std::vector<PlatformPicture>& pictures) {
+  if (pictures.size() < 3) {
+    refuse(std::to_string(pictures.size()) + " pictures of the turning platform were given, at least 3 are needed",
            "take more angles");
   }
   if (!(targets.table_height_mm >= 0.0) || !std::isfinite(targets.table_height_mm)) {
     refuse("the thickness of the sheet on the table is " + std::to_string(targets.table_height_mm) + " mm",
            "measure it");
   }
-  double smallest = views.front().reading_rad, largest = smallest;
-  for (const PlatformPicture& view : views) {
-    if (!std::isfinite(view.reading_rad))
+  double smallest = pictures.front().reading_rad, largest = smallest;
+  for (const PlatformPicture& picture : pictures) {
+    if (!std::isfinite(picture.reading_rad))
       refuse("a reading of the turntable is not a finite number", "check the turntable");
-    smallest = std::min(smallest, view.reading_rad);
-    largest = std::max(largest, view.reading_rad);
+    smallest = std::min(smallest, picture.reading_rad);
+    largest = std::max(largest, picture.reading_rad);
   }
-  if (!(largest > smallest)) refuse("all readings of the turntable are equal", "take views at different angles");
+  if (!(largest > smallest)) refuse("all readings of the turntable are equal", "take pictures at different angles");
 }
 
-void refuse_bumps(const StillTags& still, const std::vector<PlatformPicture>& views) {
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    const std::optional<Shift> shift = shift_of(still, views[i].seen);
+void refuse_bumps(const StillTags& still, const std::vector<PlatformPicture>& pictures) {
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const std::optional<Shift> shift = shift_of(still, pictures[i].seen);
     if (!shift) continue;
-    const auto problem = shift_problem(*shift, kBump_px, "view " + std::to_string(i + 1));
+    const auto problem = shift_problem(*shift, kBump_px, "picture " + std::to_string(i + 1));
     if (problem) throw std::runtime_error("platform calibration: " + *problem);
   }
 }
 
-// Refuses a tag that is a little off its place, which shows not in a single view but over all of them.
+// Refuses a tag that is a little off its place, which shows not in a single picture but over all of them.
 void refuse_misplaced_tags(const AllErrors& errors) {
   std::vector<double> sizes;
   for (const auto& [id, tag] : errors.tags) sizes.push_back(tag.rms());
@@ -202,7 +202,7 @@ void refuse_misplaced_tags(const AllErrors& errors) {
 std::vector<Gate> gates_of(const PlatformFit& fit, std::size_t table_tags) {
   const Eigen::Vector4d sigma = fit.axis_covariance.diagonal().cwiseSqrt();
   return {at_most("platform: direction of the axis, 2 sigma, deg", 2.0 * sigma.head<2>().norm() / kDegree, 0.02,
-                  "views at other angles turn with the axis; take more angles, or a larger ring"),
+                  "pictures at other angles turn with the axis; take more angles, or a larger ring"),
           at_most("platform: position of the axis, 2 sigma, mm", 2.0 * sigma.tail<2>().norm(), 0.1,
                   "threads are looked for where the axis puts them; take more angles, or a larger ring"),
           at_most("platform: corners, px rms", fit.rms_px, 0.5,
@@ -217,13 +217,14 @@ std::vector<Gate> gates_of(const PlatformFit& fit, std::size_t table_tags) {
 
 }  // namespace
 
-PlatformFit fit_platform(const Lens& lens, const PlatformTargets& targets, const std::vector<PlatformPicture>& views) {
-  check(targets, views);
-  std::vector<TagObservation> pictures;
-  for (const PlatformPicture& view : views) pictures.push_back(view.seen);
-  const StillTags still = still_tags(targets.table, pictures);
-  refuse_bumps(still, views);
-  Bundle bundle = seed(lens, targets, views, still);
+PlatformFit fit_platform(const Lens& lens, const PlatformTargets& targets,
+                         const std::vector<PlatformPicture>& pictures) {
+  check(targets, pictures);
+  std::vector<TagObservation> seen;
+  for (const PlatformPicture& picture : pictures) seen.push_back(picture.seen);
+  const StillTags still = still_tags(targets.table, seen);
+  refuse_bumps(still, pictures);
+  Bundle bundle = seed(lens, targets, pictures, still);
   bool converged = true;
   for (int pass = 0; pass < 3; ++pass) {
     converged = solve(bundle);
@@ -235,16 +236,16 @@ PlatformFit fit_platform(const Lens& lens, const PlatformTargets& targets, const
   if (!std::isfinite(fit.rms_px)) refuse("the fit went astray", "check the sizes and ids of the printed tags");
   refuse_misplaced_tags(errors);
   converged = take_covariance(bundle, fit.axis_covariance) && converged;
-  const double unknowns = 6.0 + 4.0 + 6.0 + static_cast<double>(views.size()) - 1.0;
+  const double unknowns = 6.0 + 4.0 + 6.0 + static_cast<double>(pictures.size()) - 1.0;
   fit.axis_covariance *= errors.used.squares / std::max(1.0, errors.used.count - unknowns);
-  for (const Errors& view : errors.views) fit.picture_rms_px.push_back(view.rms());
+  for (const Errors& picture : errors.pictures) fit.picture_rms_px.push_back(picture.rms());
   fit.converged = converged;
   fit.angles_rad = bundle.angles_rad;
-  for (const PlatformPicture& view : views) fit.readings_rad.push_back(view.reading_rad);
+  for (const PlatformPicture& picture : pictures) fit.readings_rad.push_back(picture.reading_rad);
   fit_line(fit);
   fit.world_from_camera = bundle.camera_from_axis.inverse();
   fit.world_from_table = bundle.axis_from_sheet;
-  // The bundle counts angles from the first view, the platform from reading 0.
+  // The bundle counts angles from the first picture, the platform from reading 0.
   const double first_rad = fit.angles_rad.front();
   fit.world_from_ring = Eigen::AngleAxisd(-first_rad, Vector3d::UnitZ()) * bundle.axis_from_ring;
   fit.axis_to_table_normal_rad = std::acos(std::clamp(bundle.axis_from_sheet.linear()(2, 2), -1.0, 1.0));

@@ -1,4 +1,4 @@
-// The fit of the platform's rotation axis and the world frame: one joint bundle over tagged views (calibration.md 1d).
+// The fit of the platform's rotation axis and the world frame: one joint bundle over pictures that show tags.
 //
 // World: origin = where the axis meets the table plane; +z = axis, up; +x = horizontal projection of the direction to
 // the camera centre; right-handed; mm.
@@ -29,15 +29,15 @@ struct PlatformFit {
   Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d world_from_ring = Eigen::Isometry3d::Identity();  // at angle 0
   Eigen::Isometry3d world_from_table = Eigen::Isometry3d::Identity();
-  // Measured angles, one per view, counter-clockwise from above, 0 at reading 0 (by the fitted line).
+  // Measured angles, one per picture, counter-clockwise from above, 0 at reading 0 (by the fitted line).
   std::vector<double> angles_rad;
-  std::vector<double> readings_rad;  // as given, one per view
-  // The fitted line: angle counted from the first view = scale * reading + offset, least squares; the offset is already
-  // taken out of angles_rad. A turntable that counts clockwise has a scale near -1.
+  std::vector<double> readings_rad;  // as given, one per picture
+  // The fitted line: angle counted from the first picture = scale * reading + offset, least squares; the offset is
+  // already taken out of angles_rad. A turntable that counts clockwise has a scale near -1.
   double scale = 1.0, offset_rad = 0.0;
   double angle_rms_rad = 0.0;             // scatter of the angles about that line
   double rms_px = 0.0;                    // corner residuals, per axis
-  std::vector<double> picture_rms_px;     // the same, one per view
+  std::vector<double> picture_rms_px;     // the same, one per picture
   double axis_to_table_normal_rad = 0.0;  // angle between the axis and the table's normal
   // Covariance of the axis's tilts about the world's x and y (rad), then of the place where it meets the table along x
   // and y (mm), relative to the camera, for the corner noise that the residuals show and an exact lens.
@@ -46,11 +46,12 @@ struct PlatformFit {
   bool converged = false;
 };
 
-// Fits axis, angles and targets to the views. Each angle is a free unknown, so the turntable's readings are not
-// trusted. Throws std::runtime_error when fewer than three views were given, the ring is missing in one, no view shows
-// two of the table's tags, the views do not turn by 20 degrees, or a tag contradicts the others (the message names the
-// tag).
-PlatformFit fit_platform(const Lens& lens, const PlatformTargets& targets, const std::vector<PlatformPicture>& views);
+// Fits axis, angles and targets to the pictures. Each angle is a free unknown, so the turntable's readings are not
+// trusted. Throws std::runtime_error when fewer than three pictures were given, the ring is missing in one, no picture
+// shows two of the table's tags, the pictures do not turn by 20 degrees, or a tag contradicts the others (the message
+// names the tag).
+PlatformFit fit_platform(const Lens& lens, const PlatformTargets& targets,
+                         const std::vector<PlatformPicture>& pictures);
 
 struct AngleFit {
   double angle_rad = 0.0;  // the platform's angle, within +-pi

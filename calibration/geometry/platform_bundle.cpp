@@ -112,7 +112,7 @@ void settle(Bundle& bundle) {
   bundle.axis_from_sheet = axis_from_world.inverse() * bundle.axis_from_sheet;
 }
 
-template <typename Visit>  // visit(view, corner, error in px)
+template <typename Visit>  // visit(picture, corner, error in px)
 void for_each_error(Bundle& bundle, Visit&& visit) {
   const Motion none{};
   for (std::size_t i = 0; i < bundle.turning.size(); ++i) {
@@ -184,12 +184,12 @@ bool take_covariance(Bundle& bundle, Eigen::Matrix4d& out) {
 
 AllErrors errors_of(Bundle& bundle) {
   AllErrors errors;
-  errors.views.resize(bundle.turning.size());
-  for_each_error(bundle, [&](std::size_t view, const TaggedCorner& seen, const Eigen::Vector2d& error) {
+  errors.pictures.resize(bundle.turning.size());
+  for_each_error(bundle, [&](std::size_t picture, const TaggedCorner& seen, const Eigen::Vector2d& error) {
     errors.tags[seen.id].add(error);
     if (!seen.used) return;
     errors.used.add(error);
-    errors.views[view].add(error);
+    errors.pictures[picture].add(error);
   });
   return errors;
 }

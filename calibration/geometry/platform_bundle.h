@@ -1,5 +1,5 @@
 // The least squares problem of the platform's fit (platform.h): camera, axis, ring, tags on the table, one angle per
-// view.
+// picture.
 #pragma once
 
 #include <ceres/ceres.h>
@@ -32,7 +32,7 @@ struct Bundle {
   Eigen::Isometry3d axis_from_sheet = Eigen::Isometry3d::Identity();  // the tags on the table
   double sheet_height_mm = 0.0;
   std::vector<double> angles_rad;
-  std::vector<std::vector<TaggedCorner>> turning, fixed;  // corners on ring and table, by view
+  std::vector<std::vector<TaggedCorner>> turning, fixed;  // corners on ring and table, by picture
 
   Motion axis_motion{};                 // motion of the axis frame seen from the camera
   std::array<double, 4> ring_motion{};  // two tilts (rad), x, y (mm)
@@ -54,7 +54,7 @@ bool solve(Bundle& bundle);
 void judge_corners(Bundle& bundle);
 
 // Computes the covariance of the axis's tilts about x and y and of its place in x and y, for errors of 1 px; false when
-// the views leave a direction undetermined.
+// the pictures leave a direction undetermined.
 bool take_covariance(Bundle& bundle, Eigen::Matrix4d& out);
 
 struct Errors {
@@ -67,9 +67,9 @@ struct Errors {
 };
 
 struct AllErrors {
-  Errors used;                 // all corners used
-  std::vector<Errors> views;   // the corners used, by view
-  std::map<int, Errors> tags;  // all corners, by tag
+  Errors used;                   // all corners used
+  std::vector<Errors> pictures;  // the corners used, by picture
+  std::map<int, Errors> tags;    // all corners, by tag
 };
 
 AllErrors errors_of(Bundle& bundle);

@@ -18,12 +18,12 @@ Eigen::Vector2d middle_of(const std::vector<Eigen::Vector2d>& points) {
 
 }  // namespace
 
-StillTags still_tags(const TagLayout& layout, const std::vector<TagObservation>& views) {
+StillTags still_tags(const TagLayout& layout, const std::vector<TagObservation>& pictures) {
   StillTags still;
   for (const Tag& tag : layout.tags) {
     std::array<std::vector<Eigen::Vector2d>, 4> seen;
-    for (const TagObservation& view : views) {
-      for (const TagDetection& detection : view) {
+    for (const TagObservation& picture : pictures) {
+      for (const TagDetection& detection : picture) {
         if (detection.id != tag.id) continue;
         for (std::size_t c = 0; c < 4; ++c) seen[c].push_back(detection.corners_px[c]);
       }

@@ -15,8 +15,8 @@ namespace calibration {
 
 using StillTags = std::map<int, std::array<Eigen::Vector2d, 4>>;  // the four corners of each id, px
 
-// The median position of each corner of the layout's tags over the views that show it.
-StillTags still_tags(const TagLayout& layout, const std::vector<TagObservation>& views);
+// The median position of each corner of the layout's tags over the pictures that show it.
+StillTags still_tags(const TagLayout& layout, const std::vector<TagObservation>& pictures);
 
 struct Shift {
   Eigen::Vector2d mean_px = Eigen::Vector2d::Zero();  // the common shift: median over the tags seen

@@ -16,8 +16,8 @@ namespace calibration {
 struct Tag {
   int id = 0;
   double size_mm = 0.0;  // edge of the black square
-  Eigen::Isometry3d object_from_tag =
-      Eigen::Isometry3d::Identity();  // tag centre; +x right, +y up, +z towards the viewer
+  // Origin at the tag's centre; +x right, +y up, +z towards the viewer.
+  Eigen::Isometry3d object_from_tag = Eigen::Isometry3d::Identity();
 };
 
 struct TagLayout {

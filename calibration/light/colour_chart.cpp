@@ -54,7 +54,7 @@ Eigen::Matrix<T, 3, 1> applied(const T* free, const Vector3d& camera) {
   return out;
 }
 
-struct PatchResidual {
+struct SquareResidual {
   Vector3d camera, lab;
 
   template <typename T>
@@ -73,8 +73,8 @@ struct PatchResidual {
 void require_this_chart(const std::vector<Vector3d>& camera) {
   for (std::size_t i = 18; i < 23; ++i)
     if (!(camera[i].sum() > camera[i + 1].sum()))
-      refuse("the six grey patches do not darken from white to black",
-             "hold the chart upright, the brown patch at the top left, without shadow or gloss");
+      refuse("the six grey squares do not darken from white to black",
+             "hold the chart upright, the brown square at the top left, without shadow or gloss");
 }
 
 }  // namespace
@@ -147,16 +147,17 @@ double delta_e_2000(const Vector3d& lab, const Vector3d& other) {
 ColourFit fit_colours(const std::vector<Vector3d>& camera) {
   const auto& chart = colour_chart();
   if (camera.size() != chart.size())
-    refuse(std::to_string(camera.size()) + " patches were measured, the chart has " + std::to_string(chart.size()),
+    refuse(std::to_string(camera.size()) + " squares were measured, the chart has " + std::to_string(chart.size()),
            "bring the whole chart into the picture");
   for (std::size_t i = 0; i < camera.size(); ++i)
-    if (!camera[i].allFinite()) refuse("patch \"" + chart[i].name + "\" has no finite value", "take the picture again");
+    if (!camera[i].allFinite())
+      refuse("square \"" + chart[i].name + "\" has no finite value", "take the picture again");
   require_this_chart(camera);
   std::array<double, 6> free{1, 0, 0, 1, 0, 0};
   ceres::Problem problem;
   for (std::size_t i = 0; i < camera.size(); ++i)
     problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<PatchResidual, 3, 6>(new PatchResidual{camera[i], chart[i].lab_d50}), nullptr,
+        new ceres::AutoDiffCostFunction<SquareResidual, 3, 6>(new SquareResidual{camera[i], chart[i].lab_d50}), nullptr,
         free.data());
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
@@ -175,7 +176,7 @@ ColourFit fit_colours(const std::vector<Vector3d>& camera) {
   fit.gates = {at_most("colour: mean CIEDE2000 over the chart", fit.mean_delta_e, 4.0,
                        "beyond that pictures for people mislead; see that only the lamp shines and nothing glosses"),
                at_most("colour: largest CIEDE2000 over the chart", fit.largest_delta_e, 12.0,
-                       "one patch is far off; see that nothing shades or glosses on it, or replace the chart")};
+                       "one square is far off; see that nothing shades or glosses on it, or replace the chart")};
   return fit;
 }
 

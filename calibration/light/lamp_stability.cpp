@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "calibration/sensor/sensor_range.h"
+
 namespace calibration {
 namespace {
 
@@ -13,7 +15,7 @@ constexpr int kFewestRapid = 10;
 // The sum of the signal over all binned pixels.
 double signal_of(const SensorPicture& picture, const LevelBins& bins, const SensorMaps& maps) {
   double sum = 0;
-  const double ceiling = picture.black_level_dn + 0.98 * (picture.white_level_dn - picture.black_level_dn);
+  const double ceiling = dn_at(picture, kSaturated);
   for (int row = 0; row < bins.bin.rows; ++row)
     for (int column = 0; column < bins.bin.cols; ++column) {
       if (bins.bin(row, column) >= bins.count) continue;

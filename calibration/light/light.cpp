@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
-constexpr std::size_t kFewestPatches = 6;
+constexpr std::size_t kFewestSpots = 6;
 constexpr std::size_t kFewestPictures = 6;
 constexpr double kWeakest_mm = 8.0;      // largest standard error of a position, for the scatter and drift expected
 constexpr double kHeldOutLimit = 0.005;  // mean error of a picture that the fit has not seen
@@ -44,17 +44,17 @@ void check(const std::vector<PanelSpot>& spots, const std::vector<LightGuess>& g
     refuse("the size of the pictures is missing", "give it");
   for (const PanelSpot& spot : spots) {
     if (spot.light < 0 || spot.light >= static_cast<int>(guesses.size())) {
-      refuse("a patch belongs to light " + std::to_string(spot.light) + ", positions of " +
+      refuse("a spot belongs to light " + std::to_string(spot.light) + ", positions of " +
                  std::to_string(guesses.size()) + " lights were given",
              "give one guess per light");
     }
     if (spot.picture < 0 || spot.picture >= static_cast<int>(pictures))
-      refuse("a patch belongs to picture " + std::to_string(spot.picture) + " of " + std::to_string(pictures),
+      refuse("a spot belongs to picture " + std::to_string(spot.picture) + " of " + std::to_string(pictures),
              "give every picture");
     const bool finite = spot.point.allFinite() && spot.normal.allFinite() && spot.to_camera.allFinite() &&
                         spot.pixel.allFinite() && spot.radiance.allFinite() && spot.sigma.allFinite();
     if (!finite || !(spot.sigma.minCoeff() > 0.0))
-      refuse("a patch has a measurement that is not a finite number, or no standard error", "leave this picture out");
+      refuse("a spot has a measurement that is not a finite number, or no standard error", "leave this picture out");
   }
   for (const LightGuess& guess : guesses)
     if (!guess.position.allFinite() || !guess.aim.allFinite())
@@ -72,7 +72,7 @@ std::vector<LightPicture> named(std::vector<LightPicture> pictures, const std::v
   return pictures;
 }
 
-// The spots that face their light. Patches at grazing light tell more about the panel's edge and surface than about
+// The spots that face their light. Spots in grazing light tell more about the panel's edge and surface than about
 // the light and are left out.
 std::vector<PanelSpot> usable(const std::vector<PanelSpot>& spots, const std::vector<LightGuess>& guesses) {
   const double kSmallestCosine = std::sin(5.0 * kDegree);
@@ -103,9 +103,9 @@ void require_enough(const std::vector<PanelSpot>& used, const std::vector<LightG
       ++count;
     }
     const std::string name = guesses[light].name;
-    if (count < kFewestPatches) {
-      refuse("the " + name + " lights " + std::to_string(count) + " patches of the panel, at least " +
-                 std::to_string(kFewestPatches) + " are needed",
+    if (count < kFewestSpots) {
+      refuse("the " + name + " lights " + std::to_string(count) + " spots of the panel, at least " +
+                 std::to_string(kFewestSpots) + " are needed",
              "switch it on, turn the panel's face to the lamp and to the camera, and check the lamp's measured "
              "position");
     }
@@ -263,7 +263,7 @@ class PictureGate {
 void add_picture_gates(const LightSolver& solver, const Unknowns& x, const std::vector<LightPicture>& pictures,
                        LightFit& fit) {
   PictureGate output("lamp output in one picture, off by %", 100 * kOutputLimit),
-      residual("panel patches of one picture, rms error %", 100 * kResidualLimit);
+      residual("spots of the panel in one picture, rms error %", 100 * kResidualLimit);
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const auto errors = solver.relative_errors(x, static_cast<int>(i));
     if (errors.empty()) continue;

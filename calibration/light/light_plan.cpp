@@ -18,7 +18,7 @@ using Eigen::Isometry3d, Eigen::Vector2d, Eigen::Vector3d;
 
 constexpr double kUsedFraction = 0.84;  // part of the white square's edge, away from its border, which is blurred
 constexpr int kCells = 5;
-constexpr double kPatchSigma = 0.003;
+constexpr double kSpotSigma = 0.003;
 constexpr double kVignettingRadius2 = 0.5;  // squared distance from the centre, in half diagonals, that threads reach
 constexpr double kGainPerMm = 0.002;        // the error of the gain there that is as bad as 1 mm of a light's position
 
@@ -87,9 +87,9 @@ Eigen::MatrixXd picture_information(const PanelBench& bench, const LightGuess& g
   }
   Eigen::Matrix<double, kOwn + kCommon, kOwn + kCommon> one = decltype(one)::Zero();
   Eigen::Matrix<double, kOwn + kCommon, 1> sum = decltype(sum)::Zero();
-  for (const auto& row : rows) one += row * row.transpose() / (kPatchSigma * kPatchSigma), sum += row;
-  const double share = gain_sigma * gain_sigma / (kPatchSigma * kPatchSigma);
-  one -= sum * sum.transpose() * (share / (kPatchSigma * kPatchSigma) / (1 + static_cast<double>(rows.size()) * share));
+  for (const auto& row : rows) one += row * row.transpose() / (kSpotSigma * kSpotSigma), sum += row;
+  const double share = gain_sigma * gain_sigma / (kSpotSigma * kSpotSigma);
+  one -= sum * sum.transpose() * (share / (kSpotSigma * kSpotSigma) / (1 + static_cast<double>(rows.size()) * share));
 
   const Eigen::Index own = kOwn * pose.light, common = static_cast<Eigen::Index>(kOwn * lights);
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(common + kCommon, common + kCommon);

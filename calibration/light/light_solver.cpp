@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
-struct PatchResidual {
+struct SpotResidual {
   PanelSpot spot;
   BeamFrame frame;
   Vector3d seed_intensity;
@@ -108,12 +108,12 @@ std::vector<Vector3d> LightSolver::relative_errors(const Unknowns& x, int pictur
     if (spot.picture != picture) continue;
     const auto light = static_cast<std::size_t>(spot.light);
     Vector3d radiance;
-    const PatchResidual residual{spot,
-                                 frame(static_cast<std::size_t>(spot.light)),
-                                 seed_,
-                                 options_.albedo,
-                                 radius_squared(spot.pixel, options_.image_size),
-                                 bounces_[number]};
+    const SpotResidual residual{spot,
+                                frame(static_cast<std::size_t>(spot.light)),
+                                seed_,
+                                options_.albedo,
+                                radius_squared(spot.pixel, options_.image_size),
+                                bounces_[number]};
     residual.predict(x.positions[light].data(), x.beams[light].data(), x.lamp.data(), x.droop.data(), &x.table,
                      x.vignetting.data(), &x.log_outputs[static_cast<std::size_t>(picture)], radiance.data());
     errors.push_back((radiance.array() / spot.radiance.array() - 1.0).matrix());
@@ -129,7 +129,7 @@ void LightSolver::pose_problem(ceres::Problem& problem, Unknowns& x, int without
     const auto light = static_cast<std::size_t>(spot.light), picture = static_cast<std::size_t>(spot.picture);
     const double cosine = (guesses_[light].position - spot.point).normalized().dot(spot.normal);
     steepness[picture] = std::max(steepness[picture], std::sqrt(1.0 - cosine * cosine) / std::max(cosine, 0.05));
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PatchResidual, 3, 3, 2, 4, 2, 1, 2, 1>(new PatchResidual{
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<SpotResidual, 3, 3, 2, 4, 2, 1, 2, 1>(new SpotResidual{
                                  spot, frame(static_cast<std::size_t>(spot.light)), seed_, options_.albedo,
                                  radius_squared(spot.pixel, options_.image_size), bounces_[number]}),
                              new ceres::HuberLoss(4.0), x.positions[light].data(), x.beams[light].data(), x.lamp.data(),

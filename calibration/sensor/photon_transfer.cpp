@@ -8,6 +8,8 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "calibration/sensor/sensor_range.h"
+
 namespace calibration {
 namespace {
 
@@ -15,7 +17,6 @@ constexpr double kBinRatio = 1.25;  // between the levels of neighbouring bins
 constexpr int kFewestPixels = 300;  // in a bin
 constexpr int kMostBins = 250, kNoBin = 255;
 constexpr double kDimmestDn = 4.0;      // below it, errors of the dark level are too large a part of the signal
-constexpr double kBrightest = 0.92;     // part of the range; above it, single pixels saturate by noise
 constexpr double kLinearTo = 0.85;      // part of the range up to which linearity_residual is taken
 constexpr double kDarkErrorDn = 0.02;   // error of a bin's mean dark level
 constexpr double kLeastScatter = 1e-4;  // relative scatter of a bin's mean that remains between good pictures
@@ -252,8 +253,8 @@ PairLevels measure_pair(const SensorPicture& first, const SensorPicture& second,
     bool saturated = false;
   };
   std::vector<Sum> sums(static_cast<std::size_t>(bins.count));
-  const double limit = first.black_level_dn + kBrightest * (first.white_level_dn - first.black_level_dn);
-  const double ceiling = first.black_level_dn + 0.98 * (first.white_level_dn - first.black_level_dn);
+  const double limit = dn_at(first, kBrightest);
+  const double ceiling = dn_at(first, kSaturated);
   double all_first = 0, all_second = 0;
   const auto visit = [&](auto&& take) {
     for (int row = 0; row < bins.bin.rows; ++row)

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "calibration/sensor/median.h"
+#include "calibration/sensor/sensor_range.h"
 
 namespace calibration {
 namespace {
@@ -88,6 +89,47 @@ RelativePlane relative_to_surface(const cv::Mat1f& plane, const cv::Mat1b& bad) 
     allowed = 3 * std::sqrt(squares / std::max(count, 1));
   }
   return out;
+}
+
+using Planes = std::array<RelativePlane, kCells>;
+
+// The mean pictures of the white surface without their dark level.
+std::vector<cv::Mat1f> white_signals(const std::vector<PictureStack>& flats, double white_level_dn,
+                                     const SensorMaps& maps) {
+  std::vector<cv::Mat1f> signals;
+  for (const PictureStack& flat : flats) {
+    const cv::Mat1f mean = flat.mean_dn();
+    if (mean.size() != maps.bias_dn.size())
+      throw std::runtime_error("flat field: the pictures' sizes differ: use one camera");
+    if (median(mean) > kBrightest * white_level_dn)
+      throw std::runtime_error("flat field: the white surface is saturated: take it with a shorter exposure");
+    signals.emplace_back(mean - maps.bias_dn - maps.dark_dn_per_s * flat.exposure_s());
+  }
+  return signals;
+}
+
+std::vector<Planes> relative_planes(const std::vector<cv::Mat1f>& signals, const cv::Mat1b& bad) {
+  std::vector<Planes> relative(signals.size());
+  for (std::size_t flat = 0; flat < signals.size(); ++flat)
+    for (int cell = 0; cell < kCells; ++cell)
+      relative[flat][static_cast<std::size_t>(cell)] =
+          relative_to_surface(plane_of(signals[flat], cell), plane_of(bad, cell));
+  return relative;
+}
+
+// The pixels (255) whose mean relative value is far from 1.
+cv::Mat1b dead_pixels(const std::vector<Planes>& relative, const cv::Size& size) {
+  cv::Mat1b dead(size, uchar{0});
+  for (int row = 0; row < size.height; ++row)
+    for (int column = 0; column < size.width; ++column) {
+      float sum = 0, count = 0;
+      for (const Planes& planes : relative) {
+        const RelativePlane& plane = planes[static_cast<std::size_t>(row % 2 * 2 + column % 2)];
+        if (plane.usable(row / 2, column / 2)) sum += plane.value(row / 2, column / 2), count += 1;
+      }
+      if (count > 0 && (sum / count < 0.75F || sum / count > 1.25F)) dead(row, column) = 255;
+    }
+  return dead;
 }
 
 // The mean of `sum` / `weight` over a Gaussian window; 1 where the window holds nearly no usable pixel.
@@ -167,36 +209,8 @@ FlatFit fit_flat_maps(const std::vector<PictureStack>& flats, double white_level
   if (maps.bias_dn.size() != size || maps.dark_dn_per_s.size() != size)
     throw std::runtime_error("flat field: needs dark maps of the pictures' size: take dark frames with this camera");
   if (maps.bad.empty()) maps.bad = cv::Mat1b(size, uchar{0});
-  std::vector<cv::Mat1f> signals;
-  for (const PictureStack& flat : flats) {
-    const cv::Mat1f mean = flat.mean_dn();
-    if (mean.size() != size) throw std::runtime_error("flat field: the pictures' sizes differ: use one camera");
-    if (median(mean) > 0.92 * white_level_dn)
-      throw std::runtime_error("flat field: the white surface is saturated: take it with a shorter exposure");
-    signals.emplace_back(mean - maps.bias_dn - maps.dark_dn_per_s * flat.exposure_s());
-  }
-  // First the dead pixels are found on the relative planes; they are left out of the map below.
-  std::array<std::vector<RelativePlane>, kCells> relative;
-  cv::Mat1b dead(size, uchar{0});
-  for (int cell = 0; cell < kCells; ++cell) {
-    const auto c = static_cast<std::size_t>(cell);
-    cv::Mat1f sum;
-    cv::Mat1f count;
-    for (const cv::Mat1f& signal : signals) {
-      relative[c].push_back(relative_to_surface(plane_of(signal, cell), plane_of(maps.bad, cell)));
-      const RelativePlane& plane = relative[c].back();
-      if (sum.empty()) sum = cv::Mat1f(plane.value.size(), 0.0F), count = sum.clone();
-      for (int row = 0; row < sum.rows; ++row)
-        for (int column = 0; column < sum.cols; ++column)
-          if (plane.usable(row, column)) sum(row, column) += plane.value(row, column), count(row, column) += 1;
-    }
-    for (int row = 0; row < sum.rows; ++row)
-      for (int column = 0; column < sum.cols; ++column) {
-        if (count(row, column) == 0) continue;
-        const float value = sum(row, column) / count(row, column);
-        if (value < 0.75F || value > 1.25F) dead(2 * row + cell / 2, 2 * column + cell % 2) = 255;
-      }
-  }
+  const std::vector<Planes> relative = relative_planes(white_signals(flats, white_level_dn, maps), maps.bad);
+  const cv::Mat1b dead = dead_pixels(relative, size);
   fit.dead = cv::countNonZero(dead);
   maps.bad |= dead;
 
@@ -204,9 +218,9 @@ FlatFit fit_flat_maps(const std::vector<PictureStack>& flats, double white_level
   cv::Mat1f sum(size, 0.0F), weight(size, 0.0F);
   double squares = 0;
   long pairs = 0;
-  for (int cell = 0; cell < kCells; ++cell)
-    for (std::size_t flat = 0; flat < signals.size(); ++flat) {
-      const RelativePlane& plane = relative[static_cast<std::size_t>(cell)][flat];
+  for (const Planes& planes : relative)
+    for (int cell = 0; cell < kCells; ++cell) {
+      const RelativePlane& plane = planes[static_cast<std::size_t>(cell)];
       for (int row = 0; row < plane.value.rows; ++row)
         for (int column = 0; column < plane.value.cols; ++column) {
           const int r = 2 * row + cell / 2, c = 2 * column + cell % 2;
@@ -224,7 +238,7 @@ FlatFit fit_flat_maps(const std::vector<PictureStack>& flats, double white_level
   // The noise of one site comes from the differences of neighbours; a Gaussian window averages over 4 pi sigma^2 sites.
   const double one = pairs > 0 ? std::sqrt(squares / static_cast<double>(pairs) / 2) : 0.0;
   fit.flat_noise =
-      one / std::sqrt(4 * std::numbers::pi * smoothing_px * smoothing_px * static_cast<double>(signals.size()));
+      one / std::sqrt(4 * std::numbers::pi * smoothing_px * smoothing_px * static_cast<double>(flats.size()));
   double least = 1;
   cv::minMaxLoc(maps.flat, &least);
   fit.deepest = 1 - least;

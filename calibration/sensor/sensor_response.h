@@ -1,8 +1,8 @@
 // The response of one sensor at one ISO and aperture: how its numbers become radiance.
 //
 // DN - dark(p, t) = signal s; light collected = s exp(q s / range), range = white - black level; radiance = light /
-// (range * true shutter time * flat(p)), in the radiance unit of the architecture (1 = full scale per second). Variance
-// of s = gain * s + (gain * read noise)^2 [DN^2].
+// (range * true shutter time * flat(p)), in the radiance unit of the whole program (1 = full scale per second,
+// calibration/README.md). Variance of s = gain * s + (gain * read noise)^2 [DN^2].
 #pragma once
 
 #include <opencv2/core.hpp>

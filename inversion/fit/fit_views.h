@@ -40,7 +40,8 @@ struct FitOptions {
   // The start of the thread model, with the rule by which light leaves threads; the baselines have starts of their own.
   renderer::ThreadParameters start = starting_thread();
   std::vector<renderer::ThreadParameters> other_starts = other_starting_threads();  // may be empty
-  // Of ModelKind::paper. Of the other options it heeds the seed, adam_steps and, to say how certain it is, adam_paths.
+  // For ModelKind::paper, which heeds of the other options only the seed, adam_steps and, to say how certain it is,
+  // adam_paths.
   int paths_per_pixel = 8;
   // Paths per block in each round, of which there is at least one. Every start goes through all rounds but the last,
   // which is for the one that has got farthest. Adam goes from `start` alone, with adam_paths paths a step.

@@ -17,7 +17,7 @@ class MeanTerms {
   // Terms of a set of paths whose noise is independent of the others', traced at these unknowns, near theirs.
   void add(const ViewObjective::Halves& both, const Eigen::VectorXd& unknowns);
   bool empty() const { return sets_ == 0; }
-  // Of data_terms; they need one set at least, as does the next.
+  // The mean gradient of data_terms. Like hessian() and gradient_covariance(), it needs at least one set.
   Eigen::VectorXd gradient(const Eigen::VectorXd& unknowns) const { return (offsets_ + hessians_ * unknowns) / sets_; }
   Eigen::MatrixXd hessian() const { return hessians_ / sets_; }  // unknowns x unknowns
   // The covariance that the noise of pictures and paths gives the gradient of one set, summed over blocks, because the

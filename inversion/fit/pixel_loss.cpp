@@ -33,7 +33,7 @@ struct PartOfView {
   std::vector<Block> pixels;  // of one pixel each
   LightPaths paths;
 
-  // Of the pixels from `begin` to before `end`.
+  // Adds the loss of the pixels from `begin` to before `end` to `part`.
   Part loss(const BlockShader& shader, std::size_t begin, std::size_t end, Part part) const {
     const double diffuser = diffuser_radiance(view.light).mean();
     const Eigen::Array3d scale = view.light.intensity.array() / diffuser;

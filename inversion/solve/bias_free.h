@@ -11,10 +11,13 @@
 // below zero (measured: beta_R 0.06). So every step has paths of its own, traced at the unknowns that it starts from.
 // The steps are Newton steps whose Hessian is (J_A' J_B + J_B' J_A) / 2, made positive. The first ones go by the paths
 // of their own, with the Hessians of the steps before in a running mean. From then on all sets of paths count together:
-// the next place is the minimum of the mean of their quadratic models, L_k + g_k' (x - x_k) + (x - x_k)' H_k (x - x_k) / 2
-// of the set k traced at x_k, so that their noise averages out in gradient and Hessian alike. (Steps of 1/2, 1/3 ... by
-// one set each [Robbins and Monro 1951] average the gradient alone: measured.md compares.) Unknowns are kept within
-// bounds by holding those that a step would take outside.
+// the next place is the minimum of the mean of their quadratic models,
+//
+//   L_k + g_k' (x - x_k) + (x - x_k)' H_k (x - x_k) / 2   of the set k traced at x_k,
+//
+// so that their noise averages out in gradient and Hessian alike. (Steps of 1/2, 1/3 ... by one set each [Robbins and
+// Monro 1951] average the gradient alone: measured.md compares.) Unknowns are kept within bounds by holding those that
+// a step would take outside.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,8 +37,8 @@ using BiasFreeLoss = std::function<BiasFreeTerms(int step, const Eigen::VectorXd
 struct BiasFreeOptions {
   Eigen::VectorXd lower, upper;
   std::vector<int> held{};
-  // Terms that no paths estimate, such as penalties and a prior, at any unknowns; may be empty. Every step asks for them
-  // where it begins.
+  // Terms that no paths estimate, such as penalties and a prior, at any unknowns; may be empty. Every step asks for
+  // them where it begins.
   std::function<BiasFreeTerms(const Eigen::VectorXd& unknowns)> exact{};
   int own_steps = 4;     // by paths of their own
   int joint_steps = 6;   // by all paths from the last of those on

@@ -92,7 +92,7 @@ Known known_of(const LinearisedFit& fit, const std::vector<int>& chosen) {
   return {chosen, hessian, inverse * noise * inverse, total};
 }
 
-// Of a distance t from the bound, over the variance without the bound.
+// Moments of a distance t from the bound, over the variance without the bound.
 struct OneSided {
   double truth = 0;   // E[t^2] of the t > 0 of a normal density whose middle is `beyond` deviations below 0
   double spread = 0;  // the variance of what is left of such numbers when those below 0 become 0

@@ -50,8 +50,8 @@ struct LinearisedFit {
   std::vector<bool> held;            // unknowns that were not varied: no variance
   // -1: at its lower bound, 1: at its upper one, 0: neither.
   std::vector<int> bounds;
-  // Of the whole loss at the end of the fit; may be empty: unknowns at a bound count as if the loss were level there,
-  // which gives them the largest deviation.
+  // The gradient of the whole loss at the end of the fit. It may be empty: unknowns at a bound then count as if the
+  // loss were level there, which gives them the largest deviation.
   Eigen::VectorXd gradient;
   Eigen::VectorXd scales;  // what counts as a large change of each unknown
 };

@@ -19,7 +19,7 @@ bool corner(const std::vector<Vector2d>& line, std::size_t i) {
   return (line[i] - line[i - 1]).normalized().dot((line[i + 1] - line[i]).normalized()) < kCornerCosine;
 }
 
-// Of point k from the straight stitch a - b.
+// The distance of point k from the straight stitch a - b.
 double sag(const Vector2d& a, const Vector2d& b, const Vector2d& k) {
   const Vector2d along = b - a;
   const double length = along.norm();

@@ -8,8 +8,8 @@
 //
 // One table serves all threads: between fibers of 1/20 and 1/5 of the thread's radius, packed densely or loosely, of
 // any textile's refractive index and at inclinations up to 60 degrees the densities differ by less than they differ
-// from any simpler rule (exit_offsets_test.cpp prints by how much). It is that of light that is not absorbed; what is
-// absorbed favours short ways.
+// from any simpler rule (exit_offsets_test.cpp prints by how much). The table is for light that is not absorbed;
+// absorption favours short ways.
 #pragma once
 
 #include <Eigen/Core>
@@ -59,7 +59,8 @@ struct ExitOptions {
   std::function<bool(int done, int total)> progress{};  // returning false stops the work
 };
 
-// The mean of MultiFiberScattering::exits over threads that do not absorb at inclinations of 0, 30 and 60 degrees. Errors: std::runtime_error when stopped by `progress`.
+// The mean of MultiFiberScattering::exits over threads that do not absorb, at inclinations of 0, 30 and 60 degrees.
+// Errors: std::runtime_error when stopped by `progress`.
 std::vector<double> mean_exits(const std::vector<LibraryThread>& threads, const ExitOptions& options);
 
 }  // namespace renderer

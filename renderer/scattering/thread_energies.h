@@ -5,8 +5,8 @@
 //   lambda_1 = r1a c                                           r1a >= 0
 //   lambda_2 = 1/(r2a c + r2b) - 1/(r2a + r2b) + n2            r2a, r2b > 0 (logarithms), n2 >= 0
 //
-// The paper instead clamps r0c and penalises r0a + r0b > 0, which fixes a trend but does not make the energies positive
-// (models.md 1.7).
+// The paper instead clamps r0c and penalises r0a + r0b > 0, which fixes a trend but does not make the energies
+// positive.
 #pragma once
 
 #include <cmath>

@@ -34,7 +34,7 @@ struct Tiles {
   int x = 1, y = 1;
   int first_x = 0, first_y = 0;
 };
-// `tiles` and those about them, along x and y or along y alone, from which yarns reach into them.
+// The tiles and all neighbours, along x and y or along y alone, whose yarns reach into them.
 Tiles with_neighbours(const YarnPatch& patch, Tiles tiles, bool along_x);
 // A sheet of tiles, for brute-force rendering: every yarn runs in one piece from one border of the tiles to the other
 // and ends there; curves have no end caps.

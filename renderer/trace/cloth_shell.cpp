@@ -105,7 +105,7 @@ bool is_flat(const ClothSurface& surface, const Triangle& v) {
 // The range of spreads in which yarns keep their thickness; beyond it they are stretched with the surface.
 constexpr double kLeastSpread = 0.7, kMostSpread = 1.5;
 
-// Of the patch's x and y in the world, as far as yarns follow it.
+// The lengths of the patch's x and y in the world, as far as yarns follow them.
 Eigen::Array2d lengths_of_xy(const ShellCell& cell) {
   return world_from_patch(cell).leftCols<2>().colwise().norm().transpose().array().max(kLeastSpread).min(kMostSpread);
 }

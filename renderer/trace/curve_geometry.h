@@ -24,7 +24,7 @@ std::size_t bytes_of(const CurveSet& curves);
 CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u, const Eigen::Vector3f& hit_normal,
                           const Ray& ray, float distance, const Spread& spread = {});
 
-// Moves the section of a point whose tangent is where it shall be already by a linear map.
+// Moves a point's section by a linear map; its tangent has been moved already.
 void place_section(const Eigen::Matrix3f& linear, CurvePoint& point);
 
 }  // namespace renderer

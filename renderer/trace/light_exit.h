@@ -22,15 +22,15 @@
 
 namespace renderer {
 
-// The offset h = sin gamma_o of a ray that met a curve and came from unit direction wo: how far from the curve's axis it
-// passes, as a share of the half width that is seen from wo.
+// The offset h = sin gamma_o of a ray that met a curve and came from unit direction wo: how far from the curve's axis
+// it passes, as a share of the half width that is seen from wo.
 float offset_in_section(const CurvePoint& point, const Eigen::Vector3f& wo);
 
 // A place where light leaves, with how it was drawn.
 struct LightExit {
   Eigen::Vector3f place;      // world, on the thread's surface
   Eigen::Vector2f on_circle;  // of the section, (side, out) of CurvePoint as unit vectors
-  // By near(): the density of the place per radian, or the probability of the entry. 0: drawn for the very direction.
+  // What near() drew the place with: its density per radian, or the probability of the entry. 0: toward() drew it.
   float drawn = 0;
   bool at_entry = true;
 };
@@ -62,12 +62,12 @@ class ThreadExits {
     float cosine = 0;                 // of the inclination; 0: along the tangent
   };
   Seen seen_from(const Eigen::Vector3f& direction) const;
-  // Of wi relative to wo, about the tangent.
+  // The azimuth of wi relative to wo, about the tangent.
   float azimuth_of(const Eigen::Vector3f& wi) const;
   LightExit at(const Eigen::Vector2f& on_circle, float drawn) const;
   LightExit at_entry(float drawn) const;
   bool faces_entry(const Seen& seen) const { return seen.cosine == 0 || seen.outward.y() >= 0; }
-  // Per radian of the circle, of light that goes along wi, seen as `seen`.
+  // The density per radian of the circle with which light along wi leaves there; `seen`: seen_from(wi).
   float density(const Eigen::Vector2f& on_circle, const Seen& seen, const Eigen::Vector3f& wi) const;
 
   ThreadExit rule_;

@@ -19,8 +19,8 @@ struct CurvePoint {
   std::uint32_t curve_set;   // number of the scattering model, as in scattering_models()
   Eigen::Vector3f position;  // just below the surface, where scattered rays start: they cannot meet the same spot again
   Eigen::Vector3f tangent, normal;  // unit, perpendicular to each other; normal points outwards
-  // The section across the tangent is the ellipse of all points axis + x side + y out with x^2 + y^2 = 1, mm; `out` leads
-  // from the axis to `position`, `side` along the surface there. On a round yarn both are as long as the radius.
+  // The section across the tangent is the ellipse of all points axis + x side + y out with x^2 + y^2 = 1, mm; `out`
+  // leads from the axis to `position`, `side` along the surface there. On a round yarn both are as long as the radius.
   Eigen::Vector3f side, out;
   const cv::Vec3f* absorption = nullptr;  // texel of the cloth's AbsorptionTexture there, if it has one
 };

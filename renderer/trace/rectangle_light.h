@@ -11,14 +11,14 @@
 
 namespace renderer {
 
-// In sr, seen from `point`; 0 from behind.
+// The solid angle (sr) of the light seen from `point`; 0 from behind.
 double solid_angle(const RectangleLight& light, const Eigen::Vector3d& point);
 // Distance (mm) to the bright side along a unit direction.
 std::optional<double> distance_to(const RectangleLight& light, const Eigen::Vector3d& origin,
                                   const Eigen::Vector3d& direction);
 // Unit direction towards the light, whose solid angle from `origin` must not be 0; u in [0, 1)^2.
 Eigen::Vector3d direction_to(const RectangleLight& light, const Eigen::Vector3d& origin, const Eigen::Vector2f& u);
-// RGB; the same for all points before the light.
+// The radiance (RGB), the same for all points before the light.
 inline Eigen::Vector3d radiance_at(const RectangleLight& light, const Eigen::Vector3d&) {
   return light.radiance;
 }

@@ -36,12 +36,12 @@ class YarnGrid {
     Eigen::Vector3f normal;        // outwards where the curves are round, not unit
   };
 
-  // `least_spread`: of all rays to come.
+  // `least_spread`: the smallest spread that any ray will have.
   YarnGrid(const std::vector<ColumnYarns>& yarns, const Eigen::Vector2d& period_mm, float least_spread = 1);
 
   // The first place within `length` where the ray enters a yarn. The ray is given in the endless patch; its direction
   // need not be a unit vector, and it leaves yarns in which it starts without a hit. The hits are those of Embree's
-  // round curves, which Embree finds to 0.002 radii and this grid to 0.0002. `spread`: of the cloth where the ray is;
+  // round curves, which Embree finds to 0.002 radii and this grid to 0.0002. `spread`: the cloth's where the ray is;
   // yarns are as thick in the world as on a flat surface, whatever the patch is stretched by there.
   std::optional<Hit> nearest(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, float length,
                              const Spread& spread = {}) const;

@@ -2,7 +2,7 @@
 // each yarn against contact with the others, in a cell that repeats.
 //
 // The energy is that of yarn_elasticity.h and yarn_contact.h; contact stiffens in steps until yarns overlap by no more
-// than `overlap_goal`. Source: models.md section 4.2, after Leaf et al. 2018.
+// than `overlap_goal`. Source: after Leaf et al. 2018.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,11 +13,11 @@
 namespace renderer {
 
 struct RelaxationOptions {
-  int points_per_crossing = 8;  // control points; even
-  double overlap_goal = 0.005;  // largest overlap wanted, as a share of the thinnest yarn's radius
-  double gradient_goal = 1e-8;  // largest component wanted, as a share of force_scale_n
-  int most_stages = 10;         // of contact stiffness, each four times the one before
-  bool quasi_newton = false;    // L-BFGS before Newton
+  int points_per_crossing = kPointsPerCrossing;  // control points; even
+  double overlap_goal = 0.005;                   // largest overlap wanted, as a share of the thinnest yarn's radius
+  double gradient_goal = 1e-8;                   // largest component wanted, as a share of force_scale_n
+  int most_stages = 10;                          // of contact stiffness, each four times the one before
+  bool quasi_newton = false;                     // L-BFGS before Newton
 };
 
 struct RelaxationReport {

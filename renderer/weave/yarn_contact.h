@@ -9,9 +9,9 @@
 // of its own a and the other's b; and between yarns side by side at the sum of both a. Where thickness varies along a
 // yarn, each sample has the section of its place.
 //
-// Source: Kaldor et al. 2008 (models.md 4.1, 4.2). A single integral over samples and closest points was tried and
-// refused: where yarns wrap each other, a yarn's crown is the centre of the other's arc, so that the closest point may
-// be anywhere on that arc, and the energy has a kink at just the shape that is sought.
+// Source: Kaldor et al. 2008. A single integral over samples and closest points was tried and refused: where yarns wrap
+// each other, a yarn's crown is the centre of the other's arc, so that the closest point may be anywhere on that arc,
+// and the energy has a kink at just the shape that is sought.
 #pragma once
 
 #include "renderer/weave/weave_model.h"

@@ -4,8 +4,8 @@
 //   tension    T L
 //   axial      EA / 2 (L / L0 - 1)^2 L0: without friction the strain is the same all along the yarn
 //   bending    B / 2 integral kappa^2 ds = B / 2 integral |y' x y''|^2 / |y'|^5 dt      (straight at rest, no twist)
-// by three Gauss points per segment. No energy depends on where along the yarn its points lie. Source: models.md
-// section 4.2 (there on nodes; here on the spline that is rendered, so that both are one curve).
+// by three Gauss points per segment. No energy depends on where along the yarn its points lie. They are integrals along
+// the spline that is rendered, so that the yarn at rest and the one in the picture are one curve.
 #pragma once
 
 #include "renderer/weave/weave_model.h"

@@ -6,7 +6,7 @@
 // path that does not enter them, the tension-dominated limit (Peirce 1937; there D = 2 d and h is twice our height).
 // In open cloth that path would bend sharply on the crossing yarn and no stiffness allows it; there the arcs take
 // kLeastArcShare of the path, which gives the crimp 0.6 (h/p)^2 of clamped beams of small slope. No arc is tighter
-// than contact, so neither shape enters the crossing yarns. Source: models.md section 4.3.
+// than contact, so neither shape enters the crossing yarns.
 #pragma once
 
 #include <Eigen/Core>

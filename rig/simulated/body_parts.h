@@ -59,7 +59,7 @@ struct WaitingPicture {
   std::size_t size = 0;
 };
 
-// May be asked from any thread.
+// The parts of one body; any thread may ask them.
 class BodyParts {
  public:
   explicit BodyParts(Camera& camera) : camera_(camera) {}

@@ -52,8 +52,8 @@ struct TrueTurntable {
 
 struct TrueLamp {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // where the operator put it; world, mm
-  Eigen::Vector3d intensity =
-      Eigen::Vector3d::Ones();  // RGB, radiance unit x mm^2 (irradiance at distance d facing: I / d^2)
+  // RGB, radiance unit x mm^2 (irradiance at distance d facing: I / d^2).
+  Eigen::Vector3d intensity = Eigen::Vector3d::Ones();
   double radius_mm = 4;
   // The beam: intensity falls off as cos^beam_exponent of the angle from the direction to `aim` (world, mm).
   Eigen::Vector3d aim = Eigen::Vector3d::Zero();

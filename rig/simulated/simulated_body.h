@@ -68,7 +68,7 @@ std::unique_ptr<SimulatedBody> make_simulated_body(Camera& camera, CameraMake ma
 // The PTP property of the aperture, which a camera does not have with a lens that has no electronic one.
 std::uint16_t aperture_property(CameraMake make);
 
-// The one of a make (simulated_sony.cpp, simulated_canon.cpp, simulated_nikon.cpp).
+// The body of one make (simulated_sony.cpp, simulated_canon.cpp, simulated_nikon.cpp).
 std::unique_ptr<SimulatedBody> make_simulated_sony(Camera& camera);
 std::unique_ptr<SimulatedBody> make_simulated_canon(Camera& camera);
 std::unique_ptr<SimulatedBody> make_simulated_nikon(Camera& camera);

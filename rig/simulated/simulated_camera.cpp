@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "rig/cameras/live_view.h"
+#include "rig/simulated/live_view.h"
 #include "rig/simulated/noise.h"
 #include "rig/simulated/raw_writer.h"
 #include "rig/simulated/simulated_bench.h"

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 
@@ -42,12 +43,12 @@ class PlatformMemory {
 
 struct StepperSetup {
   HomeBy home_by = HomeBy::here;
-  double limit_rad = 6.283185307179586;  // largest angle either way: one turn
+  double limit_rad = 2 * std::numbers::pi;  // largest angle either way: one turn
   double backlash_rad = 0;
   double move_timeout_s = 120;  // for one move or one homing
   double stall_timeout_s = 3;   // for a move during which the reading does not change
-  std::shared_ptr<PlatformMemory>
-      memory{};  // for HomeBy::here; without one the platform is believed to stand at its mark
+  // For HomeBy::here; without one the platform is believed to stand at its mark.
+  std::shared_ptr<PlatformMemory> memory{};
 };
 
 // Opens the line and connects to the controller. It is called again after the controller was lost; the port may then

@@ -16,8 +16,8 @@ class BenchFault : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Does the bench's part of the work: whatever it throws is a BenchFault with that message. Only a person who declines
-// (rig::Declined) stays one.
+// Calls `work` and throws what it throws as a BenchFault with the same message. Only rig::Declined, a person who
+// declines, is passed on unchanged.
 template <typename Work>
 auto on_bench(const Work& work) -> decltype(work()) {
   try {
@@ -31,7 +31,7 @@ auto on_bench(const Work& work) -> decltype(work()) {
   }
 }
 
-// The same device, of which every function throws BenchFault where the device throws.
+// A device that passes every call on and throws BenchFault where this one throws.
 std::unique_ptr<rig::Camera> throwing_bench_faults(std::unique_ptr<rig::Camera> camera);
 std::unique_ptr<rig::Turntable> throwing_bench_faults(std::unique_ptr<rig::Turntable> turntable);
 

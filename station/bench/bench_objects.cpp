@@ -115,14 +115,14 @@ std::vector<renderer::TriangleMesh> colour_chart_meshes(const ColourChart& chart
                                                         const Eigen::Matrix3d& camera_from_linear_srgb) {
   std::vector<renderer::TriangleMesh> meshes{
       rectangle(Eigen::Isometry3d::Identity(), chart.plate_mm, chart.plate_mm, plain(kBlackPaintAlbedo))};
-  const auto& patches = calibration::colour_chart();
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    const Eigen::Vector3d colour = camera_from_linear_srgb * calibration::linear_srgb_of_lab(patches[i].lab_d50);
+  const auto& squares = calibration::colour_chart();
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    const Eigen::Vector3d colour = camera_from_linear_srgb * calibration::linear_srgb_of_lab(squares[i].lab_d50);
     const Eigen::Vector3f albedo = colour.cwiseMax(0.0).cwiseMin(1.0).cast<float>();
     const Eigen::Isometry3d place(
         Eigen::Translation3d(chart_square_centre(chart, i) + Eigen::Vector3d(0, 0, kPaperLift_mm)));
-    meshes.push_back(
-        rectangle(place, chart.patch_mm, chart.patch_mm, cv::Mat3f(1, 1, cv::Vec3f(albedo[0], albedo[1], albedo[2]))));
+    meshes.push_back(rectangle(place, chart.square_mm, chart.square_mm,
+                               cv::Mat3f(1, 1, cv::Vec3f(albedo[0], albedo[1], albedo[2]))));
   }
   add_tags(meshes, chart.tags);
   return meshes;

@@ -12,12 +12,14 @@
 #include "station/bench/bench_objects.h"
 #include "station/bench/camera_adapter.h"
 #include "station/bench/cloth_on_cylinder.h"
+#include "station/documents/matrix_rows.h"
 
 namespace station {
 namespace {
 
 constexpr int kPiecesPerFiber = 10;
 constexpr int kPackingAttempts = 3000, kPackingTries = 40;
+constexpr std::uint64_t kPictureSeedStep = 7919;  // between the seeds of two pictures
 constexpr double kRoomLampRadius_mm = 250;
 const Eigen::Vector3d kRoomLampPosition(900, 350, 1100);  // above and beside the camera: upright targets are lit too
 
@@ -43,10 +45,6 @@ void add(renderer::Scene& scene, std::vector<renderer::TriangleMesh> meshes, con
     transform(mesh, scene_from_mesh);
     scene.meshes.push_back(std::move(mesh));
   }
-}
-
-Eigen::Matrix3d matrix_of(const std::array<double, 9>& rows) {
-  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rows.data());
 }
 
 struct Painter {
@@ -114,7 +112,7 @@ struct Painter {
         camera_of(lens_of(state.lens), object_from_world * state.lens.world_from_camera, false);
     renderer::RenderOptions options;
     options.samples_per_pixel = rig.simulation->target_samples_per_pixel;
-    options.seed = rig.simulation->truth.seed + 7919 * ++pictures;
+    options.seed = rig.simulation->truth.seed + kPictureSeedStep * ++pictures;
     const bool threads =
         state.arrangement.object == rig::BenchObject::holder || state.arrangement.object == rig::BenchObject::cylinder;
     const bool threads_lit = threads && state.lamp;
@@ -160,7 +158,7 @@ renderer::CurveSet spool_fibers(const Spool& spool) {
   const SimulatedFibers& fibers = simulated_fibers(spool);
   renderer::CurveSet curves;
   curves.scattering = fibers.scattering;
-  std::uint64_t seed = fibers.seed * 1000;  // a stream of its own for every thread of every spool
+  std::uint64_t seed = fibers.seed * kSeedsPerSpool;  // a stream of its own for every thread of every spool
   for (const inversion::Segment3& line : inversion::thread_lines(spool.wrapping)) {
     for (const Eigen::Vector2d& centre : fiber_centres(spool, ++seed * kFiberSeedStep)) {
       const Eigen::Vector3d offset(centre.x(), 0, centre.y());  // threads run along y

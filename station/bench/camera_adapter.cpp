@@ -1,10 +1,9 @@
 #include "station/bench/camera_adapter.h"
 
-#include <algorithm>
-#include <cctype>
 #include <string>
 
 #include "calibration/develop/linear_grey.h"
+#include "station/documents/text_pieces.h"
 
 namespace station {
 
@@ -13,9 +12,7 @@ double f_number_of(const calibration::SensorPicture& picture) {
 }
 
 bool is_raw_file(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();  // with its point
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case(file.extension().string());  // with its point
   return !extension.empty() && rig::is_raw_extension(std::string_view(extension).substr(1));
 }
 
@@ -50,10 +47,6 @@ inversion::NearLight lamp_in_holder(const RigCalibration& calibration, const Rig
           .radius_mm = rig.lamp_radius_mm,
           .beam_axis = holder_from_world.linear() * axis,
           .beam_exponent = lamp.beam_exponent};
-}
-
-cv::Mat1f linear_grey(const calibration::SensorPicture& picture) {
-  return calibration::linear_grey(picture);
 }
 
 calibration::TagObservation tags_in(const calibration::SensorPicture& picture) {

@@ -22,10 +22,6 @@ renderer::Camera camera_of(const calibration::Lens& lens, const Eigen::Isometry3
 // The simulated bench's lens as calibration describes lenses.
 calibration::Lens lens_of(const rig::TrueLens& lens);
 
-// The grey of a raw picture: the mean of its demosaiced colours, linear, with the lens's distortion, nothing below
-// zero.
-cv::Mat1f linear_grey(const calibration::SensorPicture& picture);
-
 // The calibrated lamp at one of its places, as the fit of the threads sees it. In front on the left its place is the
 // rig file's, and all else is calibrated.
 inversion::NearLight lamp_in_holder(const RigCalibration& calibration, const RigFile& rig, rig::Lamp place,
@@ -38,7 +34,7 @@ double f_number_of(const calibration::SensorPicture& picture);
 // True when the file's name ends as those of raw pictures do, in capitals or not.
 bool is_raw_file(const std::filesystem::path& file);
 
-// The tags in a raw picture, found in its linear_grey.
+// The tags in a raw picture, found in its grey (calibration/develop/linear_grey.h).
 calibration::TagObservation tags_in(const calibration::SensorPicture& picture);
 
 }  // namespace station

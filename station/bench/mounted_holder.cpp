@@ -1,6 +1,7 @@
 #include "station/bench/mounted_holder.h"
 
 #include <algorithm>
+#include <numbers>
 #include <stdexcept>
 
 #include "calibration/geometry/pose.h"
@@ -18,6 +19,21 @@ void require_tags(const PosePicture& picture, const calibration::TagLayout& hold
 }
 
 }  // namespace
+
+Eigen::Isometry3d nominal_holder_pose(const RigFile& rig, const inversion::WrappedSpool& spool,
+                                      rig::Mounting mounting) {
+  const bool vertical = mounting == rig::Mounting::vertical;
+  const double half_height_mm = (vertical ? spool.frame_width_mm : spool.frame_height_mm) / 2;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation().z() = rig.platform_height_mm + half_height_mm;
+  if (vertical) pose.rotate(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX()));
+  return pose;
+}
+
+Eigen::Isometry3d nominal_pose(const RigFile& rig, const Spool& spool, rig::Mounting mounting) {
+  if (!spool.fabric) return nominal_holder_pose(rig, spool.wrapping, mounting);
+  return Eigen::Isometry3d(Eigen::Translation3d(0, 0, rig.platform_height_mm));
+}
 
 long tags_of_holder(const PosePicture& picture, const calibration::TagLayout& holder) {
   const auto of_holder = [&](const calibration::TagDetection& seen) {

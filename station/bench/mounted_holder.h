@@ -1,4 +1,4 @@
-// Where the holder stands on the platform, from the pose pictures of a mounting.
+// Where the holder stands on the platform: nominally, and as the pose pictures of a mounting show it.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -8,8 +8,16 @@
 #include "calibration/geometry/tags.h"
 #include "station/documents/calibration_file.h"
 #include "station/documents/rig_file.h"
+#include "station/documents/spool.h"
 
 namespace station {
+
+// The nominal pose of the holder in the world frame at platform angle 0: upright on the platform, its front over the
+// axis; turned a quarter for vertical threads.
+Eigen::Isometry3d nominal_holder_pose(const RigFile& rig, const inversion::WrappedSpool& spool, rig::Mounting mounting);
+// The nominal pose of what is photographed: the holder's, or that of a cylinder, which stands upright in the middle of
+// the platform.
+Eigen::Isometry3d nominal_pose(const RigFile& rig, const Spool& spool, rig::Mounting mounting);
 
 struct PosePicture {
   std::string step;

@@ -2,7 +2,8 @@
 //
 // A platform stays where it is whoever starts the next program, so the file belongs to the turntable and not to a
 // folder of sessions: $XDG_STATE_HOME/threadstation (~/.local/state/threadstation), one file for each port, whatever
-// link to it is used. Its key "turning" is true when the program was ended in the middle of a move.
+// link to it is used. Its key "turning" is true when the program was ended in the middle of a move, "lost" when nobody
+// knows where the platform stands.
 #pragma once
 
 #include <filesystem>

@@ -41,15 +41,15 @@ std::optional<ChipReading> read_chip(const cv::Mat3f& radiance, const cv::Mat1b&
                                      const inversion::WrappedSpool& spool, rig::Mounting mounting,
                                      const inversion::NearLight& light, const Eigen::Vector2d& droop);
 
-// The strength of the lamp in each of a series of views relative to the first (1), from their readings. Readings under
-// the lamp in front and behind differ by a factor, because position and surface are not known as well as a reading
-// repeats; it is chosen so that a series behind lies, in the mean, on the straight line in time between the readings in
-// front before and after it. A view without a reading gets its predecessor's strength.
 struct ChipView {
   bool behind = false;
   double time_s = 0.0;  // of the picture, from any beginning
   std::optional<ChipReading> reading;
 };
+// The strength of the lamp in each of a series of views relative to the first (1), from their readings. Readings under
+// the lamp in front and behind differ by a factor, because position and surface are not known as well as a reading
+// repeats; it is chosen so that a series behind lies, in the mean, on the straight line in time between the readings in
+// front before and after it. A view without a reading gets its predecessor's strength.
 std::vector<double> lamp_strengths(const std::vector<ChipView>& views);
 
 }  // namespace station

@@ -35,12 +35,12 @@ struct RigDevices {
   std::unique_ptr<rig::Operator> person;
 };
 
-// Connects all devices. The clock is the machine's as soon as a device is real, and a simulated one otherwise. Errors:
-// BenchFault, of camera and turntable, also in all that they are asked later; std::runtime_error when the pictures
-// would be of another bench than the turntable turns. `spool` is what is wrapped on the holder; a simulated bench needs
-// it to draw the holder. `asked` is asked where the rig needs a person, and must outlive the devices; without one such
-// a rig is refused. On a simulated bench the simulated hand then does what the person was asked. Ctrl-C stops the
-// turntable, whoever drives it (guarded_turntable.h).
+// Connects all devices. The clock is the machine's as soon as a device is real, and a simulated one otherwise. `spool`
+// is what is wrapped on the holder; a simulated bench needs it to draw the holder. `asked` is asked where the rig needs
+// a person, and must outlive the devices; without one such a rig is refused. On a simulated bench the simulated hand
+// then does what the person was asked. Ctrl-C stops the turntable, whoever drives it (guarded_turntable.h). Errors:
+// BenchFault where camera or turntable fail, now or whenever they are asked later; std::runtime_error for a simulated
+// camera with a real turntable or the reverse.
 RigDevices open_rig(const RigFile& rig, const std::optional<Spool>& spool, rig::AskedPerson* asked);
 
 // One device alone, with its clock; what is simulated stands on a bench that nobody draws.

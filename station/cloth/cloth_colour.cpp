@@ -9,6 +9,7 @@
 #include "renderer/scene/cloth_shape.h"
 #include "renderer/scene/patch_curves.h"
 #include "renderer/trace/path_tracer.h"
+#include "station/documents/matrix_rows.h"
 #include "station/output/interrupt.h"
 
 namespace station {
@@ -16,7 +17,6 @@ namespace {
 
 using Eigen::Array3d;
 using Eigen::Vector3d;
-using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 }  // namespace
 
@@ -60,7 +60,7 @@ Array3d even_light_reflectance(const renderer::YarnPatch& patch, const renderer:
 }
 
 ColouredThread coloured_thread(const ThreadFile& thread, const AbsorptionCurves& curves, const Srgb8& colour) {
-  const Matrix to_srgb = Eigen::Map<const Matrix>(thread.linear_srgb_from_camera.data());
+  const Eigen::Matrix3d to_srgb = matrix_of(thread.linear_srgb_from_camera);
   const cv::Vec3f decoded = renderer::linear_of_srgb({colour[0], colour[1], colour[2]});
   const Vector3d linear(decoded[0], decoded[1], decoded[2]), wanted = to_srgb.inverse() * linear;
   ColouredThread made{.parameters = thread.parameters};

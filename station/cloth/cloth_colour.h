@@ -22,7 +22,7 @@ namespace station {
 Eigen::Array3d even_light_reflectance(const renderer::YarnPatch& patch, const renderer::ThreadParameters& thread,
                                       std::uint64_t seed = 1);
 
-using AbsorptionCurves = std::array<inversion::AbsorptionCurve, 3>;  // one for each of the camera\'s channels
+using AbsorptionCurves = std::array<inversion::AbsorptionCurve, 3>;  // one for each of the camera's channels
 
 // The curves through the colours (camera RGB) that the thread has at `count` absorptions, alike in all channels.
 // `colour_of` measures the thread with one of them. `done` is told the finished part. Errors: std::runtime_error when

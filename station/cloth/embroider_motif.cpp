@@ -13,6 +13,7 @@
 #include "renderer/trace/path_tracer.h"
 #include "station/cloth/cloth_colour.h"
 #include "station/cloth/render/render_scene.h"
+#include "station/documents/matrix_rows.h"
 #include "station/documents/motif_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/scene_names.h"
@@ -28,7 +29,6 @@ namespace {
 using Eigen::Array3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 constexpr int kSamples = 64;           // per pixel, of the curves and without a scene
 constexpr double kEye_mm = 1000;       // above the cloth
@@ -41,9 +41,8 @@ Vector3d linear_of(const Srgb8& colour) {
 }
 
 renderer::Camera camera_above(const Vector2d& low, const Vector2d& high, double pixels_per_mm) {
-  constexpr double kMostPixels = 1e8;
   const Vector2d middle = (low + high) / 2, size = (high - low) * pixels_per_mm;
-  if (!(size.prod() < kMostPixels))
+  if (!(size.prod() < renderer::kMostPicturePixels))
     throw std::runtime_error("the picture would have " + std::to_string(size.prod() / 1e6) +
                              " million pixels, at most 100 million are rendered; ask for fewer pixels per millimetre");
   renderer::Camera camera =
@@ -100,10 +99,6 @@ AbsorptionCurves curves_of_satin(const renderer::ThreadParameters& thread, doubl
     return Array3d(mean[0], mean[1], mean[2]);
   };
   return absorption_curves(thread, 14, seen, done);
-}
-
-Eigen::Matrix3d srgb_from_camera(const ThreadFile& thread) {
-  return Eigen::Map<const Matrix>(thread.linear_srgb_from_camera.data());
 }
 
 std::optional<Srgb8> wanted_colour(const renderer::Motif& motif, std::size_t thread, const EmbroiderRequest& request) {
@@ -222,7 +217,7 @@ Embroidery embroider(const EmbroiderRequest& request) {
   ReadyScene scene;
   if (!request.scene.empty()) scene = ready_scene(request);
   ProgressDisplay progress("embroider", request.progress_style);
-  const Eigen::Matrix3d to_camera = srgb_from_camera(digitized).inverse();
+  const Eigen::Matrix3d to_camera = matrix_of(digitized.linear_srgb_from_camera).inverse();
   const Array3d ground = (to_camera * linear_of(request.ground)).cwiseMax(0).cwiseMin(1).array();
   int shown = -1;
   const auto show = [&](double percent, const char* what) {

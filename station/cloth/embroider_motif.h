@@ -25,8 +25,8 @@ struct EmbroiderRequest {
   std::optional<int> samples_per_pixel{};    // 64, or the scene's
   std::filesystem::path scene{};  // sewn on a cloth of this scene instead, which is written beside `out` as .json
   int cloth = 0;                  // which of its cloths
-  std::optional<Eigen::Vector2d>
-      at_mm{};  // where in its patch the motif's middle lies; else in the middle of the cloth
+  // Where in the patch of that cloth the motif's middle lies; else in the middle of the cloth.
+  std::optional<Eigen::Vector2d> at_mm{};
   double turn_deg = 0;
   std::uint64_t seed = 1;
   ProgressStyle progress_style = ProgressStyle::automatic;
@@ -48,10 +48,10 @@ struct Embroidery {
   std::string image;
 };
 
-// With a scene the picture is render_scene's, and the scene that it is of can be rendered again. Threads whose colour
-// neither file nor request says keep the digitized thread's own. Ctrl-C stops it. Errors: std::runtime_error with one
-// line: those of motif_file.h, thread_file.h, stitch_curves.h and picture_destination.h, those of render_scene, a
-// picture of more than 100 million pixels.
+// Embroiders and renders the motif. With a scene, render_scene draws it, and the scene with the motif is written beside
+// the picture, to be rendered again. Threads whose colour neither file nor request says keep the digitized thread's
+// own. Ctrl-C stops it. Errors: std::runtime_error with one line: those of motif_file.h, thread_file.h, stitch_curves.h
+// and picture_destination.h, those of render_scene, a picture of more than 100 million pixels.
 Embroidery embroider(const EmbroiderRequest& request);
 
 std::string describe(const Embroidery& embroidery);

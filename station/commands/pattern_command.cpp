@@ -36,7 +36,7 @@ void add_pattern_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--ends", request.ends, "warp yarns across the picture; without it one for each of its pixels")
       ->check(CLI::Range(1, 1 << 20));
-  command->add_option("--exposure", request.exposure, "brightness of the picture, 1 = as it is")
+  command->add_option("--exposure", request.brightness, "brightness of the picture, 1 = as it is")
       ->check(CLI::Range(1e-3, 1e3))
       ->capture_default_str();
   CLI::Option* as_it_is =
@@ -74,7 +74,7 @@ void add_pattern_command(CLI::App& app) {
                             .weft_thread = arguments->jacquard_weft,
                             .draft = asked.draft,
                             .ends = asked.ends,
-                            .exposure = asked.exposure,
+                            .brightness = asked.brightness,
                             .seed = asked.seed,
                             .progress_style = asked.progress_style}));
   });

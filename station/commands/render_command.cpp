@@ -62,7 +62,8 @@ void add_render_command(CLI::App& app) {
       ->check([](const std::string& text) { return parse_noise(text) ? "" : "give 0.01% to 100%"; });
   command->add_option("--seed", request.seed, "another number gives another noise")->capture_default_str();
   command->add_option("--threads", request.threads, "processor threads, 0 for all")->check(CLI::Range(0, 4096));
-  command->add_option("--exposure", request.exposure, "PNG: radiance times this is shown")->check(CLI::PositiveNumber);
+  command->add_option("--exposure", request.brightness, "PNG: radiance times this is shown")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--png", request.png, "a PNG beside the EXR");
   command->add_flag("--layers", request.layers,
                     "EXR: albedo, normal, depth, cover, thread and yarn of what each pixel shows, as channels");

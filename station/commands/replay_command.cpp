@@ -4,6 +4,7 @@
 
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/output/progress.h"
 #include "station/session/replay_session.h"
 
 namespace station {
@@ -21,7 +22,7 @@ void run(Arguments& arguments) {
   request.progress_style = arguments.output.progress_style();
   const auto began = std::chrono::steady_clock::now();
   const ReplayReport report = replay_session(arguments.recorded, request, arguments.resume);
-  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  const double took_s = seconds_since(began);
   if (arguments.output.json)
     std::cout << nlohmann::json{{"state", state_name(report.state)},
                                 {"runs", report.runs},

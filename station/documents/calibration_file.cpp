@@ -5,6 +5,7 @@
 #include "station/documents/degree.h"
 #include "station/documents/gate_list.h"
 #include "station/documents/lens_file.h"
+#include "station/documents/matrix_rows.h"
 #include "station/documents/reader.h"
 
 namespace station {
@@ -188,7 +189,7 @@ calibration::LightFit parse_light(ObjectReader reader, double& albedo) {
 
 calibration::ColourFit parse_colour(ObjectReader reader, const std::array<double, 9>& matrix) {
   calibration::ColourFit fit;
-  fit.linear_srgb_from_camera = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(matrix.data());
+  fit.linear_srgb_from_camera = matrix_of(matrix);
   fit.delta_e = reader.numbers("delta_e_2000");
   fit.mean_delta_e = reader.number("mean_delta_e_2000", 0, 1000);
   fit.largest_delta_e = reader.number("largest_delta_e_2000", 0, 1000);

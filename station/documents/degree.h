@@ -1,11 +1,10 @@
-// One degree in radians: 30 * kDegree is an angle in radians, angle_rad / kDegree the same angle in degrees. Degrees
-// stand in files, in texts for people and in constants; everything else is in radians.
+// One degree in radians, the renderer's, for the rooms of the station.
 #pragma once
 
-#include <numbers>
+#include "renderer/scattering/degree.h"
 
 namespace station {
 
-inline constexpr double kDegree = std::numbers::pi / 180;
+using renderer::kDegree;
 
 }  // namespace station

@@ -26,40 +26,40 @@ calibration::LensDifference parse_difference(ObjectReader reader) {
   return difference;
 }
 
-json views_json(const calibration::LensFit& fit) {
-  json views = json::array();
+json pictures_json(const calibration::LensFit& fit) {
+  json pictures = json::array();
   for (std::size_t v = 0; v < fit.picture_rms_px.size(); ++v) {
     json corners = json::array();
     for (const calibration::CornerError& entry : fit.corner_errors) {
-      if (entry.view != static_cast<int>(v)) continue;
+      if (entry.picture != static_cast<int>(v)) continue;
       for (const double number :
            {static_cast<double>(entry.corner.column), static_cast<double>(entry.corner.row), entry.corner.pixel.x(),
             entry.corner.pixel.y(), entry.used ? 1.0 : 0.0, entry.error_px.x(), entry.error_px.y()})
         corners.push_back(number);
     }
-    json view{{"rms_px", fit.picture_rms_px[v]}, {"corners", corners}};
-    if (fit.camera_from_lattice[v]) view["camera_from_lattice"] = to_json(*fit.camera_from_lattice[v]);
-    views.push_back(view);
+    json picture{{"rms_px", fit.picture_rms_px[v]}, {"corners", corners}};
+    if (fit.camera_from_lattice[v]) picture["camera_from_lattice"] = to_json(*fit.camera_from_lattice[v]);
+    pictures.push_back(picture);
   }
-  return views;
+  return pictures;
 }
 
-void parse_views(ObjectReader& reader, calibration::LensFit& fit) {
-  for (ObjectReader& view : reader.objects("views")) {
+void parse_pictures(ObjectReader& reader, calibration::LensFit& fit) {
+  for (ObjectReader& picture : reader.objects("views")) {
     const int number = static_cast<int>(fit.picture_rms_px.size());
-    fit.picture_rms_px.push_back(view.number("rms_px", 0, 1e6));
-    const std::vector<double> corners = view.numbers("corners");
+    fit.picture_rms_px.push_back(picture.number("rms_px", 0, 1e6));
+    const std::vector<double> corners = picture.numbers("corners");
     if (corners.size() % kNumbersPerCorner != 0)
-      view.refuse("corners", "has " + std::to_string(corners.size()) + " numbers; expected seven for each corner");
+      picture.refuse("corners", "has " + std::to_string(corners.size()) + " numbers; expected seven for each corner");
     for (std::size_t i = 0; i < corners.size(); i += kNumbersPerCorner)
-      fit.corner_errors.push_back({.view = number,
+      fit.corner_errors.push_back({.picture = number,
                                    .corner = {static_cast<int>(corners[i]), static_cast<int>(corners[i + 1]),
                                               Eigen::Vector2d(corners[i + 2], corners[i + 3])},
                                    .error_px = Eigen::Vector2d(corners[i + 5], corners[i + 6]),
                                    .used = corners[i + 4] != 0.0});
     fit.camera_from_lattice.push_back(std::nullopt);
-    if (view.has("camera_from_lattice")) fit.camera_from_lattice.back() = view.transform("camera_from_lattice");
-    view.finish();
+    if (picture.has("camera_from_lattice")) fit.camera_from_lattice.back() = picture.transform("camera_from_lattice");
+    picture.finish();
   }
 }
 
@@ -129,7 +129,7 @@ json lens_json(const calibration::LensFit& fit) {
       {"regularisation_sigmas", fit.regularisation_sigmas},
       {"opencv8", difference_json(fit.opencv8)},
       {"gates", to_json(fit.gates)},
-      {"views", views_json(fit)}};
+      {"views", pictures_json(fit)}};
   if (fit.halves) document["halves"] = difference_json(*fit.halves);
   return document;
 }
@@ -167,7 +167,7 @@ calibration::LensFit parse_lens_fit(ObjectReader reader) {
   fit.opencv8 = parse_difference(reader.object("opencv8"));
   if (reader.has("halves")) fit.halves = parse_difference(reader.object("halves"));
   fit.gates = parse_gates(reader, "gates");
-  parse_views(reader, fit);
+  parse_pictures(reader, fit);
   reader.finish();
   return fit;
 }
@@ -210,32 +210,31 @@ std::string describe(const calibration::LensFit& fit) {
   const calibration::Lens& lens = fit.lens;
   const auto sigma = [&](Eigen::Index i) { return std::sqrt(fit.covariance(i, i)); };
   double nearest = 1e99, furthest = 0.0;
-  int views = 0;
+  int pictures = 0;
   for (const auto& pose : fit.camera_from_lattice) {
     if (!pose) continue;
     nearest = std::min(nearest, pose->translation().norm());
     furthest = std::max(furthest, pose->translation().norm());
-    ++views;
+    ++pictures;
   }
   const auto& map = fit.projection_sigma_px;
   char text[900];
   int used = std::snprintf(
       text, sizeof text,
       "lens      f %.3f / %.3f px (+-%.3f), centre %.3f / %.3f px (+-%.3f), distortion %.5f %.5f %.6f %.6f %.5f\n"
-      "          %d views at %.0f to %.0f mm, %d corners (%d rejected), rms %.3f px per axis, board bent by %.2f / "
-      "%.2f "
-      "mm\n"
+      "          %d pictures at %.0f to %.0f mm, %d corners (%d rejected), rms %.3f px per axis, board bent by "
+      "%.2f / %.2f mm\n"
       "          good to +-%.3f px at %.0f mm (at the picture's edges %.3f); OPENCV8 differs by %.3f px (median)",
       lens.fx_px, lens.fy_px, sigma(0), lens.cx_px, lens.cy_px, sigma(2), lens.distortion[0], lens.distortion[1],
-      lens.distortion[2], lens.distortion[3], lens.distortion[4], views, nearest, furthest, fit.corners_used,
+      lens.distortion[2], lens.distortion[3], lens.distortion[4], pictures, nearest, furthest, fit.corners_used,
       fit.corners_rejected, fit.rms_px, fit.board_warp_mm.x(), fit.board_warp_mm.y(), calibration::middle_sigma_px(fit),
       fit.working_distance_mm, map.maxCoeff(), fit.opencv8.median_px);
   std::string out(text, static_cast<std::size_t>(std::min(used, static_cast<int>(sizeof text) - 1)));
   if (fit.halves) {
-    std::snprintf(text, sizeof text, ", half the views from the other half by %.3f px", fit.halves->median_px);
+    std::snprintf(text, sizeof text, ", half the pictures from the other half by %.3f px", fit.halves->median_px);
     out += text;
   }
-  if (fit.regularised) out += "\n          with regularisation: without it these views leave the lens undetermined";
+  if (fit.regularised) out += "\n          with regularisation: without it these pictures leave the lens undetermined";
   if (fit.regularisation_sigmas > 3.0) {
     std::snprintf(text, sizeof text, "\n          regularisation would bend it by %.3f px rms, it was left out",
                   fit.regularisation.rms_px);

@@ -1,7 +1,5 @@
 #include "station/documents/motif_file.h"
 
-#include <algorithm>
-#include <cctype>
 #include <stdexcept>
 
 #include "renderer/embroidery/digitise.h"
@@ -9,13 +7,13 @@
 #include "station/documents/dst_file.h"
 #include "station/documents/pes_file.h"
 #include "station/documents/svg_file.h"
+#include "station/documents/text_pieces.h"
 
 namespace station {
 
 renderer::Motif read_motif(const std::filesystem::path& file) {
   constexpr std::uintmax_t kMostBytes = 64U << 20U;
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = lower_case(file.extension().string());
   if (ending != ".dst" && ending != ".pes" && ending != ".svg")
     throw std::runtime_error(file.string() + ": found the ending \"" + file.extension().string() +
                              "\", expected .dst (Tajima), .pes (Brother) or .svg (line art)");

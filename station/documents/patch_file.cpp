@@ -89,7 +89,7 @@ renderer::YarnPatch parse_patch(const json& document, const std::string& source)
   return patch;
 }
 
-renderer::YarnPatch read_chip(const std::filesystem::path& file) {
+renderer::YarnPatch read_patch(const std::filesystem::path& file) {
   return parse_patch(read_json_file(file), file.string());
 }
 

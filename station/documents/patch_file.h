@@ -14,7 +14,7 @@
 namespace station {
 
 renderer::YarnPatch parse_patch(const nlohmann::json& document, const std::string& source);
-renderer::YarnPatch read_chip(const std::filesystem::path& file);
+renderer::YarnPatch read_patch(const std::filesystem::path& file);
 nlohmann::json to_json(const renderer::YarnPatch& patch);
 
 }  // namespace station

@@ -40,8 +40,8 @@ std::string short_number(double value) {
   return text.str();
 }
 
-// The id of a bracket's exposure: "bracket-reflection-horizontal-1-minus-2".
-std::string exposure_id(const std::string& view, double stops) {
+// The id of a bracket step: "bracket-reflection-horizontal-1-minus-2".
+std::string bracket_id(const std::string& view, double stops) {
   std::string number = short_number(std::abs(stops));
   std::replace(number.begin(), number.end(), '.', '_');
   return "bracket-" + view + (stops < 0 ? "-minus-" : "-plus-") + number;
@@ -60,14 +60,14 @@ void add_views(Plan& plan, const std::string& name, rig::Mounting mounting, rig:
                           .verify = kViewMustShow});
     const PlanStep view = plan.steps.back();
     for (const double stops : request.bracket_stops) {
-      PlanStep exposure = view;
-      exposure.id = exposure_id(view.id, stops);
-      exposure.kind = StepKind::exposure;
-      exposure.exposure_of = view.id;
-      exposure.stops = stops;
-      exposure.if_needed = request.brackets_if_needed;
-      exposure.verify = {"settings"};
-      plan.steps.push_back(exposure);
+      PlanStep bracket = view;
+      bracket.id = bracket_id(view.id, stops);
+      bracket.kind = StepKind::bracket;
+      bracket.exposure_of = view.id;
+      bracket.stops = stops;
+      bracket.if_needed = request.brackets_if_needed;
+      bracket.verify = {"settings"};
+      plan.steps.push_back(bracket);
     }
   }
 }
@@ -107,7 +107,7 @@ std::optional<std::string> angle_problem(const PlanStep& step, double largest_an
 }
 
 std::optional<std::string> light_problem(const PlanStep& step) {
-  const bool lit = step.kind == StepKind::view || step.kind == StepKind::exposure;
+  const bool lit = step.kind == StepKind::view || step.kind == StepKind::bracket;
   if (lit && (step.lamp == rig::Lamp::off || step.room_light)) return "a view needs the lamp on and the room light off";
   if (step.kind == StepKind::dark && (step.lamp != rig::Lamp::off || step.room_light))
     return "a dark needs the lamp and the room light off";
@@ -121,12 +121,12 @@ std::optional<std::string> order_problem(const PlanStep& step, const std::map<st
   if (earlier.contains(step.id)) return "the id stands twice in the plan";
   if (any_pose && step.kind == StepKind::view && !posed.contains(step.mounting))
     return "a pose picture with its mounting has to come before it";
-  const bool repeats = step.kind == StepKind::dark || step.kind == StepKind::exposure;
+  const bool repeats = step.kind == StepKind::dark || step.kind == StepKind::bracket;
   if (!repeats && !step.exposure_of.empty())
     return "only a dark and a bracket's exposure repeat the exposure of another step";
-  if (step.kind == StepKind::exposure ? !(std::abs(step.stops) >= 0.3 && std::abs(step.stops) <= 10) : step.stops != 0)
+  if (step.kind == StepKind::bracket ? !(std::abs(step.stops) >= 0.3 && std::abs(step.stops) <= 10) : step.stops != 0)
     return "a bracket's exposure, and nothing else, is 0.3 to 10 stops from its view's";
-  if (step.if_needed && step.kind != StepKind::exposure) return "if_needed is for a bracket's exposure";
+  if (step.if_needed && step.kind != StepKind::bracket) return "if_needed is for a bracket's exposure";
   if (step.exposure_s && (repeats || !(*step.exposure_s > 0 && *step.exposure_s <= 3600)))
     return "exposure_s is for a pose or a view, above 0 and up to 3600 s";
   const auto view = earlier.find(step.exposure_of);
@@ -155,14 +155,14 @@ bool needs_a_hand(const PlanStep& before, const PlanStep& step) {
 const std::vector<std::string>& verifiable(StepKind kind) {
   static const std::vector<std::string> pose{"settings", "focus", "tags", "orientation", "angle", "bench", "motion"},
       view{"settings", "focus", "saturation", "exposure", "lamp", "lamp_side", "tags", "angle", "bench", "motion"},
-      exposure{"settings"}, dark{"settings", "dark"};
+      bracket{"settings"}, dark{"settings", "dark"};
   switch (kind) {
     case StepKind::pose:
       return pose;
     case StepKind::view:
       return view;
-    case StepKind::exposure:
-      return exposure;
+    case StepKind::bracket:
+      return bracket;
     case StepKind::dark:
       break;
   }

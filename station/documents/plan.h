@@ -14,9 +14,9 @@
 namespace station {
 
 // The kinds of step. A pose picture is taken under the room light and shows the holder's tags. A view is one of the 17
-// pictures that are fitted. An exposure is the picture of a view once more for its bracket, `stops` longer. A dark is
-// taken without any light, with the exposure of the view that it belongs to.
-enum class StepKind { pose, view, exposure, dark };
+// pictures that are fitted. A bracket step takes the picture of a view once more, `stops` longer. A dark is taken
+// without any light, with the exposure of the view that it belongs to.
+enum class StepKind { pose, view, bracket, dark };
 
 struct PlanStep {
   std::string id;  // also the name of the picture's file
@@ -25,9 +25,9 @@ struct PlanStep {
   rig::Lamp lamp = rig::Lamp::off;
   bool room_light = false;
   double platform_angle_rad = 0.0;
-  std::string exposure_of;             // dark and exposure only: the view whose camera settings it repeats
-  double stops = 0.0;                  // exposure only: how much longer than the view's; negative: shorter
-  bool if_needed = false;              // exposure only: left out where the view's range does not need it (bracket.h)
+  std::string exposure_of;             // dark and bracket only: the view whose camera settings it repeats
+  double stops = 0.0;                  // bracket only: how much longer than the view's; negative: shorter
+  bool if_needed = false;              // bracket only: left out where the view's range does not need it (bracket.h)
   std::optional<double> exposure_s{};  // pose and view only: fixed exposure time, instead of metering
   // Checks (verdict.h) that must give a finding: without one the picture is refused. Checks that are not listed are
   // made wherever the picture shows what they need.

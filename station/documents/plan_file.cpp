@@ -14,7 +14,7 @@ using nlohmann::json;
 constexpr double kWidestAngleDeg = 1e6;  // check_plan knows the limits of a platform
 
 StepKind kind_from_name(const std::string& name) {
-  for (const StepKind kind : {StepKind::pose, StepKind::exposure, StepKind::dark})
+  for (const StepKind kind : {StepKind::pose, StepKind::bracket, StepKind::dark})
     if (name == kind_name(kind)) return kind;
   return StepKind::view;
 }
@@ -26,8 +26,8 @@ json step_to_json(const PlanStep& step) {
                    {"lamp", lamp_name(step.lamp)},
                    {"room_light", step.room_light},
                    {"platform_angle_deg", file_degrees(step.platform_angle_rad)}};
-  if (step.kind == StepKind::dark || step.kind == StepKind::exposure) document["exposure_of"] = step.exposure_of;
-  if (step.kind == StepKind::exposure) {
+  if (step.kind == StepKind::dark || step.kind == StepKind::bracket) document["exposure_of"] = step.exposure_of;
+  if (step.kind == StepKind::bracket) {
     document["stops"] = step.stops;
     if (step.if_needed) document["if_needed"] = true;
   }
@@ -44,8 +44,8 @@ PlanStep read_step(ObjectReader& reader) {
   step.lamp = lamp_from_name(reader.choice("lamp", {"off", "front", "back", "front_left"}));
   step.room_light = reader.flag("room_light");
   step.platform_angle_rad = reader.number("platform_angle_deg", -kWidestAngleDeg, kWidestAngleDeg) * kDegree;
-  if (step.kind == StepKind::dark || step.kind == StepKind::exposure) step.exposure_of = reader.text("exposure_of");
-  if (step.kind == StepKind::exposure) {
+  if (step.kind == StepKind::dark || step.kind == StepKind::bracket) step.exposure_of = reader.text("exposure_of");
+  if (step.kind == StepKind::bracket) {
     step.stops = reader.number("stops", -10, 10);
     if (reader.has("if_needed")) step.if_needed = reader.flag("if_needed");
   }
@@ -102,7 +102,7 @@ std::string kind_name(StepKind kind) {
       return "pose";
     case StepKind::view:
       return "view";
-    case StepKind::exposure:
+    case StepKind::bracket:
       return "exposure";
     case StepKind::dark:
       break;

@@ -23,7 +23,7 @@ Plan plan_from_json(const nlohmann::json& document, const std::string& source);
 
 std::string lamp_name(rig::Lamp lamp);              // "off" "front" "back" "front_left"
 std::string mounting_name(rig::Mounting mounting);  // "horizontal" "vertical"
-std::string kind_name(StepKind kind);               // "pose" "view" "exposure" "dark"
+std::string kind_name(StepKind kind);               // "pose" "view" "exposure" (of a bracket) "dark"
 rig::Lamp lamp_from_name(const std::string& name);  // throws std::runtime_error for any other word
 rig::Mounting mounting_from_name(const std::string& name);
 

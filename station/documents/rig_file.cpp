@@ -106,8 +106,8 @@ rig::LampChanges parse_lamp_changes(ObjectReader reader) {
 
 ColourChart parse_chart(ObjectReader reader) {
   ColourChart chart;
-  chart.patch_mm = reader.number("patch_mm", 1, 200);
-  chart.pitch_mm = reader.number("pitch_mm", chart.patch_mm, 300);
+  chart.square_mm = reader.number("patch_mm", 1, 200);
+  chart.pitch_mm = reader.number("pitch_mm", chart.square_mm, 300);
   chart.plate_mm = reader.number("plate_mm", 6 * chart.pitch_mm, 2000);
   chart.tags = corner_tags(reader.object("tags"), "colour chart", Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
   reader.finish();
@@ -308,10 +308,10 @@ void parse_targets(ObjectReader& reader, RigFile& rig) {
   rig.holder_tags =
       corner_tags(reader.object("holder_tags"), "holder", Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
   if (reader.has("reference_patch")) {
-    ObjectReader patch = reader.object("reference_patch");
+    ObjectReader chip = reader.object("reference_patch");
     rig.reference_chip =
-        ReferenceChip{.edge_mm = patch.number("edge_mm", 1, 100), .albedo = patch.number("albedo", 0.01, 1)};
-    patch.finish();
+        ReferenceChip{.edge_mm = chip.number("edge_mm", 1, 100), .albedo = chip.number("albedo", 0.01, 1)};
+    chip.finish();
   }
   if (reader.has("colour_chart")) rig.colour_chart = parse_chart(reader.object("colour_chart"));
   ObjectReader panel = reader.object("spectralon");
@@ -337,9 +337,9 @@ void parse_lamps(ObjectReader lamps, RigFile& rig) {
 
 }  // namespace
 
-Eigen::Vector3d chart_square_centre(const ColourChart& chart, std::size_t patch) {
-  const double column = static_cast<double>(patch % kChartColumns) - (kChartColumns - 1) / 2.0;
-  const double row = static_cast<double>(patch / kChartColumns) - (kChartRows - 1) / 2.0;
+Eigen::Vector3d chart_square_centre(const ColourChart& chart, std::size_t square) {
+  const double column = static_cast<double>(square % kChartColumns) - (kChartColumns - 1) / 2.0;
+  const double row = static_cast<double>(square / kChartColumns) - (kChartRows - 1) / 2.0;
   return {column * chart.pitch_mm, -row * chart.pitch_mm, 0};
 }
 

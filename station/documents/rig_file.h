@@ -29,7 +29,7 @@ struct SpectralonPanel {
 // The colour chart: 24 squares, 4 rows of 6, on a black plate with a tag at each corner
 // (calibration/light/colour_chart.h).
 struct ColourChart {
-  double patch_mm = 8, pitch_mm = 9.5;
+  double square_mm = 8, pitch_mm = 9.5;
   double plate_mm = 88;
   calibration::TagLayout tags;
 };

@@ -29,7 +29,6 @@ constexpr double kLeastTexel = 1e-4;                  // mm
 constexpr double kMostDiameter = 10;                  // mm, of a sewing thread
 constexpr double kMostAbsorption = 1000;              // per thread radius
 constexpr int kMostSide = 16384;                      // pixels
-constexpr double kMostPixels = 1e8;
 
 Isometry3d pose(ObjectReader& reader, const std::string& key) {
   if (!reader.has(key)) return Isometry3d::Identity();
@@ -123,7 +122,7 @@ std::variant<renderer::Draft, renderer::YarnPatch> parse_weave(ObjectReader& clo
                                                                const std::filesystem::path& folder) {
   if (cloth.has("patch") == cloth.has("draft"))
     cloth.refuse("draft", "give either a draft or a patch, not both and not none");
-  if (cloth.has("patch")) return read_chip(folder / cloth.text("patch"));
+  if (cloth.has("patch")) return read_patch(folder / cloth.text("patch"));
   renderer::Draft draft = read_draft(folder / cloth.text("draft"));
   replace_threads(cloth, "warp_threads", draft.warp);
   replace_threads(cloth, "weft_threads", draft.weft);
@@ -309,7 +308,7 @@ renderer::Camera parse_camera(ObjectReader reader) {
   renderer::Camera camera = renderer::look_at(eye, target, up);
   camera.width = reader.integer("width_px", 1, kMostSide);
   camera.height = reader.integer("height_px", 1, kMostSide);
-  if (static_cast<double>(camera.width) * camera.height > kMostPixels)
+  if (static_cast<double>(camera.width) * camera.height > renderer::kMostPicturePixels)
     reader.refuse("width_px", "the picture has more than 100 million pixels; make it smaller");
   camera.fx = camera.fy = reader.number("focal_length_px", 1, 1e7);
   camera.cx = (camera.width - 1) / 2.0, camera.cy = (camera.height - 1) / 2.0;
@@ -363,7 +362,7 @@ SceneFile parse_scene(const json& document, const std::string& source, const std
     reader.refuse("lights", "the list is empty and the picture would be black; add a light");
   scene.camera = parse_camera(reader.object("camera"));
   if (reader.has("samples_per_pixel")) scene.samples_per_pixel = reader.integer("samples_per_pixel", 1, 1 << 20);
-  if (reader.has("exposure")) scene.exposure = reader.number("exposure", 1e-12, 1e12);
+  if (reader.has("exposure")) scene.brightness = reader.number("exposure", 1e-12, 1e12);
   reader.finish();
   return scene;
 }

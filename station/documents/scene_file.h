@@ -22,7 +22,7 @@
 
 namespace station {
 
-// A ready garment; its uv is turned on the pattern.
+// A garment that the program makes; `turn_rad` turns the weave in its pattern.
 struct SceneGarment {
   renderer::GarmentShape shape;
   double turn_rad = 0;
@@ -37,7 +37,8 @@ struct SceneCloth {
   bool two_scale = true;  // otherwise brute force: every yarn as curves
 };
 
-// Sewn on a cloth, its middle where `at_mm` says: in millimetres of the patch, or in the middle of the cloth.
+// A motif that is sewn on a cloth. Its middle lies at `at_mm` (millimetres of the patch), or else in the middle of the
+// cloth.
 struct SceneEmbroidery {
   renderer::Motif motif;
   std::vector<renderer::ThreadParameters> threads;  // of the motif
@@ -66,13 +67,13 @@ struct SceneFile {
   std::optional<renderer::EnvironmentLight> surroundings{};  // as a picture
   renderer::Camera camera{};
   int samples_per_pixel = 64;
-  std::optional<double> exposure{};  // radiance times this is shown as white = 1; from the picture when left out
+  std::optional<double> brightness{};  // radiance times this is shown as white = 1; from the picture when left out
 };
 
 SceneFile parse_scene(const nlohmann::json& document, const std::string& source, const std::filesystem::path& folder);
 SceneFile read_scene(const std::filesystem::path& file);
 
-// What to say of a cloth that has yarns of a thread which is not among the `listed` ones of its scene, or nothing.
+// The line that refuses a cloth with yarns of a thread that its scene does not list; nothing when all are listed.
 std::optional<std::string> missing_thread(const std::string& cloth, const std::vector<int>& threads,
                                           std::size_t listed);
 

@@ -7,7 +7,7 @@
 
 namespace station {
 
-// Of a file, relative to a folder.
+// The name of `file` relative to `folder`.
 std::string name_from(const std::filesystem::path& folder, const std::filesystem::path& file);
 
 // A scene whose names are relative to `from`, with names relative to `to`.

@@ -70,7 +70,7 @@ class Drawing {
     fail("<" + std::string(node.name()) + (id.empty() ? "" : " id=\"" + id.substr(0, 40) + "\"") + ">: " + what);
   }
 
-  // Of a length with its unit, millimetres; percentages have none.
+  // The millimetres of a length with its unit; percentages have none.
   std::optional<double> length_mm(const std::string& text) const {
     static const std::map<std::string, double> units{{"", kPixel_mm}, {"px", kPixel_mm}, {"mm", 1},        {"cm", 10},
                                                      {"in", 25.4},    {"pt", 25.4 / 72}, {"pc", 25.4 / 6}, {"Q", 0.25}};
@@ -82,7 +82,7 @@ class Drawing {
     return value * unit->second;
   }
 
-  // Of one user unit of the whole drawing.
+  // The millimetres of one user unit of the whole drawing.
   double unit_mm(const pugi::xml_node& root) const {
     const auto box = numbers(root.attribute("viewBox").value());
     if (!root.attribute("viewBox")) return kPixel_mm;

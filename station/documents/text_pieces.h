@@ -13,6 +13,13 @@ inline std::string trimmed(std::string_view text, std::string_view blanks = " \t
   return first == std::string_view::npos ? "" : std::string(text.substr(first, last - first + 1));
 }
 
+// The text with small letters for the capitals of ASCII.
+inline std::string lower_case(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
 // "a, b, c"
 inline std::string joined(const std::vector<std::string>& names) {
   std::string all;

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <sstream>
 #include <stdexcept>
 
-#include "station/documents/table_lines.h"
+#include "station/documents/disk/whole_file.h"
 #include "station/documents/text_pieces.h"
 
 namespace station {
@@ -52,6 +52,10 @@ std::optional<Cells> split(const std::string& line) {
   return cells;
 }
 
+std::string known(const Cells& required, const Cells& optional) {
+  return joined(required) + (required.empty() || optional.empty() ? "" : ", ") + joined(optional);
+}
+
 void check_columns(const std::filesystem::path& file, std::size_t line, const Cells& names, const Cells& required,
                    const Cells& optional) {
   if (names.size() == 1 && names.front().find_first_of(";\t") != std::string::npos)
@@ -60,42 +64,65 @@ void check_columns(const std::filesystem::path& file, std::size_t line, const Ce
     if (std::count(names.begin(), names.end(), name) > 1)
       refuse(file, line, "the column \"" + name + "\" stands there twice; remove one");
     if (std::ranges::find(required, name) == required.end() && std::ranges::find(optional, name) == optional.end())
-      refuse(file, line,
-             "the column \"" + name + "\" is not known; known are " + joined(required) +
-                 (required.empty() || optional.empty() ? "" : ", ") + joined(optional));
+      refuse(file, line, "the column \"" + name + "\" is not known; known are " + known(required, optional));
   }
   for (const std::string& name : required)
     if (std::ranges::find(names, name) == names.end())
       refuse(file, line, "the column \"" + name + "\" is missing; add it to the first line");
 }
 
+// The cells of a line; refuses one that is no text or whose quotes do not end.
+Cells cells_of(const std::filesystem::path& file, std::size_t number, const std::string& line) {
+  if (!is_utf8(line) || line.find('\0') != std::string::npos)
+    refuse(file, number, "holds bytes that are no UTF-8 text; save the table as UTF-8");
+  const std::optional<Cells> cells = split(line);
+  if (!cells) refuse(file, number, "a quote does not end on its line; close it");
+  return *cells;
+}
+
 }  // namespace
 
-std::vector<TextRow> read_text_table(const std::filesystem::path& file, const Cells& required, const Cells& optional) {
-  Cells names;
-  std::vector<TextRow> rows;
-  for (const auto& [number, line] : table_lines(file)) {
-    if (!is_utf8(line) || line.find('\0') != std::string::npos)
-      refuse(file, number, "holds bytes that are no UTF-8 text; save the table as UTF-8");
-    const std::optional<Cells> cells = split(line);
-    if (!cells) refuse(file, number, "a quote does not end on its line; close it");
-    if (names.empty()) {
-      names = *cells;
-      check_columns(file, number, names, required, optional);
+std::optional<std::size_t> TextTable::index_of(const std::string& column) const {
+  const auto at = std::ranges::find(columns, column);
+  if (at == columns.end()) return std::nullopt;
+  return static_cast<std::size_t>(at - columns.begin());
+}
+
+std::string TextTable::cell(const Row& row, const std::string& column) const {
+  const std::optional<std::size_t> index = index_of(column);
+  return index ? row.cells[*index] : "";
+}
+
+TextTable read_text_table(const std::filesystem::path& file, const Cells& required, const Cells& optional, bool notes) {
+  TextTable table;
+  std::istringstream in(text_of_file(file));
+  std::size_t number = 0;
+  for (std::string whole; std::getline(in, whole);) {
+    if (++number == 1 && whole.starts_with("\xEF\xBB\xBF")) whole.erase(0, 3);
+    const std::string line = trimmed(whole);
+    if (line.empty()) continue;
+    if (notes && line.front() == '#') {
+      const std::string comment = trimmed(line.substr(1));
+      const std::size_t space = comment.find(' ');
+      if (space != std::string::npos) table.notes[comment.substr(0, space)] = trimmed(comment.substr(space));
       continue;
     }
-    if (cells->size() != names.size())
+    const Cells cells = cells_of(file, number, line);
+    if (table.columns.empty()) {
+      check_columns(file, number, cells, required, optional);
+      table.columns = cells;
+      continue;
+    }
+    if (cells.size() != table.columns.size())
       refuse(file, number,
-             std::to_string(cells->size()) + " cells found, the first line names " + std::to_string(names.size()) +
-                 " columns; put texts with commas into double quotes");
-    TextRow row{.line = number, .cells = {}};
-    for (const Cells& known : {required, optional})
-      for (const std::string& name : known) row.cells[name];
-    for (std::size_t i = 0; i < names.size(); ++i) row.cells[names[i]] = (*cells)[i];
-    rows.push_back(std::move(row));
+             std::to_string(cells.size()) + " cells found, the first line names " +
+                 std::to_string(table.columns.size()) + " columns; put texts with commas into double quotes");
+    table.rows.push_back({number, cells});
   }
-  if (rows.empty()) refuse(file, 0, "has no rows below its column names; add some");
-  return rows;
+  if (table.columns.empty())
+    refuse(file, 0, "is empty; its first line must name columns of " + known(required, optional));
+  if (table.rows.empty()) refuse(file, 0, "has no rows below its column names; add some");
+  return table;
 }
 
 }  // namespace station

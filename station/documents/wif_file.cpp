@@ -27,11 +27,6 @@ std::string without_comment(const std::string& text) {
   return trimmed(text.substr(0, text.find(';')));
 }
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 // A text as error messages quote it: short, and nothing that would break the line.
 std::string quoted(const std::string& text) {
   constexpr std::size_t kMost = 40;
@@ -92,7 +87,7 @@ class WifReader {
   bool flag(const char* section, const char* key, bool otherwise) const {
     const auto value = text(section, key);
     if (!value) return otherwise;
-    const std::string word = lower(*value);
+    const std::string word = lower_case(*value);
     if (word == "true" || word == "on" || word == "yes" || word == "1") return true;
     if (word == "false" || word == "off" || word == "no" || word == "0") return false;
     fail(section, key, "is " + quoted(*value) + ", expected true or false");
@@ -129,7 +124,7 @@ class WifReader {
     const auto* keys = ini_.GetSection("CONTENTS");
     if (!keys) return;
     for (const auto& [key, value] : *keys) {
-      if (lower(without_comment(value)) == "true" && !ini_.SectionExists(key.pItem))
+      if (lower_case(without_comment(value)) == "true" && !ini_.SectionExists(key.pItem))
         fail("[CONTENTS] promises the section " + quoted(key.pItem) +
              ", which is not there: the file is cut short; export it again");
     }
@@ -141,7 +136,7 @@ class WifReader {
 
 // Millimetres of one unit of a section.
 double unit_mm(const WifReader& wif, const char* section) {
-  const std::string units = lower(wif.needed(section, "Units", "give centimeters, inches or decipoints"));
+  const std::string units = lower_case(wif.needed(section, "Units", "give centimeters, inches or decipoints"));
   if (units == "centimeters") return 10;
   if (units == "inches") return kMillimetresPerInch;
   if (units == "decipoints") return kMillimetresPerInch / 720;

@@ -23,6 +23,10 @@ std::string bar(int done, int total) {
 
 }  // namespace
 
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
 ProgressDisplay::ProgressDisplay(std::string task, ProgressStyle style)
     : task_(std::move(task)),
       style_(style),
@@ -36,7 +40,7 @@ ProgressDisplay::~ProgressDisplay() {
 void ProgressDisplay::show(int done, int total, const std::string& label, double seconds_left) {
   if (style_ == ProgressStyle::quiet) return;
   const std::lock_guard lock(mutex_);
-  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const double elapsed = seconds_since(start_);
   if (!first_) first_ = done;
   if (seconds_left < 0 && done > *first_) seconds_left = elapsed / (done - *first_) * (total - done);
   if (style_ == ProgressStyle::json) {

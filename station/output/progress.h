@@ -8,6 +8,8 @@
 
 namespace station {
 
+double seconds_since(std::chrono::steady_clock::time_point begin);
+
 enum class ProgressStyle { automatic, quiet, json };  // automatic: bar on a terminal, lines elsewhere
 
 class ProgressDisplay {

@@ -12,6 +12,8 @@
 #include <list>
 #include <stdexcept>
 
+#include "station/documents/text_pieces.h"
+
 namespace station {
 namespace {
 
@@ -63,10 +65,8 @@ std::optional<HttpRequest> plain(const http::request<http::string_body>& message
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   for (const auto& field : message) {
-    std::string name(field.name_string());
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     // The values of a header that comes twice are joined. The guard knows no such value, so the request is refused.
-    std::string& value = request.headers[name];
+    std::string& value = request.headers[lower_case(std::string(field.name_string()))];
     value += (value.empty() ? "" : ", ") + std::string(field.value());
   }
   return request;

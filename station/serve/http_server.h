@@ -21,8 +21,8 @@ namespace station {
 struct HttpLimits {
   std::uint32_t header_bytes = 16 << 10;
   std::uint64_t body_bytes = 64 << 10;
-  std::chrono::milliseconds request_time{
-      10'000};  // from the connection, or the answer before, to the request's last byte
+  // From the connection, or the answer before, to the request's last byte.
+  std::chrono::milliseconds request_time{10'000};
   std::size_t connections = 256, streams = 32, waiting_requests = 64;
   double requests_per_s = 200;           // of all clients together, on average; more are refused (429)
   std::size_t stream_bytes = 256 << 10;  // that a watcher may lag behind before it is dropped
@@ -30,7 +30,7 @@ struct HttpLimits {
 
 class HttpServer {
  public:
-  using Urgent = std::function<std::optional<HttpResponse>(const HttpRequest&)>;  // none: `handle` is to answer
+  using Urgent = std::function<std::optional<HttpResponse>(const HttpRequest&)>;  // nothing: `handle` answers
   using Handle = std::function<HttpResponse(const HttpRequest&)>;  // what it throws becomes a 500 with the message
 
   // Listens from now on; port 0: a free one. Errors: std::runtime_error with one line for an address or port that

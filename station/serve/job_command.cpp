@@ -126,7 +126,7 @@ Words textures_export(const Asked& asked) {
           "--out",   asked.workspace.exported(asked.name())};
 }
 
-// Of a thread in the library, into a new folder of exports/.
+// Exports of a thread in the library, each into a new folder of exports/.
 const Commands kExports{{"folder", folder_export}, {"materials", materials_export}, {"textures", textures_export}};
 
 Words exported(const Asked& asked) {

@@ -10,7 +10,7 @@
 
 namespace station {
 
-// kind, and what it needs beside "name" (of a calibration, session, queue or export):
+// The command of a job. Its kinds, and what each needs beside "name" (of a calibration, session, queue or export):
 //   check (calibration, may be empty), preview          no name
 //   calibrate
 //   capture (calibration, spool, person), resume, reshoot (view), queue (calibration, person)
@@ -25,7 +25,7 @@ struct JobCommand {
 // text behind its option's "=". Throws Refused for what may not be asked.
 JobCommand job_command(const nlohmann::json& asked, const Workspace& workspace, const std::filesystem::path& rig);
 
-// In what forms a thread of the library may be exported.
+// The forms in which a thread of the library may be exported.
 std::vector<std::string> export_formats();
 
 // Ready weave drafts that `cloth` may be asked for, by name.

@@ -7,14 +7,15 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "calibration/develop/linear_grey.h"
 #include "calibration/geometry/tags.h"
 #include "calibration/sensor/sensor_file.h"
 #include "station/bench/camera_adapter.h"
 #include "station/bench/exposure.h"
+#include "station/bench/picture_measures.h"
 #include "station/documents/disk/file_name.h"
 #include "station/output/display.h"
 #include "station/serve/page_answers.h"
-#include "station/session/checks/picture_measures.h"
 #include "station/session/record/picture_record.h"
 
 namespace station {
@@ -24,8 +25,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr int kBins = 64;
-constexpr int kWidest_px = 3000;                         // that tags are looked for in; larger pictures are reduced
-constexpr double kDoubtfulBlur_px = 2, kBadBlur_px = 3;  // as station/session/checks/capture_checks.h
+constexpr int kWidest_px = 3000;  // that tags are looked for in; larger pictures are reduced
 
 fs::file_time_type time_of(const fs::path& file) {
   std::error_code error;
@@ -190,7 +190,7 @@ json LastFrame::measured(const Found& frame) const {
                           {"aim", rig_.target_level},
                           {"saturated", saturated_fraction(picture, everywhere)}};
   document["lamp"] = lamp_of(frame.session);
-  add_tags(document, linear_grey(picture), rig_);
+  add_tags(document, calibration::linear_grey(picture), rig_);
   return document;
 }
 

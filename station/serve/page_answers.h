@@ -25,7 +25,7 @@ HttpResponse said(int status, const std::string& line);  // {"message": line}
 std::string text_of(const nlohmann::json& asked, const char* key);
 // The name under `key`, which may become a part of a path. Throws Refused (400) for any other.
 std::string name_of(const nlohmann::json& asked, const char* key);
-// `name` itself. Throws likewise.
+// Returns `name`. Throws Refused (400) when it may not become a part of a path.
 const std::string& checked_name(const std::string& name);
 
 }  // namespace station

@@ -12,7 +12,7 @@ struct PageFile {
   std::string_view content;
 };
 
-// None for an address that is none of them.
+// The file of the page at this path; null when there is none.
 const PageFile* page_file(std::string_view path);
 
 }  // namespace station

@@ -1,5 +1,5 @@
-// Which requests the technician's page may answer at all (row 35 of the fault matrix): the browser of whoever sits at
-// the bench, and nobody else's page in it.
+// Which requests the technician's page may answer at all: those of the browser of whoever sits at the bench, and of no
+// page in it but ours.
 //
 //   Host        one of ours: a page of another name that points at this machine (DNS rebinding) is refused
 //   Origin      that Host, when there is one; the same is asked of Sec-Fetch-Site

@@ -1,13 +1,12 @@
 #include "station/serve/page_pictures.h"
 
 #include <algorithm>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <map>
 #include <opencv2/imgproc.hpp>
 
 #include "renderer/picture/image_file.h"
+#include "station/documents/disk/whole_file.h"
 #include "station/documents/draft_drawing.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/thread_file.h"
@@ -40,9 +39,8 @@ HttpResponse png(const cv::Mat3b& rgb) {
 }
 
 HttpResponse png_file(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Refused(404, "there is no " + file.filename().string() + " yet");
-  return {.content_type = "image/png", .body = {std::istreambuf_iterator<char>(stream), {}}};
+  if (!fs::is_regular_file(file)) throw Refused(404, "there is no " + file.filename().string() + " yet");
+  return {.content_type = "image/png", .body = text_of_file(file)};
 }
 
 // At most so wide: what a screen shows.

@@ -10,12 +10,12 @@
 
 namespace station {
 
-// Of a request to /picture, by its "of":
+// The picture that a request to /picture asks for, by its "of":
 //   raw           session, step: the picture that the journal has of it, as small as a tile
-//   photographed, fitted, residual   session, view: cut to the threads, brightness alike for the three
+//   photographed, fitted, residual   session, view: cut to the threads, the three equally bright
 //   cloth         session, view: "swatch" or "cylinder"
-//   draft         name: of a ready one, as weavers draw it
-//   frame         the last one of the camera
+//   draft         name: of a ready draft, as weavers draw it
+//   frame         the last one of the live view
 // Throws Refused: 400 for a name that is none, 404 for what is not there.
 HttpResponse page_picture(const HttpRequest& request, const Workspace& workspace, const LastFrame& frame);
 

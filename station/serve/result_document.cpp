@@ -17,7 +17,7 @@ using nlohmann::json;
 
 constexpr int kCosines = 40;
 
-// Of the unknowns; nothing where the file has none of this model's size.
+// The covariance of the unknowns; nothing where the file has none of this model's size.
 std::optional<Eigen::MatrixXd> covariance_of(const ThreadFile& thread) {
   constexpr auto kSize = static_cast<std::size_t>(renderer::kThreadParameterCount);
   try {

@@ -9,11 +9,11 @@
 
 namespace station {
 
-// {"name", "diameter_mm", "relative_rmse" (null: unknown), "unknowns": [{"name", "value", "sigma", "at_bound"}],
-// "curves":
-// [{"cosine", "lambda": [R, TT, TRT], "sigma" (absent where the file has no covariance)}], "views": [{"id",
-// "relative_rmse", "relative_bias", "held_out"}], "doubts", "colour": "#rrggbb"}; colour: the albedo under light from
-// all sides, sRGB.
+// {"name", "diameter_mm", "relative_rmse" (null: unknown),
+//  "unknowns": [{"name", "value", "sigma", "at_bound"}],
+//  "curves": [{"cosine", "lambda": [R, TT, TRT], "sigma" (absent where the file has no covariance)}],
+//  "views": [{"id", "relative_rmse", "relative_bias", "held_out"}],
+//  "doubts", "colour": "#rrggbb" (the albedo under light from all sides, sRGB)}
 nlohmann::json thread_document(const ThreadFile& thread);
 
 // The thread of a session's result, and "cloth": what of its preview is there, with what it was made of.

@@ -2,10 +2,9 @@
 
 #include <charconv>
 #include <chrono>
-#include <fstream>
-#include <iterator>
 #include <thread>
 
+#include "station/documents/disk/whole_file.h"
 #include "station/serve/checked_devices.h"
 #include "station/serve/job_command.h"
 #include "station/serve/left_jobs.h"
@@ -188,10 +187,10 @@ json TechnicianPage::bench() {
 }
 
 HttpResponse TechnicianPage::report(const std::string& name) const {
-  std::ifstream stream(workspace_.session(checked_name(name)) / "report.html", std::ios::binary);
-  if (!stream) throw Refused(404, "the session " + name + " has no report yet");
+  const fs::path file = workspace_.session(checked_name(name)) / "report.html";
+  if (!fs::is_regular_file(file)) throw Refused(404, "the session " + name + " has no report yet");
   return {.content_type = "text/html; charset=utf-8",
-          .body = {std::istreambuf_iterator<char>(stream), {}},
+          .body = text_of_file(file),
           .headers = {{"Content-Security-Policy",
                        "default-src 'none'; img-src data:; style-src 'unsafe-inline'; frame-ancestors 'self'"}}};
 }

@@ -37,12 +37,12 @@ namespace station {
 
 class TechnicianPage {
  public:
-  // `changed`: something of /api/state is another; called from any thread. Makes the workspace's folders. Errors:
+  // Makes the workspace's folders. `changed` is called, from any thread, when /api/state is different. Errors:
   // std::runtime_error for a rig file or workspace that cannot be used.
   TechnicianPage(const std::filesystem::path& rig, const std::filesystem::path& workspace,
                  std::function<void()> changed, std::filesystem::path program = kThisProgram);
 
-  // The emergency stop; none for any other request. Waits for nothing but two signals.
+  // The answer to an emergency stop; nothing for any other request. It waits for nothing but two signals.
   std::optional<HttpResponse> urgent(const HttpRequest& request);
   HttpResponse handle(const HttpRequest& request);
 

@@ -37,8 +37,8 @@ class Workspace {
 
   // {"calibrations", "spools", "sessions", "threads", "queues", "exports"}
   nlohmann::json contents();
-  // Of one session: its line in contents(), and "views" with "number", "step", "grade", "reason", "picture" (which file
-  // it is, absent without one). Throws Refused (404) when there is none.
+  // One session: its line in contents(), and "views" with "number", "step", "grade", "reason", "picture" (which file it
+  // is, absent without one). Throws Refused (404) when there is none.
   nlohmann::json session_document(const std::string& name);
   // Throws Refused (404) when there is no such session.
   std::filesystem::path existing_session(const std::string& name) const;
@@ -48,7 +48,8 @@ class Workspace {
   nlohmann::json queue_line(const std::string& name);
 
   std::filesystem::path folder_;
-  // What was read of a session, good while its journal is as long and as old, and is held by a process or is not.
+  // The line of a session, which holds while its journal's length and time, and whether a process has it open, are
+  // these.
   struct ReadSession {
     std::uintmax_t journal_bytes = 0;
     std::filesystem::file_time_type journal_time{};
@@ -59,8 +60,9 @@ class Workspace {
   std::map<std::string, ReadSession> sessions_;
 };
 
-// Names in a folder that may be parts of paths, sorted: of its folders, or of its files with this ending, without it.
+// The names of the folders in `folder` that may be parts of paths, sorted.
 std::vector<std::string> folders_in(const std::filesystem::path& folder);
+// Likewise of the files with this ending, without it.
 std::vector<std::string> files_in(const std::filesystem::path& folder, const std::string& ending);
 
 }  // namespace station

@@ -18,9 +18,9 @@ struct ReplayReport {
   std::vector<std::string> differences;  // files of the session that are not the same; one line each
 };
 
-// `recorded`: a session that was captured with --record; what it is made of and which pictures are taken again is as it
-// was then, so that of `request` only the folder to make and the style of progress count. `resume`: a replay that was
-// ended goes on; its journal is its own then.
+// Replays `recorded`, a session that was captured with --record. What it is made of and which pictures are taken again
+// is as it was then, so that of `request` only the folder to make and the style of progress count. `resume`: goes on
+// with a replay that was ended; its journal then differs from the recorded one.
 // Compares session.json, journal.jsonl, raw/, refused/, calibration/ and replay/. Errors: std::runtime_error for a
 // session that was not recorded or does not verify by its hashes, and where the program asks the devices for something
 // else than the recorded one did.

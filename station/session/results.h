@@ -8,12 +8,14 @@
 
 namespace station {
 
-// The folder of what a fit of `model` ("thread", "fiber", "yarn") found, the report of the fit in a baseline's (a
-// thread's is part of the thread's file), the fitted thread, and one view as the fitted model gives it. None needs to
-// be there.
+// The folder of what a fit of `model` ("thread", "fiber", "yarn", "paper") found. Neither it nor any file that these
+// functions name needs to be there.
 std::filesystem::path results_of(const std::filesystem::path& session, const std::string& model);
+// The report of the fit of a baseline; that of a thread is part of its thread file.
 std::filesystem::path baseline_fit_of(const std::filesystem::path& session, const std::string& model);
+// The fitted thread.
 std::filesystem::path thread_file_of(const std::filesystem::path& session);
+// One view (EXR) as the fitted model gives it.
 std::filesystem::path fitted_file_of(const std::filesystem::path& session, const std::string& view,
                                      const std::string& model = "thread");
 

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "station/bench/mounted_holder.h"
 #include "station/session/checks/capture_checks.h"
 #include "station/session/replay/device_log.h"
 
@@ -20,7 +21,7 @@ std::vector<std::string> steps_to_reshoot(const Plan& plan, const std::vector<st
     }
     steps.push_back(id);
     for (const PlanStep& step : plan.steps)
-      if (step.kind == StepKind::exposure && step.exposure_of == id) steps.push_back(step.id);
+      if (step.kind == StepKind::bracket && step.exposure_of == id) steps.push_back(step.id);
   }
   return steps;
 }

@@ -11,8 +11,8 @@
 
 namespace station {
 
-// The request's `record` and `reshoot` are followed; its session is open already. The caller's `options` are completed
-// by what the rig file and the checks decide.
+// Runs the plan of an open session, following the request's `record` and `reshoot`. The caller's `options` are
+// completed by what the rig file and the checks decide.
 // Errors: those of run_plan; std::runtime_error for a view to be taken again that the plan does not have.
 RunState run_session(SessionFolder& session, const RunDevices& devices, const SessionFile& asked,
                      const RigCalibration& calibration, const CaptureRequest& request, RunOptions options = {});

@@ -57,19 +57,21 @@ std::runtime_error bad_row(const std::filesystem::path& file, std::size_t line, 
   return std::runtime_error(file.string() + " line " + std::to_string(line) + ": " + problem);
 }
 
-QueuedSpool queued(const std::filesystem::path& file, const TextRow& row, const std::filesystem::path& spool_above) {
+QueuedSpool queued(const std::filesystem::path& file, const TextTable& table, const TextTable::Row& row,
+                   const std::filesystem::path& spool_above) {
+  const auto cell = [&](const char* column) { return table.cell(row, column); };
   QueuedSpool spool{.line = row.line,
-                    .sample = {.barcode = row["barcode"],
-                               .name = row["name"],
-                               .lot = row["lot"],
-                               .material = row["material"],
-                               .colour = row["colour"],
-                               .note = row["note"]},
+                    .sample = {.barcode = cell("barcode"),
+                               .name = cell("name"),
+                               .lot = cell("lot"),
+                               .material = cell("material"),
+                               .colour = cell("colour"),
+                               .note = cell("note")},
                     .spool = spool_above,
                     .session = {}};
   const std::string& called = spool.sample.barcode.empty() ? spool.sample.name : spool.sample.barcode;
   if (called.empty()) throw bad_row(file, row.line, "neither barcode nor name is filled in; give one of them");
-  if (!row["spool"].empty()) spool.spool = file.parent_path() / row["spool"];
+  if (const std::string named = cell("spool"); !named.empty()) spool.spool = file.parent_path() / named;
   if (spool.spool.empty())
     throw bad_row(file, row.line, "no spool file is named, and there is no row above to take it from; fill in spool");
   spool.session = safe_name(called) + (spool.sample.lot.empty() ? "" : "-" + safe_name(spool.sample.lot));
@@ -100,9 +102,9 @@ std::string safe_name(const std::string& text) {
 std::vector<QueuedSpool> read_queue(const std::filesystem::path& file) {
   std::vector<QueuedSpool> queue;
   std::map<std::string, std::size_t> lines;  // by session name
-  for (const TextRow& row :
-       read_text_table(file, {}, {"barcode", "name", "lot", "material", "colour", "note", "spool"})) {
-    queue.push_back(queued(file, row, queue.empty() ? std::filesystem::path() : queue.back().spool));
+  const TextTable table = read_text_table(file, {}, {"barcode", "name", "lot", "material", "colour", "note", "spool"});
+  for (const TextTable::Row& row : table.rows) {
+    queue.push_back(queued(file, table, row, queue.empty() ? std::filesystem::path() : queue.back().spool));
     const auto [same, fresh] = lines.emplace(queue.back().session, row.line);
     if (!fresh)
       throw bad_row(file, row.line,

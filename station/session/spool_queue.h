@@ -30,8 +30,8 @@ std::vector<QueuedSpool> read_queue(const std::filesystem::path& file);
 // code ("u00e9"), and others between them become one -.
 std::string safe_name(const std::string& text);
 
-// kept: it was complete already. failed: the next spool is taken all the same. bench_fault: it is not, and the spools
-// that are not complete wait.
+// kept: the session was complete already. failed: the queue goes on with the next spool. bench_fault: the queue stops,
+// and the spools that are not complete wait.
 enum class QueueOutcome { captured, resumed, kept, failed, bench_fault, waiting };
 
 struct QueueResult {
@@ -40,11 +40,11 @@ struct QueueResult {
   std::string problem;  // why it failed
 };
 
-// `request` is made for each spool of the table: it asks for a new session without spool and sample, and its `session`
-// is the folder that holds all sessions. `next` asks the person for the next spool and says whether to go on; empty:
-// nobody is asked. `capture` takes one spool. Ends early when a session is paused or aborted, when ctrl-C came, or when
-// `next` says so; after a BenchFault nobody is asked for another spool. The same call goes on where it ended. Errors:
-// those of read_queue.
+// Captures each spool of the table, by `capture` and a copy of `request`. That asks for a new session without spool and
+// sample, and its `session` is the folder that holds all sessions. `next` asks the person for the next spool and says
+// whether to go on; empty: nobody is asked. The queue ends early when a session is paused or aborted, when ctrl-C came,
+// or when `next` says so; after a BenchFault nobody is asked for another spool. The same call goes on where it ended.
+// Errors: those of read_queue.
 std::vector<QueueResult> capture_queue(const std::filesystem::path& table, const CaptureRequest& request,
                                        const std::function<bool(const QueuedSpool&)>& next,
                                        const std::function<RunState(const CaptureRequest&)>& capture = capture_session);

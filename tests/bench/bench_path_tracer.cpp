@@ -4,12 +4,11 @@
 // RGB, over the picture's mean), as bench_cycles.py prints it: the time to equal noise goes as noise^2 over samples per
 // second.
 #include <benchmark/benchmark.h>
-#include <embree3/rtcore.h>
 
 #include <cmath>
-#include <limits>
 
 #include "renderer/trace/path_tracer.h"
+#include "tests/bench/bare_embree.h"
 #include "tests/renderer/trace/curve_scenes.h"
 
 namespace renderer {
@@ -47,40 +46,18 @@ void path_tracing(benchmark::State& state, const CurveScene& scene, int max_vert
 
 void bare_first_hits(benchmark::State& state, char name) {
   const CurveScene scene = scene_named(name);
-  const CurveSet& curves = scene.scene.curves.front();
-  const RTCDevice device = rtcNewDevice(nullptr);
-  const RTCScene embree = rtcNewScene(device);
-  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_BSPLINE_CURVE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, curves.control_points.data(), 0,
-                             sizeof(Eigen::Vector4f), curves.control_points.size());
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, curves.segments.data(), 0,
-                             sizeof(std::uint32_t), curves.segments.size());
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(embree, geometry);
-  rtcCommitScene(embree);
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  BareEmbree bare(scene.scene.curves.front());
   for (auto _ : state) {
     for (int row = 0; row < scene.camera.height; ++row) {
       for (int column = 0; column < scene.camera.width; ++column) {
         const CameraRay ray = ray_through(scene.camera, column + 0.2, row + 0.3);
         const Eigen::Vector3f origin = (ray.origin + 390 * ray.direction).cast<float>();
         const Eigen::Vector3f direction = ray.direction.cast<float>();
-        RTCRayHit query{};
-        query.ray.org_x = origin.x(), query.ray.org_y = origin.y(), query.ray.org_z = origin.z();
-        query.ray.dir_x = direction.x(), query.ray.dir_y = direction.y(), query.ray.dir_z = direction.z();
-        query.ray.tfar = std::numeric_limits<float>::infinity();
-        query.ray.mask = ~0u;
-        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(embree, &context, &query);
-        benchmark::DoNotOptimize(query);
+        benchmark::DoNotOptimize(bare.meets(origin, direction));
       }
     }
   }
   state.SetItemsProcessed(state.iterations() * scene.camera.width * scene.camera.height);
-  rtcReleaseGeometry(geometry);
-  rtcReleaseScene(embree);
-  rtcReleaseDevice(device);
 }
 
 BENCHMARK_CAPTURE(bare_first_hits, scene_a_one_thread, 'a')->Unit(benchmark::kMillisecond);

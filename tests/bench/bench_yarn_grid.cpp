@@ -2,15 +2,14 @@
 // grid alone, and the grid inside the world's scene with the point that was hit (RayScene). All run on one core and on
 // the same rays: those of the camera, and those that scatter from where they meet the cloth.
 #include <benchmark/benchmark.h>
-#include <embree3/rtcore.h>
 
-#include <limits>
 #include <memory>
 
 #include "renderer/scene/patch_curves.h"
 #include "renderer/trace/path_vertex.h"
 #include "renderer/trace/ray_scene.h"
 #include "renderer/trace/yarn_grid.h"
+#include "tests/bench/bare_embree.h"
 #include "tests/renderer/trace/curve_scenes.h"
 
 namespace renderer {
@@ -56,32 +55,8 @@ void time_rays(benchmark::State& state, const Meet& meet) {
 
 void bare_embree(benchmark::State& state) {
   const CurveScene scene = plain_weave_scene();
-  const CurveSet& curves = scene.scene.curves.front();
-  const RTCDevice device = rtcNewDevice(nullptr);
-  const RTCScene embree = rtcNewScene(device);
-  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_BSPLINE_CURVE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, curves.control_points.data(), 0,
-                             sizeof(Eigen::Vector4f), curves.control_points.size());
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, curves.segments.data(), 0,
-                             sizeof(std::uint32_t), curves.segments.size());
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(embree, geometry);
-  rtcCommitScene(embree);
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  time_rays(state, [&](const Ray& ray) {
-    RTCRayHit query{};
-    query.ray.org_x = ray.origin.x(), query.ray.org_y = ray.origin.y(), query.ray.org_z = ray.origin.z();
-    query.ray.dir_x = ray.direction.x(), query.ray.dir_y = ray.direction.y(), query.ray.dir_z = ray.direction.z();
-    query.ray.tfar = std::numeric_limits<float>::infinity();
-    query.ray.mask = ~0u;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(embree, &context, &query);
-    return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
-  });
-  rtcReleaseGeometry(geometry);
-  rtcReleaseScene(embree);
-  rtcReleaseDevice(device);
+  BareEmbree bare(scene.scene.curves.front());
+  time_rays(state, [&](const Ray& ray) { return bare.meets(ray.origin, ray.direction); });
 }
 BENCHMARK(bare_embree)->ArgName("scattered")->Arg(0)->Arg(1);
 

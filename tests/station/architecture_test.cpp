@@ -27,10 +27,11 @@ using Graph = std::map<std::string, std::set<std::string>>;
 struct Include {
   std::string file;    // from the root of the repository
   std::string target;  // as written between the quotes or brackets
+  bool quoted = false;
 };
 
 std::vector<Include> includes() {
-  static const std::regex kInclude(R"re(^\s*#\s*include\s*["<]([^">]+)[">])re");
+  static const std::regex kInclude(R"re(^\s*#\s*include\s*(["<])([^">]+)[">])re");
   std::vector<Include> found;
   for (const std::string& folder : kFolders)
     for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
@@ -39,7 +40,8 @@ std::vector<Include> includes() {
       std::ifstream in(entry.path());
       std::smatch match;
       for (std::string line; std::getline(in, line);)
-        if (std::regex_search(line, match, kInclude)) found.push_back({fs::relative(entry.path(), kRoot), match[1]});
+        if (std::regex_search(line, match, kInclude))
+          found.push_back({fs::relative(entry.path(), kRoot), match[2], match[1] == "\""});
     }
   return found;
 }
@@ -116,6 +118,12 @@ TEST(Architecture, EachRoomIncludesOnlyTheRoomsThatItNames) {
     EXPECT_TRUE(room != rooms.end() && room->second.contains(to)) << include.file << " includes " << include.target;
   }
   EXPECT_GT(checked, 1000) << "the test must see the program's includes";
+}
+
+// A name without its folder would be found beside its file, and pass all other tests unseen.
+TEST(Architecture, EachQuotedIncludeBeginsWithAFolderOfOurs) {
+  for (const Include& include : includes())
+    EXPECT_TRUE(!include.quoted || ours(include.target)) << include.file << " includes \"" << include.target << '"';
 }
 
 TEST(Architecture, RoomsNameOnlyRoomsThatTheyInclude) {

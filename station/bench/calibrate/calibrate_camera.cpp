@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "calibration/develop/develop.h"
+#include "calibration/develop/linear_grey.h"
 #include "calibration/geometry/chessboard.h"
 #include "calibration/sensor/sensor_file.h"
 #include "rig/devices/clock.h"
@@ -15,6 +16,7 @@
 #include "station/documents/board_file.h"
 #include "station/documents/disk/sha256.h"
 #include "station/documents/session_file.h"
+#include "station/documents/text_pieces.h"
 
 namespace station {
 namespace {
@@ -24,9 +26,7 @@ namespace fs = std::filesystem;
 enum class FileKind { photograph, raw, other };
 
 FileKind kind_of(const fs::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case(file.extension().string());
   for (const char* known : {".jpg", ".jpeg", ".png", ".tif", ".tiff"})
     if (extension == known) return FileKind::photograph;
   return is_raw_file(file) ? FileKind::raw : FileKind::other;
@@ -68,7 +68,7 @@ struct GreyPicture {
 GreyPicture read_picture(const fs::path& file) {
   GreyPicture picture;
   if (kind_of(file) == FileKind::raw) {
-    picture.linear = linear_grey(calibration::read_sensor_file(file));
+    picture.linear = calibration::linear_grey(calibration::read_sensor_file(file));
     double white = 0.0;
     cv::minMaxLoc(picture.linear, nullptr, &white);
     display_from_linear(picture.linear, std::max(1e-12F, static_cast<float>(white)))
@@ -151,9 +151,9 @@ LensFile calibrate_camera(const CalibrateCameraRequest& request) {
   if (seen.with_board == 0) refuse_unseen(request, board, seen);
   const calibration::LensOptions options{.working_distance_mm = request.working_distance_mm,
                                          .taped_distance_mm = request.taped_distance_mm};
-  const auto guess = [&](const std::vector<calibration::BoardPicture>& views, const calibration::Lattice& lattice) {
+  const auto guess = [&](const std::vector<calibration::BoardPicture>& pictures, const calibration::Lattice& lattice) {
     return request.focal_guess_px > 0.0 ? request.focal_guess_px
-                                        : calibration::guess_focal_px(views, lattice, seen.size);
+                                        : calibration::guess_focal_px(pictures, lattice, seen.size);
   };
   if (const auto* lattice = std::get_if<calibration::Lattice>(&board.pattern)) {
     result.fit =
@@ -161,9 +161,10 @@ LensFile calibrate_camera(const CalibrateCameraRequest& request) {
   } else {
     const auto& tags = std::get<calibration::TagLayout>(board.pattern);
     const calibration::TagLattice on = calibration::lattice_of(tags);
-    std::vector<calibration::BoardPicture> views;
-    for (const calibration::TagObservation& view : seen.tags) views.push_back(calibration::on_lattice(on, tags, view));
-    result.fit = calibration::fit_lens(seen.tags, tags, seen.size, guess(views, on.lattice), options);
+    std::vector<calibration::BoardPicture> pictures;
+    for (const calibration::TagObservation& tagged : seen.tags)
+      pictures.push_back(calibration::on_lattice(on, tags, tagged));
+    result.fit = calibration::fit_lens(seen.tags, tags, seen.size, guess(pictures, on.lattice), options);
   }
   result.board = board.name;
   result.utc = rig::SystemClock().utc();

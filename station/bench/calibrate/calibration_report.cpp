@@ -120,7 +120,7 @@ PlotPanel angle_panel(const calibration::PlatformFit& fit) {
                   .circles = {},
                   .x_range = std::nullopt,
                   .y_range = std::nullopt};
-  PlotLine line{.title = "turning views", .points = {}, .style = PlotStyle::points};
+  PlotLine line{.title = "turning pictures", .points = {}, .style = PlotStyle::points};
   double largest = 0.005;
   for (std::size_t i = 0; i < fit.angles_rad.size(); ++i) {
     const double off_deg = (fit.angles_rad[i] - fit.scale * fit.readings_rad[i]) / kDegree;

@@ -24,7 +24,7 @@ std::vector<Eigen::Vector3d> chart_colours(const calibration::Developed& picture
                                            const calibration::LightFit& light) {
   const renderer::Camera camera = camera_of(lens, camera_from_chart.inverse(), false);
   const Eigen::Isometry3d world_from_chart = world_from_camera * camera_from_chart;
-  const double half = chart.patch_mm * kUsedFraction / 2;
+  const double half = chart.square_mm * kUsedFraction / 2;
   const cv::Rect frame(0, 0, picture.radiance.cols, picture.radiance.rows);
   std::vector<Eigen::Vector3d> colours;
   for (std::size_t square = 0; square < kChartColumns * kChartRows; ++square) {

@@ -31,7 +31,7 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-// Of each tag under the typical lamp: where it lies in the open it looks alike in many pictures.
+// The brightness of each tag under the typical lamp: where it lies in the open it looks alike in many pictures.
 std::map<int, double> lit_brightness(const std::vector<std::map<int, double>>& pictures,
                                      const std::vector<std::optional<double>>& outputs) {
   std::map<int, std::vector<double>> seen;

@@ -1,9 +1,10 @@
 // The sensor's part of a rig calibration: which pictures measure how the camera answers to light.
 //
-// response: the Spectralon panel under the lamp, one metered picture, then a ladder of whole stops up and down again
-// (so
-//   that a lamp that drifts does so in both halves); rapid: ten quick ones for flicker; dark: no light at all, at the
-//   ladder's two ends; white_field: the panel close to the lens under the room light, filling the picture, for dust.
+//   response      the Spectralon panel under the lamp, one metered picture, then a ladder of whole stops up and down
+//                 again, so that a lamp that drifts does so in both halves
+//   rapid         ten quick ones for flicker
+//   dark          no light at all, at the ladder's two ends
+//   white_field   the panel close to the lens under the room light, filling the picture, for dust
 #pragma once
 
 #include <vector>

@@ -63,13 +63,14 @@ double working_distance_mm(const RigFile& rig) {
   return (Eigen::Vector3d(0, 0, rig.platform_height_mm + 34) - rig.world_from_camera_by_tape.translation()).norm();
 }
 
-constexpr double kTagsSigma =
-    0.0015;  // of an output told by the table's tags: grey paper, light by way of other things
+// The relative error of an output told by the table's tags: they are grey paper, and light comes by way of other
+// things.
+constexpr double kTagsSigma = 0.0015;
 
 calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& lens,
                                   const Eigen::Isometry3d& world_from_camera, const std::vector<Loaded>& loaded,
                                   const calibration::StillTags& still, const calibration::SensorResponse* response) {
-  std::vector<calibration::PanelSpot> patches;
+  std::vector<calibration::PanelSpot> spots;
   std::vector<calibration::LightPicture> pictures;
   std::array<std::vector<std::size_t>, 2> under;  // pictures under the lamp in front, behind
   std::array<std::vector<std::map<int, double>>, 2> tags;
@@ -82,9 +83,9 @@ calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& l
                                " is dark or does not show the panel: none of its tags was found; switch the lamp on, "
                                "hold the panel into the picture and take it again with calibrate --only light");
     const calibration::Developed picture = calibration::develop(entry.raw, {.response = response});
-    const auto cells = panel_spots(picture, lens, world_from_camera, pose->camera_from_object, rig.spectralon,
-                                   front ? 0 : 1, static_cast<int>(pictures.size()));
-    patches.insert(patches.end(), cells.begin(), cells.end());
+    const auto seen = panel_spots(picture, lens, world_from_camera, pose->camera_from_object, rig.spectralon,
+                                  front ? 0 : 1, static_cast<int>(pictures.size()));
+    spots.insert(spots.end(), seen.begin(), seen.end());
     under.at(front ? 0 : 1).push_back(pictures.size());
     tags.at(front ? 0 : 1).push_back(tag_radiances(picture, still));
     pictures.push_back({.name = entry.picture.id, .output = entry.picture.lamp_output});
@@ -98,7 +99,7 @@ calibration::LightFit solve_light(const RigFile& rig, const calibration::Lens& l
       picture.output_sigma = kTagsSigma;
     }
   }
-  return calibration::fit_light(patches, lamp_guesses(rig), light_options(rig, {lens.width_px, lens.height_px}),
+  return calibration::fit_light(spots, lamp_guesses(rig), light_options(rig, {lens.width_px, lens.height_px}),
                                 pictures);
 }
 
@@ -187,7 +188,7 @@ std::string describe(const RigCalibration& calibration) {
                   100 * held_out_error(light, static_cast<int>(i)));
     lines += text;
   }
-  std::snprintf(text, sizeof text, "          beam cos^%.2f, panel's droop %.1f %% at 60 deg, patches rms %.2f %%\n",
+  std::snprintf(text, sizeof text, "          beam cos^%.2f, panel's droop %.1f %% at 60 deg, spots rms %.2f %%\n",
                 light.beam_exponent, 100 * light.droop.sum(), 100 * light.relative_rms);
   lines += text;
   if (calibration.colour) {

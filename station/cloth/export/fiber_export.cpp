@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <stdexcept>
 
+#include "station/documents/matrix_rows.h"
 #include "station/documents/number_text.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
@@ -19,8 +20,7 @@ std::string of_channels(const char* what, const Eigen::Array3d& thread, const Ei
 }  // namespace
 
 Eigen::Matrix3d srgb_scattering_from_camera(const ThreadFile& thread) {
-  const Eigen::Matrix3d srgb_from_camera =
-      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(thread.linear_srgb_from_camera.data());
+  const Eigen::Matrix3d srgb_from_camera = matrix_of(thread.linear_srgb_from_camera);
   const Eigen::FullPivLU<Eigen::Matrix3d> lu(srgb_from_camera);
   if (!lu.isInvertible())
     throw std::runtime_error(

@@ -123,7 +123,7 @@ Jacquard weave_jacquard(const JacquardRequest& request) {
   draft.free_periods = false, draft.transverse_modulus_n_mm2 = 0, draft.relaxed = false;
   draft.name = "jacquard of " + request.image.filename().string();
   const cv::Mat3f picture =
-      picture_of_crossings(request.image, request.ends, request.exposure, {draft.warp.pitch_mm, draft.weft.pitch_mm},
+      picture_of_crossings(request.image, request.ends, request.brightness, {draft.warp.pitch_mm, draft.weft.pitch_mm},
                            renderer::kMostUnrelaxedCrossings);
   make_folder(request.out);
   ProgressDisplay progress("jacquard", request.progress_style);

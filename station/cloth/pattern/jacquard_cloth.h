@@ -20,7 +20,7 @@ struct JacquardRequest {
   std::filesystem::path warp_thread, weft_thread;
   std::filesystem::path draft;  // gives yarns and sett; its structure is not used
   int ends = 0;                 // across the picture; 0: one per pixel
-  double exposure = 1;          // factor of the picture's brightness
+  double brightness = 1;        // factor of the picture's brightness
   std::uint64_t seed = 1;
   ProgressStyle progress_style = ProgressStyle::automatic;
 };
@@ -29,8 +29,8 @@ struct Jacquard {
   int ends = 0, picks = 0;
   double width_mm = 0, height_mm = 0;
   std::array<std::array<double, 3>, renderer::kShades> shades{};  // linear sRGB under even light, weft-faced first
-  double delta_e_2000 =
-      0;  // mean over squares of a satin's repeat, of the nearest mixture of the two against the picture
+  // Mean over squares of a satin's repeat, of the nearest mixture of the two against the picture.
+  double delta_e_2000 = 0;
 };
 
 // Weaves the picture. Written into `out` are draft.json, scene.json (to render it), jacquard.json (what is returned)

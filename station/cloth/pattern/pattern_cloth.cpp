@@ -14,6 +14,7 @@
 #include "station/cloth/pattern/picture_of_crossings.h"
 #include "station/cloth/render/build_scene.h"
 #include "station/documents/disk/stored_file.h"
+#include "station/documents/matrix_rows.h"
 #include "station/documents/reader.h"
 #include "station/documents/scene_names.h"
 #include "station/documents/session_file.h"
@@ -24,11 +25,6 @@ namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-Eigen::Matrix3d srgb_from_camera(const SceneFile& scene) {
-  using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  return Eigen::Map<const Matrix>(scene.linear_srgb_from_camera.data());
-}
 
 cv::Mat3f transformed(const cv::Mat3f& colours, const Eigen::Matrix3d& matrix) {
   const Eigen::Matrix3f m = matrix.cast<float>();
@@ -119,10 +115,10 @@ Pattern weave_pattern(const PatternRequest& request) {
   Base base = base_of(request);
   const SceneFile scene = parse_scene(base.document, base.source, base.folder);
   const inversion::TexturedCloth woven = cloth_of(scene, request);
-  const cv::Mat3f picture = picture_of_crossings(request.image, request.ends, request.exposure, woven.crossing_mm());
+  const cv::Mat3f picture = picture_of_crossings(request.image, request.ends, request.brightness, woven.crossing_mm());
   make_folder(request.out);
   ProgressDisplay progress("pattern", request.progress_style);
-  const Eigen::Matrix3d to_srgb = srgb_from_camera(scene);
+  const Eigen::Matrix3d to_srgb = matrix_of(scene.linear_srgb_from_camera);
   int shown = -1;
   const auto show = [&](double share) {
     const int percent = static_cast<int>(100 * share);

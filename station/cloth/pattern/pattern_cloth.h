@@ -18,7 +18,7 @@ struct PatternRequest {
   std::filesystem::path scene{};        // ... or a cloth of this scene instead
   int cloth = 0;                        // number of the cloth in the scene
   int ends = 0;                         // crossings across the picture; 0: one per pixel
-  double exposure = 1;                  // factor of the picture's brightness
+  double brightness = 1;                // factor of the picture's brightness
   bool within_gamut = true;             // its black to white becomes the darkest to brightest that the cloth can show
   int steps = 10;                       // steps of refinement; 0: only the curves of absorption
   std::uint64_t seed = 1;

@@ -14,10 +14,10 @@ namespace station {
 using Eigen::Vector3d;
 namespace fs = std::filesystem;
 
-cv::Mat3f picture_of_crossings(const fs::path& image, int asked_ends, double exposure,
+cv::Mat3f picture_of_crossings(const fs::path& image, int asked_ends, double brightness,
                                const Eigen::Vector2d& crossing_mm, double most) {
   cv::Mat3f picture = renderer::read_linear_srgb(image);
-  picture *= exposure;
+  picture *= brightness;
   const int ends = asked_ends > 0 ? asked_ends : picture.cols;
   const double height_mm = ends * crossing_mm.x() * picture.rows / picture.cols,
                picks = std::max(1.0, std::round(height_mm / crossing_mm.y()));

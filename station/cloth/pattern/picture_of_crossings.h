@@ -9,10 +9,10 @@ namespace station {
 
 inline constexpr double kMostPictureCrossings = 16e6;
 
-// Reads a picture (renderer::read_linear_srgb), multiplies it by `exposure` and brings it to a pixel for each crossing:
-// `ends` across (0: as many as it has pixels) and as many picks as keep its shape. Errors: those of read_linear_srgb;
-// std::runtime_error for more than `most` crossings.
-cv::Mat3f picture_of_crossings(const std::filesystem::path& image, int ends, double exposure,
+// Reads a picture (renderer::read_linear_srgb), multiplies it by `brightness` and brings it to a pixel for each
+// crossing: `ends` across (0: as many as it has pixels) and as many picks as keep its shape. Errors: those of
+// read_linear_srgb; std::runtime_error for more than `most` crossings.
+cv::Mat3f picture_of_crossings(const std::filesystem::path& image, int ends, double brightness,
                                const Eigen::Vector2d& crossing_mm, double most = kMostPictureCrossings);
 
 Eigen::Vector3d lab_of(const cv::Vec3f& linear_srgb);

@@ -13,7 +13,7 @@ namespace station {
 // renderer::woven_patch; std::runtime_error, one line, for a yarn of a thread that the scene does not list.
 renderer::YarnPatch woven_cloth(const SceneFile& file, std::size_t cloth);
 
-// What takes long of a cloth, done.
+// A cloth that is woven and whose shape is made, which takes long.
 struct BuiltCloth {
   renderer::YarnPatch patch;
   renderer::ClothShape shape;
@@ -21,8 +21,8 @@ struct BuiltCloth {
 // All cloths of the scene, in their order. Errors: those of woven_cloth and renderer::garment_mesh.
 std::vector<BuiltCloth> build_cloths(const SceneFile& file);
 
-// `cloths`: those of the same file. Errors: those of renderer::surface_of, explicit_curves, stitch_curves and
-// sewn_curves.
+// The scene for the path tracer. `cloths`: those of the same file. Errors: those of renderer::surface_of,
+// explicit_curves, stitch_curves and sewn_curves.
 renderer::Scene build_scene(const SceneFile& file, const std::vector<BuiltCloth>& cloths);
 
 }  // namespace station

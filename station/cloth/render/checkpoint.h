@@ -13,11 +13,11 @@ namespace station {
 // a.exr -> a.exr.checkpoint
 std::filesystem::path checkpoint_of(const std::filesystem::path& picture);
 
-// Whole or not at all. Errors: those of store_file (capture/stored_file.h).
+// Stores the checkpoint whole or not at all. Errors: those of store_file (documents/disk/stored_file.h).
 void store_checkpoint(const std::filesystem::path& file, const RenderIdentity& identity, const renderer::Film& film);
 
-// None when there is no such file. Errors: std::runtime_error with one line when it is damaged, or belongs to another
-// scene, seed, number of samples, version or size of picture.
+// The film of the checkpoint; nothing when there is no such file. Errors: std::runtime_error with one line when it is
+// damaged, or belongs to another scene, seed, number of samples, version or size of picture.
 std::optional<renderer::Film> read_checkpoint(const std::filesystem::path& file, const RenderIdentity& identity,
                                               const cv::Size& picture);
 

@@ -14,16 +14,16 @@ struct RenderIdentity {
   std::string software;
   std::uint64_t seed = 1;
   int samples_per_pixel = 0;
-  double noise = 0;  // that ends it earlier; 0: none
+  double noise = 0;  // the noise at which it ends earlier; 0: none
 };
 
-// Files are those whose names stand in the scene's document as texts, relative to its folder, and in the documents
-// (.json, .gltf) that it names. Errors: std::runtime_error that names a file which cannot be read.
+// The SHA-256 over the scene file and the files that its texts name, relative to its folder, and so on in the documents
+// (.json, .gltf) among them. Errors: std::runtime_error that names a file which cannot be read.
 std::string sha256_of_scene(const std::filesystem::path& scene);
 
 nlohmann::json to_json(const RenderIdentity& identity);
 
-// What distinguishes another rendering, as "seed 3, not 4"; none when it is the same.
+// What distinguishes another rendering, such as "seed 3, not 4"; nothing when it is the same.
 std::optional<std::string> difference(const nlohmann::json& other, const RenderIdentity& identity);
 
 }  // namespace station

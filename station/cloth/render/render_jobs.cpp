@@ -7,6 +7,7 @@
 #include "station/cloth/render/render_identity.h"
 #include "station/documents/disk/stored_file.h"
 #include "station/output/interrupt.h"
+#include "station/output/progress.h"
 
 namespace station {
 namespace {
@@ -38,7 +39,7 @@ RenderJob prepared(RenderRequest request) {
   const SceneFile scene = read_scene(request.scene);
   if (!is_kept(request, scene)) job.cloths = build_cloths(scene);
   job.request = std::move(request);
-  job.build_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  job.build_s = seconds_since(start);
   return job;
 }
 

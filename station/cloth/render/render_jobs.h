@@ -8,11 +8,11 @@
 
 namespace station {
 
-// Of each scene DIR/NAME.exr and DIR/NAME.png, DIR being `common.out`, which is made where it is missing. Pictures that
-// are there already from the same scene, seed, samples and version are kept, unless `common.fresh`; the one that was
-// interrupted goes on from its checkpoint: the same command again does what is left. Errors: those of render_scene; two
-// scenes of one name; an `out` that ends as a picture. All scenes are read, and the cloths of those that are not kept
-// built, before the first is rendered.
+// Writes DIR/NAME.exr and DIR/NAME.png for each scene. DIR is `common.out`, made where it is missing. Pictures that are
+// there already from the same scene, seed, samples and version are kept, unless `common.fresh`; the one that was
+// interrupted goes on from its checkpoint, so that the same command again does what is left. Errors: those of
+// render_scene; std::runtime_error for two scenes of one name and for an `out` that ends as a picture. All scenes are
+// read, and the cloths of those that are not kept built, before the first is rendered.
 std::vector<RenderReport> render_scenes(const std::vector<std::filesystem::path>& scenes, const RenderRequest& common);
 
 }  // namespace station

@@ -15,7 +15,7 @@ std::size_t control_points(const renderer::YarnPatch& patch) {
   return points * kControlPoint;
 }
 
-// Of the cloth laid flat.
+// The area of the cloth laid flat.
 double area_mm2(const renderer::ClothSurface& surface) {
   double area = 0;
   for (const auto& t : surface.triangles) {

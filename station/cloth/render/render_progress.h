@@ -11,7 +11,8 @@ class RenderProgress {
  public:
   RenderProgress(const std::string& task, ProgressStyle style) : display_(task, style) {}
 
-  // The pace is that of this run: what was there when it began took it no time.
+  // Shows the finished fraction. The time left goes by this run's pace alone: what was there when it began does not
+  // count.
   void show(double fraction);
   ProgressDisplay& display() { return display_; }
 

@@ -15,15 +15,12 @@
 #include "station/output/display.h"
 #include "station/output/interrupt.h"
 #include "station/output/picture_destination.h"
+#include "station/output/progress.h"
 
 namespace station {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 void check_destination(const RenderRequest& request) {
   check_picture_destination(request.out);
@@ -32,8 +29,8 @@ void check_destination(const RenderRequest& request) {
                              ": --layers and --half are for EXR files; give --out a name that ends in .exr");
 }
 
-double exposure_of(const RenderRequest& request, const SceneFile& scene, const cv::Mat3f& image) {
-  return request.exposure ? *request.exposure : scene.exposure ? *scene.exposure : display_scale(image);
+double brightness_of(const RenderRequest& request, const SceneFile& scene, const cv::Mat3f& image) {
+  return request.brightness ? *request.brightness : scene.brightness ? *scene.brightness : display_scale(image);
 }
 
 constexpr const char* kRenderingAttribute = "threadstation/rendering";
@@ -93,9 +90,9 @@ void write_picture(const Rendering& rendering, const renderer::PathTracer& trace
   const RenderRequest& request = rendering.request;
   const bool is_exr = request.out.extension() == ".exr";
   if (!is_exr || request.png) {
-    report.exposure = exposure_of(request, rendering.scene, image);
+    report.brightness = brightness_of(request, rendering.scene, image);
     renderer::write_png(png_beside(request.out),
-                        display(image, report.exposure, rendering.scene.linear_srgb_from_camera));
+                        display(image, report.brightness, rendering.scene.linear_srgb_from_camera));
   }
   if (is_exr) write_exr(rendering, tracer, image);
 }
@@ -103,10 +100,10 @@ void write_picture(const Rendering& rendering, const renderer::PathTracer& trace
 // A checkpoint to go on from, and a picture of it to look at.
 void leave_behind(const Rendering& rendering, const renderer::Film& film) {
   const cv::Mat3f image = renderer::mean_radiance(film);
-  const double exposure = exposure_of(rendering.request, rendering.scene, image);
+  const double brightness = brightness_of(rendering.request, rendering.scene, image);
   store_checkpoint(checkpoint_of(rendering.request.out), rendering.identity, film);
   renderer::write_png(preview_of(rendering.request.out),
-                      display(image, exposure, rendering.scene.linear_srgb_from_camera));
+                      display(image, brightness, rendering.scene.linear_srgb_from_camera));
 }
 
 void remove_what_was_left(const std::filesystem::path& out) {
@@ -230,12 +227,12 @@ RenderReport render_scene(const RenderRequest& request, std::vector<BuiltCloth> 
 
 nlohmann::json to_json(const RenderReport& report) {
   if (report.kept) return {{"image", report.image}, {"kept", true}};
-  nlohmann::json document{{"image", report.image},       {"width_px", report.width},
-                          {"height_px", report.height},  {"samples_per_pixel", report.samples_per_pixel},
-                          {"exposure", report.exposure}, {"build_s", report.build_s},
-                          {"render_s", report.render_s}, {"samples", report.samples},
-                          {"rays", report.rays},         {"samples_before", report.samples_before},
-                          {"noisy", report.noisy},       {"memory", to_json(report.memory)}};
+  nlohmann::json document{{"image", report.image},         {"width_px", report.width},
+                          {"height_px", report.height},    {"samples_per_pixel", report.samples_per_pixel},
+                          {"exposure", report.brightness}, {"build_s", report.build_s},
+                          {"render_s", report.render_s},   {"samples", report.samples},
+                          {"rays", report.rays},           {"samples_before", report.samples_before},
+                          {"noisy", report.noisy},         {"memory", to_json(report.memory)}};
   if (std::isfinite(report.noise)) document["noise"] = report.noise;  // a single batch of samples tells nothing of it
   return document;
 }

@@ -19,7 +19,7 @@ struct RenderRequest {
   double noise = 0;  // relative error to reach in each tile (renderer/picture/film.h); 0: all samples everywhere
   std::uint64_t seed = 1;
   int threads = 0;                    // 0 = all cores
-  std::optional<double> exposure;     // PNG only; the scene's own when left out, then the picture's 99th percentile
+  std::optional<double> brightness;   // PNG only; the scene's own when left out, then the picture's 99th percentile
   bool layers = false, half = false;  // EXR only: more channels (render/render_channels.h), colours in 16 bit
   bool png = false;                   // a display picture beside the EXR, a.exr -> a.png
   bool keep_finished = false;         // nothing is done where `out` is this very rendering already
@@ -38,7 +38,7 @@ struct RenderReport {
   double build_s = 0, render_s = 0;
   std::uint64_t samples = 0, rays = 0;  // of this run
   std::uint64_t samples_before = 0;     // of the checkpoint that it went on from
-  double exposure = 1;
+  double brightness = 1;
   double noise = 0;  // relative error of a pixel, root mean square over the tiles
   RenderMemory memory;
   double noisy = 0;  // share of the tiles that have more than the noise asked for

@@ -9,12 +9,12 @@
 #include "calibration/light/colour_chart.h"
 #include "inversion/view/blocks.h"
 #include "station/documents/degree.h"
+#include "station/documents/matrix_rows.h"
 #include "station/output/display.h"
 
 namespace station {
 namespace {
 
-using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 constexpr double kWhitestDeltaE = 20;
 
 struct BlockPair {
@@ -54,7 +54,7 @@ double fitted_scale(const cv::Mat3f& photograph, const cv::Mat3f& rendering, con
 std::vector<BlockPair> block_pairs(const cv::Mat3f& photograph, const cv::Mat3f& rendering, const cv::Mat1b& mask,
                                    double scale, const CompareOptions& options) {
   const double white = display_scale(photograph, mask);
-  const Matrix colour = Eigen::Map<const Matrix>(options.linear_srgb_from_camera.data());
+  const Eigen::Matrix3d colour = matrix_of(options.linear_srgb_from_camera);
   const auto lab = [&](const Eigen::Array3d& camera) {
     return calibration::lab_of_linear_srgb(colour * (camera * white).max(0).matrix());
   };
@@ -70,7 +70,7 @@ std::vector<BlockPair> block_pairs(const cv::Mat3f& photograph, const cv::Mat3f&
   return pairs;
 }
 
-// Of each column inside the mask; black where it has no pixel.
+// The mean of each column inside the mask; black where it has no pixel.
 std::vector<Eigen::Array3d> column_means(const cv::Mat3f& picture, const cv::Mat1b& mask, double scale) {
   std::vector<Eigen::Array3d> means;
   for (int column = 0; column < picture.cols; ++column) {
@@ -94,7 +94,7 @@ double brightest(const std::vector<Eigen::Array3d>& columns) {
 }
 
 // Brightness in units of `unit`.
-HighlightProfile highlight_of(const std::vector<Eigen::Array3d>& columns, double unit, const Matrix& colour) {
+HighlightProfile highlight_of(const std::vector<Eigen::Array3d>& columns, double unit, const Eigen::Matrix3d& colour) {
   HighlightProfile profile;
   for (const Eigen::Array3d& column : columns) profile.brightness.push_back(column.mean() / unit);
   const int count = static_cast<int>(columns.size()), reach = std::max(1, count / 100);
@@ -151,7 +151,7 @@ Comparison compare_pictures(const cv::Mat3f& photograph, const cv::Mat3f& render
   result.median_delta_e = delta_e[delta_e.size() / 2];
   result.delta_e_95 = delta_e[delta_e.size() * 95 / 100];
   result.relative_rmse = std::sqrt(error / signal);
-  const Matrix colour = Eigen::Map<const Matrix>(options.linear_srgb_from_camera.data());
+  const Eigen::Matrix3d colour = matrix_of(options.linear_srgb_from_camera);
   const auto photographed = column_means(photograph, mask, 1), rendered = column_means(rendering, mask, result.scale);
   result.photograph = highlight_of(photographed, brightest(photographed), colour);
   result.rendering = highlight_of(rendered, brightest(photographed), colour);

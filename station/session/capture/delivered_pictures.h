@@ -1,5 +1,5 @@
-// All that a camera delivered in one run, also what was thrown away, and what is wrong with a picture before anybody
-// looks into it.
+// The pictures that a camera delivered in one run, thrown-away ones too, and what is wrong with a new one before it is
+// read.
 #pragma once
 
 #include <cstddef>

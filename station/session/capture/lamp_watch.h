@@ -25,17 +25,17 @@ struct LampSettling {
   bool readable = true;          // false: the last test picture did not show the lamp's strength
 };
 
-// What is said, and kept in the journal, of a lamp that cannot be read.
+// The warning, also written to the journal, about a lamp that cannot be read.
 inline constexpr const char* kLampNotWatched =
-    "the lamp is not watched while it warms up: its reference patch cannot be read; see that it stands free and lit, "
+    "the lamp is not watched while it warms up: its reference chip cannot be read; see that it stands free and lit, "
     "or wait until the lamp is warm before the next session";
 
 // Reads the lamp's strength in a test picture, in any unit; nothing where it cannot be read.
 using ReadLamp = std::function<std::optional<double>(const PlanStep&, const rig::Picture& test)>;
 
-// The camera's settings are made already. `between` is called every second and before each picture, and may throw to
-// end the run; `said` is given a line for the person when the lamp is not steady yet or cannot be read. Errors: those
-// of the camera; std::runtime_error when the limit is reached.
+// Waits until the lamp is steady. The camera has its settings already. `between` is called every second and before each
+// picture, and may throw to end the run; `said` is given a line for the person when the lamp is not steady yet or
+// cannot be read. Errors: those of the camera; std::runtime_error when the limit is reached.
 LampSettling watch_lamp(rig::Camera& camera, rig::Clock& clock, const PlanStep& step, const LampWatch& watch,
                         const ReadLamp& read, const std::function<void()>& between,
                         const std::function<void(const std::string&)>& said);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "calibration/sensor/median.h"
+#include "rig/devices/tracked_turntable.h"
 #include "station/bench/bench_fault.h"
 #include "station/documents/degree.h"
 #include "station/session/capture/delivered_pictures.h"
@@ -36,10 +37,6 @@ constexpr std::array kOfTheBench = {"angle", "bench"};
   };
   if (std::ranges::any_of(verdict.findings, of_the_bench)) throw BenchFault(verdict.reason());
   throw std::runtime_error(verdict.reason());
-}
-
-std::string degrees(double angle_rad) {
-  return std::to_string(angle_rad / kDegree) + " deg";
 }
 
 class CaptureRun {
@@ -235,8 +232,8 @@ class CaptureRun {
     poll();
     const double read_rad = devices_.turntable.angle_rad();
     if (!(std::abs(read_rad - asked_rad) <= options_.angle_tolerance_rad)) {
-      throw BenchFault("the platform was asked to turn to " + degrees(asked_rad) + " and reads " + degrees(read_rad) +
-                       "; see that nothing blocks it, then resume");
+      throw BenchFault("the platform was asked to turn to " + rig::degrees_text(asked_rad) + " and reads " +
+                       rig::degrees_text(read_rad) + "; see that nothing blocks it, then resume");
     }
     return read_rad;
   }

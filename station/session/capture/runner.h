@@ -27,8 +27,8 @@ struct RunDevices {
   rig::Turntable& turntable;
   rig::Operator& person;
   rig::Clock& clock;
-  // The pictures were taken before and are handed out now: their times are in no order, and none can be waited for or
-  // taken again. This is for whoever fills in the options of a run.
+  // True: the pictures exist already and are handed out. Their times are in no order, and none can be waited for or
+  // taken again. Whoever fills in the options of a run heeds it; run_plan does not.
   bool taken_before = false;
 };
 
@@ -62,9 +62,9 @@ struct RunOptions {
   std::function<void(const Progress&)> progress{};
   std::function<void(const PlanStep&, const Verdict&)> judged{};  // is told of each picture
   std::function<void(const std::string&)> said{};                 // takes a line for the person while the run waits
-  // The angle at which the platform stands (radians), where its tags differ from the turntable's reading by
-  // `tags_differ_rad` and nothing has shown yet that the reading is right; nothing: the platform slipped. Empty: it
-  // always did.
+  // Asked where the platform's tags differ by `tags_differ_rad` from the turntable's reading before any picture has
+  // confirmed that reading. Returns the angle (radians) at which the platform truly stands, or nothing where it
+  // slipped. An empty function: it slipped.
   std::function<std::optional<double>(double reading_rad, double tags_differ_rad)> settle_place{};
   std::vector<std::string> reshoot{};          // steps to take again although they have a picture
   double angle_tolerance_rad = 0.5 * kDegree;  // |asked - read| of the platform

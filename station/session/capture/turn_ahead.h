@@ -9,7 +9,7 @@
 
 namespace station {
 
-// For use by one thread. Whoever uses the turntable directly has to wait() first.
+// Only one thread may use it. Whoever uses the turntable directly has to wait() first.
 class TurnAhead {
  public:
   // `turntable` must outlive it.

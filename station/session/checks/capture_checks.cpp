@@ -23,18 +23,17 @@
 #include "station/bench/exposure.h"
 #include "station/bench/metering.h"
 #include "station/bench/mounted_holder.h"
+#include "station/bench/picture_measures.h"
 #include "station/documents/degree.h"
 #include "station/documents/number_text.h"
 #include "station/documents/plan_file.h"
 #include "station/session/checks/lamp_checks.h"
-#include "station/session/checks/picture_measures.h"
 #include "station/session/record/picture_record.h"
 
 namespace station {
 namespace {
 
 constexpr double kMostSaturated = 0.05, kSomeSaturated = 0.005, kUnderExposed = 0.02;
-constexpr double kMostBlur_px = 3, kMuchBlur_px = 2;
 constexpr double kLeastSharpness = 0.4, kLittleSharpness = 0.6;  // of the median of the views before
 constexpr std::size_t kFewestCompared = 3;
 constexpr double kShadowsPercentile = 10;
@@ -115,7 +114,7 @@ class CaptureChecks::Work {
       if (calibration_.sensor) check_dark(step, raw);
       return verdict_;
     }
-    if (step.kind == StepKind::exposure) return verdict_;  // its view has been looked at
+    if (step.kind == StepKind::bracket) return verdict_;  // its view has been looked at
     Seen seen{.step = step,
               .raw = raw,
               .reading_rad = reading_rad,
@@ -211,9 +210,9 @@ class CaptureChecks::Work {
     const auto blur = edge_blur_px(seen.grey, seen.tags);
     if (blur)
       found("focus",
-            *blur > kMostBlur_px   ? Grade::bad
-            : *blur > kMuchBlur_px ? Grade::doubtful
-                                   : Grade::good,
+            *blur > kBadBlur_px        ? Grade::bad
+            : *blur > kDoubtfulBlur_px ? Grade::doubtful
+                                       : Grade::good,
             blur,
             "'" + seen.step.id + "' is out of focus: printed edges are " + number_text(*blur, 1) +
                 " px soft; the lens is calibrated at its taped focus: turn the ring back to it, or focus and "
@@ -261,7 +260,7 @@ class CaptureChecks::Work {
                     " s: more than 5 % of the threads' window is saturated; move the lamp away, then resume"
               : name + " has " + percent_text(saturated) + " of the threads' window saturated; look at its bracket");
     check_focus(seen, region);
-    // A blurred picture of the small patch says nothing about the lamp.
+    // A blurred picture of the small chip says nothing about the lamp.
     if (verdict_.findings.back().grade != Grade::bad) check_lamp(seen);
     const double level = bright_level(seen.raw, region, ExposureAim{}.percentile);
     found("exposure", level < kUnderExposed ? Grade::bad : Grade::good, 100 * level,
@@ -369,21 +368,6 @@ std::optional<double> CaptureChecks::read_lamp(const PlanStep& step, const rig::
 
 Verdict CaptureChecks::judge(const PlanStep& step, const rig::Picture& picture, double platform_reading_rad) {
   return work_->judge(step, picture, platform_reading_rad);
-}
-
-Eigen::Isometry3d nominal_holder_pose(const RigFile& rig, const inversion::WrappedSpool& spool,
-                                      rig::Mounting mounting) {
-  const bool vertical = mounting == rig::Mounting::vertical;
-  const double half_height_mm = (vertical ? spool.frame_width_mm : spool.frame_height_mm) / 2;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translation().z() = rig.platform_height_mm + half_height_mm;
-  if (vertical) pose.rotate(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX()));
-  return pose;
-}
-
-Eigen::Isometry3d nominal_pose(const RigFile& rig, const Spool& spool, rig::Mounting mounting) {
-  if (!spool.fabric) return nominal_holder_pose(rig, spool.wrapping, mounting);
-  return Eigen::Isometry3d(Eigen::Translation3d(0, 0, rig.platform_height_mm));
 }
 
 cv::Mat1b metered_region(const SessionFile& asked, const RigCalibration& calibration, const PlanStep& step) {

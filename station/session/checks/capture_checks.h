@@ -30,8 +30,8 @@ namespace station {
 //   shadows      % of the range below which a tenth of the window lies; never bad
 //   lamp, lamp_side   lamp_checks.h
 //   dark         % of the range above the calibration's dark level; limit 0.1
-// A check gives no finding when the picture lacks what it needs (no tags in the picture, no patch on the rig, a
-// mounting whose pose picture shows fewer than two tags).
+// A check gives no finding when the picture lacks what it needs (no tags in the picture, no reference chip on the rig,
+// a mounting whose pose picture shows fewer than two tags).
 class CaptureChecks {
  public:
   // `session` and `asked` must outlive the checks. `in_order`: a file that is older than the one before it is stale.
@@ -42,7 +42,7 @@ class CaptureChecks {
   // or is of another camera; at a pose step, while the holder can still be put right, also for a bench that does not
   // stand as it was calibrated.
   ExposureChoice choose_exposure(const PlanStep& step, const rig::Picture& test);
-  // The strength of the lamp at the reference chip, 1 = as calibrated; nothing where there is no patch, it cannot be
+  // The strength of the lamp at the reference chip, 1 = as calibrated; nothing where there is no chip, it cannot be
   // read or the lamp is off. Errors: std::runtime_error for a picture that cannot be read.
   std::optional<double> read_lamp(const PlanStep& step, const rig::Picture& test);
   // Makes all checks of a picture. Errors: std::runtime_error for a picture that cannot be read or is of another
@@ -57,12 +57,5 @@ class CaptureChecks {
 // The region of the raw picture that is metered, 255 inside: where the holder's window should stand, or the lit side of
 // a cylinder with cloth.
 cv::Mat1b metered_region(const SessionFile& asked, const RigCalibration& calibration, const PlanStep& step);
-
-// The nominal pose of the holder in the world frame at platform angle 0: upright on the platform, its front over the
-// axis; turned a quarter for vertical threads.
-Eigen::Isometry3d nominal_holder_pose(const RigFile& rig, const inversion::WrappedSpool& spool, rig::Mounting mounting);
-// The nominal pose of what is photographed: the holder's, or that of a cylinder, which stands upright in the middle of
-// the platform.
-Eigen::Isometry3d nominal_pose(const RigFile& rig, const Spool& spool, rig::Mounting mounting);
 
 }  // namespace station

@@ -112,7 +112,7 @@ std::optional<double> LampChecks::strength(const PlanStep& step, const DevelopPa
 std::string LampChecks::problem(const PlanStep& step, double strength) const {
   const calibration::LampGates limits;
   const std::string found_there =
-      "'" + step.id + "': the reference patch shows " + percent_text(strength) + " of the calibrated lamp";
+      "'" + step.id + "': the reference chip shows " + percent_text(strength) + " of the calibrated lamp";
   if (strength < kLampOff) return found_there + "; switch the lamp on and see that nothing covers it, then resume";
   if (strength > 1 + limits.largest_change)
     return found_there + "; switch the room light off and see that only the lamp shines, then resume";

@@ -37,7 +37,7 @@ class LampChecks {
   std::vector<Finding> judge(const PlanStep& step, const DevelopPart& develop, const renderer::Camera& camera,
                              const Eigen::Isometry3d& holder_from_world);
 
-  // The lamp's strength, measured / calibrated; nothing where there is no patch, it cannot be read or the lamp is off.
+  // The lamp's strength, measured / calibrated; nothing where there is no chip, it cannot be read or the lamp is off.
   std::optional<double> read(const PlanStep& step, const DevelopPart& develop, const renderer::Camera& camera,
                              const Eigen::Isometry3d& holder_from_world) const;
 

@@ -117,7 +117,7 @@ std::vector<calibration::SensorPicture> read_bracket(const std::filesystem::path
   std::vector<calibration::SensorPicture> bracket{metered};
   if (!calibration.sensor) return bracket;
   for (const PlanStep& step : plan.steps)
-    if (step.kind == StepKind::exposure && step.exposure_of == view && is_needed(step, pictures))
+    if (step.kind == StepKind::bracket && step.exposure_of == view && is_needed(step, pictures))
       bracket.push_back(read_picture(session, picture_of(pictures, step.id)));
   return bracket;
 }
@@ -125,16 +125,16 @@ std::vector<calibration::SensorPicture> read_bracket(const std::filesystem::path
 ChipView read_lamp(const RigFile& rig, const inversion::WrappedSpool& spool, const calibration::Developed& picture,
                    double time_s, const Eigen::Vector2d& droop, const DevelopedView& developed) {
   const inversion::View& view = developed.view;
-  ChipView patch{.behind = view.transmission, .time_s = time_s, .reading = std::nullopt};
+  ChipView chip{.behind = view.transmission, .time_s = time_s, .reading = std::nullopt};
   if (rig.reference_chip)
-    patch.reading = read_chip(picture.radiance, picture.saturated, view.camera, *rig.reference_chip, spool,
-                              developed.mounting, view.light, droop);
-  return patch;
+    chip.reading = read_chip(picture.radiance, picture.saturated, view.camera, *rig.reference_chip, spool,
+                             developed.mounting, view.light, droop);
+  return chip;
 }
 
 // Notes each view's lamp strength. The pictures themselves stay as they are: read_view_pictures divides them.
-void note_lamp_changes(const std::vector<ChipView>& patches, std::vector<DevelopedView>& views) {
-  const std::vector<double> strengths = lamp_strengths(patches);
+void note_lamp_changes(const std::vector<ChipView>& chips, std::vector<DevelopedView>& views) {
+  const std::vector<double> strengths = lamp_strengths(chips);
   const calibration::Gate change = calibration::lamp_gates(strengths).back();
   if (!change.passed) throw std::runtime_error("the session's views do not belong together: " + change.reason);
   for (std::size_t i = 0; i < views.size(); ++i) views[i].lamp_strength = strengths.at(i);
@@ -187,7 +187,7 @@ cv::Mat3b overlay(const inversion::View& view, const std::array<double, 9>& colo
 }
 
 struct DevelopedPicture {
-  ChipView patch;
+  ChipView chip;
   std::optional<double> sheet_width_mm;  // reflections only
 };
 
@@ -214,8 +214,8 @@ DevelopedPicture develop_view(const std::filesystem::path& session, const Sessio
   }
   DevelopedPicture result;
   if (!asked.spool.fabric)
-    result.patch = read_lamp(asked.rig, spool, picture, 86400 * days_between(asked.utc, record.utc),
-                             calibration.light.droop, developed);
+    result.chip = read_lamp(asked.rig, spool, picture, 86400 * days_between(asked.utc, record.utc),
+                            calibration.light.droop, developed);
   inversion::View& view = developed.view;
   view.image = picture.radiance;
   view.mask = eroded(asked.spool.fabric ? lit_side(asked.spool.fabric->cylinder, view.camera, view.light.position)
@@ -295,13 +295,13 @@ void require_expected_width(double width_mm, const Spool& spool) {
 // Notes what follows from all views together: the lamp's changes and the sheet's width.
 void note_what_views_share(const SessionFile& asked, const std::vector<DevelopedPicture>& found,
                            DevelopedViews& developed) {
-  std::vector<ChipView> patches;
+  std::vector<ChipView> chips;
   std::vector<double> widths_mm;
   for (const DevelopedPicture& picture : found) {
-    patches.push_back(picture.patch);
+    chips.push_back(picture.chip);
     if (picture.sheet_width_mm) widths_mm.push_back(*picture.sheet_width_mm);
   }
-  if (asked.rig.reference_chip && !asked.spool.fabric) note_lamp_changes(patches, developed.views);
+  if (asked.rig.reference_chip && !asked.spool.fabric) note_lamp_changes(chips, developed.views);
   if (!widths_mm.empty()) developed.sheet_width_mm = calibration::median(widths_mm);
   if (developed.sheet_width_mm) require_expected_width(*developed.sheet_width_mm, asked.spool);
 }

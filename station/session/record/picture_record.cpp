@@ -12,7 +12,7 @@ namespace {
 using nlohmann::json;
 
 StepKind kind_from_record(const std::string& name) {
-  for (const StepKind kind : {StepKind::pose, StepKind::view, StepKind::exposure, StepKind::dark})
+  for (const StepKind kind : {StepKind::pose, StepKind::view, StepKind::bracket, StepKind::dark})
     if (name == kind_name(kind)) return kind;
   throw std::runtime_error("the kind of step '" + name + "' is not known");
 }

@@ -58,7 +58,8 @@ struct StandIns {
   std::function<StopWish()> wish;
 };
 
-// They pass every call on to `devices` and `wish`, and write it and its answer to `log`; all three must outlive them.
+// Stand-ins that pass every call on to `devices` and `wish`, and write it and its answer to `log`; all three must
+// outlive them.
 StandIns record_devices(const RunDevices& devices, const std::function<StopWish()>& wish, DeviceLog& log);
 
 }  // namespace station

@@ -108,11 +108,11 @@ std::string plots(const std::vector<PictureRecord>& pictures, const std::string&
   for (PlotPanel next :
        {panel("Exposure", "s", pictures, began_utc,
               [](const PictureRecord& picture) { return std::optional(picture.read.exposure_s); }),
-        panel("Lamp at the reference patch", "% of the calibrated", pictures, began_utc, finding("lamp")),
+        panel("Lamp at the reference chip", "% of the calibrated", pictures, began_utc, finding("lamp")),
         panel("Table's tags", "px from the calibration", pictures, began_utc, finding("bench")),
         panel("Platform", "degrees from its reading", pictures, began_utc, finding("angle"))})
     if (!next.lines.empty()) {
-      if (next.title == "Lamp at the reference patch") next.y_range = {90, 110};
+      if (next.title == "Lamp at the reference chip") next.y_range = {90, 110};
       if (next.title == "Platform") next.y_range = {-0.5, 0.5};
       sheet.panels.push_back(std::move(next));
     }

@@ -6,6 +6,7 @@
 #include "station/bench/bench_picture.h"
 #include "station/documents/reader.h"
 #include "station/output/interrupt.h"
+#include "station/thread/validate/seeds.h"
 #include "station/thread/validate/synthetic_views.h"
 
 namespace station {
@@ -36,7 +37,7 @@ PhotographedSpool photograph_spool(const RigFile& rig, const Spool& spool, const
             "the validation was interrupted; the same command goes on with the photographs it has");
       step("photograph " + view.id,
            (static_cast<double>(2 * i + half)) / (2.0 * static_cast<double>(made.views.size())));
-      const std::uint64_t seed = request.seed * 1000 + 2 * i + half;
+      const std::uint64_t seed = request.seed * kPictureSeeds + 2 * i + half;
       const std::filesystem::path file = request.folder / (view.id + (half ? "-b.exr" : "-a.exr"));
       renderer::ImageHeader header;
       cv::Mat3f radiance;

@@ -14,6 +14,7 @@
 #include "station/documents/spool.h"
 #include "station/documents/thread_file.h"
 #include "station/output/interrupt.h"
+#include "station/output/progress.h"
 #include "station/thread/validate/seeds.h"
 #include "station/thread/validate/synthetic_views.h"
 
@@ -168,7 +169,7 @@ RecoveredThread recover_thread(const RecoverRequest& request) {
   const std::vector<View> exact =
       photographs(request, rig, spool, thread, [&](const std::string& view) { show(0, "photograph " + view); });
   const rig::TrueSensor& sensor = rig.simulation->truth.sensor;
-  const auto draw_of = [&](std::uint64_t seed) { return with_noise(exact, sensor, 1000 * seed); };
+  const auto draw_of = [&](std::uint64_t seed) { return with_noise(exact, sensor, kPictureSeeds * seed); };
   const auto fit_draw = [&](int draw, inversion::FitOptions options, const std::vector<View>& views) {
     options.progress = [&, draw](const std::string& what, double) {
       show(1 + draw, (draw ? "draw " + std::to_string(draw) + ", " : "cold fit, ") + what);
@@ -183,7 +184,7 @@ RecoveredThread recover_thread(const RecoverRequest& request) {
   cold.start.exit = thread.parameters.exit;
   const inversion::ViewFit first = fit_draw(0, cold, first_views);
   RecoveredThread result{.thread = thread.name,
-                         .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count(),
+                         .seconds = seconds_since(started),
                          .loss_of_truth = {},
                          .loss_of_fit = {},
                          .draws = request.draws,
@@ -201,7 +202,7 @@ RecoveredThread recover_thread(const RecoverRequest& request) {
   inversion::FitOptions again = fit_again(cold, first);
   std::vector<Reading> draws;
   for (int draw = 1; draw <= request.draws; ++draw) {
-    again.seed = request.fit.seed + 100000 * static_cast<std::uint64_t>(draw);
+    again.seed = request.fit.seed + kDrawSeedStep * static_cast<std::uint64_t>(draw);
     const inversion::ViewFit fit = fit_draw(draw, again, draw_of(again.seed));
     draws.push_back(reading_of(fit, fit.certainty.noise_covariance));
   }

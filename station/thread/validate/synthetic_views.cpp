@@ -8,8 +8,8 @@
 #include "rig/simulated/noise.h"
 #include "station/bench/camera_adapter.h"
 #include "station/bench/cloth_on_cylinder.h"
+#include "station/bench/mounted_holder.h"
 #include "station/documents/plan.h"
-#include "station/session/checks/capture_checks.h"
 
 namespace station {
 namespace {

@@ -20,6 +20,7 @@
 #include "station/output/interrupt.h"
 #include "station/thread/invert/fit_document.h"
 #include "station/thread/validate/photographed_spool.h"
+#include "station/thread/validate/seeds.h"
 #include "station/thread/validate/synthetic_views.h"
 
 namespace station {
@@ -250,7 +251,7 @@ renderer::YarnPatch with_fibers_of(const renderer::YarnPatch& patch, const std::
   for (const renderer::Yarn& yarn : patch.yarns) {
     const Spool& spool = spools.at(static_cast<std::size_t>(yarn.thread));
     const SimulatedFibers& fibers = simulated_fibers(spool);
-    const std::uint64_t seed = fibers.seed * 1000 + 500 + bundles.size();  // not those of the spool's own threads
+    const std::uint64_t seed = fibers.seed * kSeedsPerSpool + kFirstSeedOfCloth + bundles.size();
     const double scale = 2 * yarn.radius_mm / spool.wrapping.thread_diameter_mm;
     renderer::Strands& bundle =
         bundles.emplace_back(renderer::Strands{.radius_mm = scale * fibers.fiber_radius_mm,

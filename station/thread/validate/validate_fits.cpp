@@ -12,6 +12,7 @@
 #include "station/documents/number_text.h"
 #include "station/documents/reader.h"
 #include "station/output/interrupt.h"
+#include "station/output/progress.h"
 #include "station/thread/invert/fit_document.h"
 #include "station/thread/validate/photographed_spool.h"
 #include "station/thread/validate/seeds.h"
@@ -40,10 +41,6 @@ struct Gathered {
     (view.transmission ? transmission : reflection).push_back(agreement);
   }
 };
-
-double seconds_since(std::chrono::steady_clock::time_point started) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-}
 
 std::vector<bool> left_out(const std::vector<View>& views, std::size_t fold) {
   std::size_t reflections = 0, transmissions = 0;
@@ -158,7 +155,7 @@ TwoDraws photograph_twice(const ValidateRequest& request, const RigFile& rig, co
   draws.made = photograph_spool(rig, spool, as_asked,
                                 [&](const std::string& what, double share) { step(what, kPhotographShare * share); });
   SimulatedFibers placed_anew = *spool.simulation;
-  placed_anew.seed += 1000;
+  placed_anew.seed += kPlacedAnew;
   Spool drawn_anew = spool;
   drawn_anew.simulation = placed_anew;
   SpoolPhotographs of_other = as_asked;
@@ -213,8 +210,9 @@ void compare_views(const FittedSpool& of, const Variant& variant, const inversio
   for (std::size_t i = 0; i < fold.out.size(); ++i) {
     if (!fold.out[i] && fold.number > 0) continue;
     const View& view = variant.views[i];
-    const Pictures pictures = rendered(of.spool.wrapping, view, fit, of.request.fitted_samples,
-                                       kFittedViewSeeds + 100 * static_cast<std::uint64_t>(fold.number) + 2 * i);
+    const Pictures pictures =
+        rendered(of.spool.wrapping, view, fit, of.request.fitted_samples,
+                 kFittedViewSeeds + kFoldSeedStep * static_cast<std::uint64_t>(fold.number) + 2 * i);
     const auto agreement = inversion::noiseless_agreement(view, of.made.pictures[i], pictures, kBlock_px);
     if (fold.number == 0)
       gathered.views.push_back({view.id, fold.out[i], agreement.relative_rmse(), agreement.relative_bias});

@@ -149,7 +149,7 @@ TEST(LensAccuracy, NarrowLensesAreBentByRegularisationAndNotByTheFitThatIsKept) 
       for (std::size_t v = 0; v < views.size(); ++v) {
         if (!fit.camera_from_lattice[v]) continue;
         const BoardPicture corners = on_lattice(tags, synthetic::board(), views[v]);
-        bundle.views.push_back({corners, std::vector<bool>(corners.size(), true), *fit.camera_from_lattice[v]});
+        bundle.pictures.push_back({corners, std::vector<bool>(corners.size(), true), *fit.camera_from_lattice[v]});
       }
       solve_bundle(bundle, {.reject_outliers = false});
       const auto off = [&](const ModelledLens& lens) {

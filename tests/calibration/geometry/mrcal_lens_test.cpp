@@ -36,7 +36,7 @@ LensBundle bundle(double sigma_px, unsigned seed) {
       corner.pixel += sigma_px * Eigen::Vector2d(dx, dy);
     }
     view.used.assign(view.corners.size(), true);
-    if (view.corners.size() >= 8) out.views.push_back(view);
+    if (view.corners.size() >= 8) out.pictures.push_back(view);
   }
   return out;
 }
@@ -67,8 +67,8 @@ TEST(MrcalLens, ItsErrorsAreOurProjectionMinusWhatWasSeen) {
   lens.cy_px = p[3];
   lens.distortion = {p[4], p[5], p[6], p[7], 0.0};
   double squares = 0.0, count = 0.0;
-  for (std::size_t v = 0; v < noisy.views.size(); ++v) {
-    const BundlePicture& view = noisy.views[v];
+  for (std::size_t v = 0; v < noisy.pictures.size(); ++v) {
+    const BundlePicture& view = noisy.pictures[v];
     const BoardPicture predicted = synthetic::observe_lattice(lens, kBoard, noisy.warp_mm, view.camera_from_lattice);
     for (const LatticeCorner& there : predicted)
       for (std::size_t c = 0; c < view.corners.size(); ++c) {
@@ -88,12 +88,12 @@ TEST(MrcalLens, AWildCornerIsTakenOutAndNothingIsPrinted) {
   LensBundle clean = bundle(0.1, 3), wild = clean;
   const BundleFreedom rejecting{.regularised = false, .reject_outliers = true};
   solve_bundle(clean, rejecting);
-  wild.views[4].corners[7].pixel.x() += 500.0;
+  wild.pictures[4].corners[7].pixel.x() += 500.0;
   testing::internal::CaptureStderr();
   const BundleOutcome outcome = solve_bundle(wild, rejecting);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_NE(outcome.messages.find("outliers"), std::string::npos) << outcome.messages;
-  EXPECT_FALSE(wild.views[4].used[7]);
+  EXPECT_FALSE(wild.pictures[4].used[7]);
   EXPECT_NEAR(wild.lens.intrinsics[0], clean.lens.intrinsics[0], 0.3);  // a tenth of its standard error
 }
 
@@ -110,10 +110,10 @@ TEST(MrcalLens, UncertaintyAtTheWorkingDistanceIsSmallerThanFarAway) {
 
 TEST(MrcalLens, CornersThatAreNotNumbersOrBesideTheBoardAreRefused) {
   LensBundle broken = bundle(0.1, 5);
-  broken.views[2].corners[3].pixel.y() = std::numeric_limits<double>::quiet_NaN();
+  broken.pictures[2].corners[3].pixel.y() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(solve_bundle(broken, kFree), std::runtime_error);
   broken = bundle(0.1, 5);
-  broken.views[2].corners[3].column = 12;
+  broken.pictures[2].corners[3].column = 12;
   EXPECT_THROW(linearise(broken, kFree), std::runtime_error);
   LensBundle empty;
   EXPECT_THROW(solve_bundle(empty, kFree), std::runtime_error);

@@ -133,7 +133,7 @@ TEST(Platform, ViewsThatCannotDetermineAnAxisAreRefused) {
   EXPECT_NE(refused(thick, turning).find("thickness"), std::string::npos);
   auto missing = turning;
   missing[2].seen.clear();
-  EXPECT_NE(refused(b, missing).find("view 3"), std::string::npos);
+  EXPECT_NE(refused(b, missing).find("picture 3"), std::string::npos);
   auto broken = turning;
   broken[1].seen[0].corners_px[0].x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(refused(b, broken).find("finite"), std::string::npos);
@@ -151,7 +151,7 @@ TEST(Platform, ACameraThatWasBumpedBetweenViewsIsNamedWithTheView) {
   turning[4] = after[4];
   turning[5] = after[5];
   const std::string message = refused(b, turning);
-  EXPECT_NE(message.find("view 5"), std::string::npos) << message;
+  EXPECT_NE(message.find("picture 5"), std::string::npos) << message;
   EXPECT_NE(message.find("bumped"), std::string::npos) << message;
 }
 

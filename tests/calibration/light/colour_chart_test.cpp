@@ -24,8 +24,8 @@ std::vector<Vector3d> measured(double relative_noise, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
   std::vector<Vector3d> camera;
-  for (const ChartSquare& patch : colour_chart()) {
-    Vector3d value = true_matrix().inverse() * linear_srgb_of_lab(patch.lab_d50);
+  for (const ChartSquare& square : colour_chart()) {
+    Vector3d value = true_matrix().inverse() * linear_srgb_of_lab(square.lab_d50);
     for (int c = 0; c < 3; ++c) value[c] *= 1 + relative_noise * normal(random);
     camera.push_back(value);
   }
@@ -48,9 +48,9 @@ TEST(ColourChart, LabOfWhiteGreyAndThePrimariesIsWhatTheStandardsSay) {
   const Vector3d red = lab_of_linear_srgb({1, 0, 0});
   EXPECT_NEAR(red[0], 116 * std::cbrt(0.22249) - 16, 0.02);
   EXPECT_NEAR(red[1], 500 * (std::cbrt(0.43607 / 0.96422) - std::cbrt(0.22249)), 0.05);
-  for (const ChartSquare& patch : colour_chart()) {
-    const Vector3d srgb = linear_srgb_of_lab(patch.lab_d50);  // cyan's red is below 0
-    EXPECT_LT((lab_of_linear_srgb(srgb) - patch.lab_d50).norm(), 1e-9) << patch.name;
+  for (const ChartSquare& square : colour_chart()) {
+    const Vector3d srgb = linear_srgb_of_lab(square.lab_d50);  // cyan's red is below 0
+    EXPECT_LT((lab_of_linear_srgb(srgb) - square.lab_d50).norm(), 1e-9) << square.name;
   }
 }
 
@@ -85,7 +85,7 @@ TEST(ColourChart, AChartUpsideDownOrInPartIsRefusedAndAStainedOneFailsItsGate) {
   EXPECT_NE(refusal(turned).find("upright"), std::string::npos) << refusal(turned);
   std::vector<Vector3d> part = measured(0, 1);
   part.pop_back();
-  EXPECT_NE(refusal(part).find("23 patches"), std::string::npos);
+  EXPECT_NE(refusal(part).find("23 squares"), std::string::npos);
   std::vector<Vector3d> broken = measured(0, 1);
   broken[4].x() = std::nan("");
   EXPECT_NE(refusal(broken).find("blue flower"), std::string::npos);

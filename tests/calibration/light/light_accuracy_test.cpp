@@ -18,7 +18,7 @@ struct Accuracy {
   double rms_mm = 0, worst_mm = 0;
   double irradiance_rms = 0, irradiance_worst = 0;  // over the spool: +-40 mm about its middle
   double held_out_rms = 0;                          // mean of pictures held out
-  double held_out_patch_rms = 0;
+  double held_out_spot_rms = 0;
   double error_over_sigma = 0;  // rms per axis: 1 when the sigmas given are the errors made
   int within_two_sigma = 0;     // solves whose position lies within twice the sigma given (root of the trace)
   double droop_rms = 0;
@@ -70,31 +70,31 @@ std::vector<Accuracy> accuracy(const char* what, int solves, unsigned first_seed
         count += 1;
       }
       a.held_out_rms += held / count;
-      a.held_out_patch_rms += spots / count;
+      a.held_out_spot_rms += spots / count;
     }
   }
   for (std::size_t light = 0; light < 2; ++light) {
     Accuracy& a = out[light];
     for (double* mean_square :
-         {&a.rms_mm, &a.irradiance_rms, &a.held_out_rms, &a.held_out_patch_rms, &a.error_over_sigma, &a.droop_rms})
+         {&a.rms_mm, &a.irradiance_rms, &a.held_out_rms, &a.held_out_spot_rms, &a.error_over_sigma, &a.droop_rms})
       *mean_square = std::sqrt(*mean_square / a.solves);
     std::printf(
         "%-34s %-5s %2d poses, seeds %u-%u: position %.2f mm rms, %.2f worst; irradiance %.2f %% rms, %.2f worst; "
-        "held out %.2f %% (patches %.2f %%); error / sigma %.2f, within 2 sigma %d of %d; droop to %.3f\n",
+        "held out %.2f %% (spots %.2f %%); error / sigma %.2f, within 2 sigma %d of %d; droop to %.3f\n",
         what, light == 0 ? "front" : "back", light == 0 ? front : back, first_seed,
         first_seed + static_cast<unsigned>(a.solves) - 1, a.rms_mm, a.worst_mm, 100 * a.irradiance_rms,
-        100 * a.irradiance_worst, 100 * a.held_out_rms, 100 * a.held_out_patch_rms, a.error_over_sigma,
+        100 * a.irradiance_worst, 100 * a.held_out_rms, 100 * a.held_out_spot_rms, a.error_over_sigma,
         a.within_two_sigma, a.solves, a.droop_rms);
     std::fflush(stdout);
   }
   return out;
 }
 
-constexpr double kPatchReading = 0.001;  // how well a reference chip in the picture tells the lamp's output
+constexpr double kChipReading = 0.001;  // how well a reference chip in the picture tells the lamp's output
 
-// The plan of the guided calibration (station/calibrate), with a reference chip.
-TEST(LightAccuracy, PlannedPosesAndAReferencePatchGiveLampAndIrradianceAsAsked) {
-  const auto a = accuracy("as planned, patch to 0.1 %", 100, 1000, 16, 12, {.monitored = kPatchReading});
+// The plan of the guided calibration (station/bench/calibrate), with a reference chip.
+TEST(LightAccuracy, PlannedPosesAndAReferenceChipGiveLampAndIrradianceAsAsked) {
+  const auto a = accuracy("as planned, chip to 0.1 %", 100, 1000, 16, 12, {.monitored = kChipReading});
   // asked of the front lamp: 2.5 mm rms, 5 mm at worst, 0.5 %; of the back lamp: 5 mm, 1 %; pictures held out: 0.5 %
   EXPECT_LT(a[0].rms_mm, 2.5);
   EXPECT_LT(a[0].worst_mm, 5);
@@ -111,8 +111,8 @@ TEST(LightAccuracy, PlannedPosesAndAReferencePatchGiveLampAndIrradianceAsAsked) 
   }
 }
 
-TEST(LightAccuracy, WithoutAReferencePatchPositionsHoldButPicturesHeldOutShowTheDrift) {
-  const auto a = accuracy("as planned, no patch", 100, 1000, 16, 12, {});
+TEST(LightAccuracy, WithoutAReferenceChipPositionsHoldButPicturesHeldOutShowTheDrift) {
+  const auto a = accuracy("as planned, no chip", 100, 1000, 16, 12, {});
   EXPECT_LT(a[0].rms_mm, 2.5);
   EXPECT_LT(a[0].irradiance_rms, 0.005);
   EXPECT_LT(a[1].rms_mm, 5);
@@ -124,8 +124,8 @@ TEST(LightAccuracy, WithoutAReferencePatchPositionsHoldButPicturesHeldOutShowThe
 }
 
 TEST(LightAccuracy, MorePosesDoBetter) {
-  for (const double monitored : {0.0, kPatchReading}) {
-    const char* what = monitored > 0 ? "patch to 0.1 %" : "no patch";
+  for (const double monitored : {0.0, kChipReading}) {
+    const char* what = monitored > 0 ? "chip to 0.1 %" : "no chip";
     const auto few = accuracy(what, 20, 2000, 8, 8, {.monitored = monitored});
     const auto many = accuracy(what, 20, 2000, 16, 16, {.monitored = monitored});
     // Twice the poses: 0.7 of the errors; 20 draws of three numbers tell a ratio to 15 %.
@@ -135,7 +135,7 @@ TEST(LightAccuracy, MorePosesDoBetter) {
 }
 
 TEST(LightAccuracy, APanelOfAnotherDroopShapeIsFittedToo) {
-  const auto a = accuracy("droop of incidence alone, patch", 20, 3000, 12, 12, {.monitored = kPatchReading}, true);
+  const auto a = accuracy("droop of incidence alone, chip", 20, 3000, 12, 12, {.monitored = kChipReading}, true);
   EXPECT_LT(a[0].rms_mm, 2.5);
   EXPECT_LT(a[0].irradiance_rms, 0.005);
   EXPECT_LT(a[1].rms_mm, 5);

@@ -76,7 +76,7 @@ TEST(Light, ExactRadiancesGiveTheExactLampPanelAndVignetting) {
   EXPECT_LT(fit.relative_rms, 1e-5);
 }
 
-TEST(Light, ALampThatDriftsIsFoundToMillimetresWithAReferencePatch) {
+TEST(Light, ALampThatDriftsIsFoundToMillimetresWithAReferenceChip) {
   Bench bench(kMonitored);
   const LightFit fit = bench.fit();
   EXPECT_TRUE(fit.converged);
@@ -87,7 +87,7 @@ TEST(Light, ALampThatDriftsIsFoundToMillimetresWithAReferencePatch) {
     EXPECT_NEAR(fit.held_out[i].output / bench.seen.pictures[i].output.value(), 1, 0.012);
 }
 
-TEST(Light, WithoutAReferencePatchADriftingLampIsFoundButNotAccepted) {
+TEST(Light, WithoutAReferenceChipADriftingLampIsFoundButNotAccepted) {
   Bench bench({.drift = 0.01});
   const LightFit fit = bench.fit();
   for (std::size_t i = 0; i < 2; ++i)
@@ -113,7 +113,7 @@ TEST(Light, AStainOnThePanelDoesNotPullTheLight) {
   for (std::size_t i = 0; i < 2; ++i) EXPECT_LT((stained.positions[i] - clean.positions[i]).norm(), 5.0);
 }
 
-TEST(Light, PatchesThatDoNotFaceTheirLightAreLeftOut) {
+TEST(Light, SpotsThatDoNotFaceTheirLightAreLeftOut) {
   Bench bench(kNoiseOnly);
   const LightFit without = bench.fit();
   PanelSpot away = bench.seen.spots.front();
@@ -203,7 +203,7 @@ TEST(Light, MeasurementsThatMakeNoSenseAreRefused) {
   EXPECT_NE(refused([](Bench& b) { b.seen.spots.clear(); }).find("front lamp lights 0"), std::string::npos);
   EXPECT_NE(refused([](Bench& b) {
               b.keep([](const PanelSpot& spot) { return spot.light == 0; });
-            }).find("back lamp lights 0 patches"),
+            }).find("back lamp lights 0 spots"),
             std::string::npos);
   EXPECT_NE(refused([](Bench&) {}, 0.0).find("albedo"), std::string::npos);
   EXPECT_NE(

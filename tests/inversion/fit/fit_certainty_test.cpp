@@ -57,8 +57,8 @@ TEST(FitCertaintyTest, PredictedDeviationsMatchTheSpreadOverFiftyDrawsOfNoise) {
     EXPECT_GT(ratio(k), 0.7) << names[static_cast<std::size_t>(k)];
     EXPECT_LT(ratio(k), 1.4) << names[static_cast<std::size_t>(k)];
   }
-  // These come to the minimum of the mean of all sets of paths, and the prediction has the noise of one set: it is up to
-  // twice the spread, which is open. So is r2, whose shape has a valley that no linearised covariance follows.
+  // These come to the minimum of the mean of all sets of paths, and the prediction has the noise of one set: it is up
+  // to twice the spread, which is open. So is r2, whose shape has a valley that no linearised covariance follows.
   for (const int k : std::vector<int>{kAlpha, kAlpha + 2, kBeta, kL1}) {
     EXPECT_GT(ratio(k), 0.7) << names[static_cast<std::size_t>(k)];
     EXPECT_LT(ratio(k), 2.2) << names[static_cast<std::size_t>(k)];

@@ -134,7 +134,7 @@ TEST(AzimuthalFitTest, PredictedDeviationsCoverTheErrorsOfNoise) {
 }
 
 TEST(AzimuthalFitTest, LobesThatCoincideAreNamedAsUndetermined) {
-  // Near grazing R and TRT lie on each other (models.md 1.9): with equal widths only their sum is seen.
+  // Near grazing R and TRT lie on each other: with equal widths only their sum is seen.
   AzimuthalData d{.theta_rad = 89 * kDegree};
   const double scale = azimuthal_scale(0.5);
   d.density = 0.4 * azimuthal_profile(0, d.theta_rad, d.eta, scale, 0, 90).density +

@@ -72,7 +72,7 @@ TEST(MultiFiberTest, AgreesWithTracingEverySegmentAgainstEveryCircle) {
     }
 }
 
-// models.md 2.3: an earlier program's figures for R = 10, r = 1, gap 0.1, 1000 attempts, eta 1.5, +-0.004.
+// An earlier program's figures for R = 10, r = 1, gap 0.1, 1000 attempts, eta 1.5, +-0.004.
 struct ReferenceRow {
   double theta_deg, back_clear, albedo_03, albedo_1, albedo_3;
 };

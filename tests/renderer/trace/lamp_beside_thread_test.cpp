@@ -32,8 +32,8 @@ double exit_density(ThreadExit rule, const Vector3d& entry, const Vector3d& wo, 
              static_cast<float>(offset_in), static_cast<float>(azimuth), static_cast<float>(std::sin(from_middle))));
 }
 
-// The integral of f_cos times `density` over the directions in which the lamp is seen from a place: rings of equal solid
-// angle, so that the integrand is smooth.
+// The integral of f_cos times `density` over the directions in which the lamp is seen from a place: rings of equal
+// solid angle, so that the integrand is smooth.
 template <class Density>
 Array3d over_lamp(const Vector3d& place, const SphereLight& lamp, const CurveLobes<double>& lobes,
                   const Eigen::Matrix3d& frame, const Density& density) {

@@ -266,7 +266,8 @@ class LightTracer {
     place.position -= slope * (from.out - place.out).norm() * place.tangent;
   }
 
-  // f_cos times the density of the offset at which the viewing ray would have left, over the cosine of wi's inclination.
+  // f_cos times the density of the offset at which the viewing ray would have left, over the cosine of wi's
+  // inclination.
   Array3d wandering_adjoint(const CurvePoint& from, const CurvePoint& place, const Vector3f& wo,
                             const Vector3f& wi) const {
     const float cosine = place.tangent.cross(wi).norm();

@@ -8,8 +8,8 @@
 // up to the first that it leaves, and there too (n . wi < 0); at each of them its weight changes by f_cos |n . wo| / |n
 // . wi|. The last factor has no bound, so particles are split by their weight.
 //
-// A thread in which light wanders (ThreadExit::wandering) is met once, where a particle enters it: there the viewing ray
-// leaves. The particle leaves where the viewing ray comes in; of other exits only the entry point is known here.
+// A thread in which light wanders (ThreadExit::wandering) is met once, where a particle enters it: there the viewing
+// ray leaves. The particle leaves where the viewing ray comes in; of other exits only the entry point is known here.
 #pragma once
 
 #include <Eigen/Core>

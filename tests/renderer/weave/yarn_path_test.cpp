@@ -13,7 +13,7 @@ struct PeirceRow {
   double pitch_over_d, angle_deg, length_over_d;
 };
 
-// Square plain cloth, D = sum of both diameters (models.md 4.3).
+// Square plain cloth, D = sum of both diameters [Peirce 1937].
 const PeirceRow kPeirce[]{{0.8660254, 60.00, 1.0472}, {0.9, 47.18, 1.0684}, {1.0, 36.87, 1.1435}, {1.25, 26.17, 1.3581},
                           {1.5, 20.80, 1.5877},       {2.0, 14.98, 2.0642}, {3.0, 9.73, 3.0422}};
 

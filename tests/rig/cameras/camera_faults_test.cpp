@@ -164,7 +164,7 @@ TEST(CameraFaults, AProcessThatCrashesAtAnyQuestionCostsNoPicture) {
   EXPECT_THAT(said, testing::IsEmpty());
 }
 
-// Row 15: another program (a file manager) holds the camera when the Nth question of the first one is answered; the
+// Fault 15: another program (a file manager) holds the camera when the Nth question of the first one is answered; the
 // first one is not disturbed, the second is told what to close, and gets the camera when the first has let it go.
 TEST(CameraFaults, ACameraThatAnotherProgramHoldsIsSaidWithWhatToClose) {
   WiredCamera wired;
@@ -188,7 +188,7 @@ TEST(CameraFaults, ACameraThatGoesAwayIsSaidAndTheNextPictureComesWhenItIsBack) 
   EXPECT_THAT(said, Each(HasSubstr("check its cable and battery")));
 }
 
-// Row 20, setting by setting.
+// Fault 20, setting by setting.
 TEST(CameraFaults, ASettingThatIsAcceptedAndNotDoneIsSeen) {
   const std::array<std::pair<rig::CameraFault, const char*>, 3> settings{
       {{rig::CameraFault::refused_shutter, "set its shutterspeed to "},

@@ -7,7 +7,7 @@
 
 using testing::HasSubstr;
 
-// Row 15. On the network a camera turns the second one away; on USB the kernel does.
+// Fault 15. On the network a camera turns the second one away; on USB the kernel does.
 TEST(UsbCamera, ThatAnotherProgramHoldsIsSaidWithWhatToClose) {
   for (const char* port : {"usb:", "usb:001,004"}) {
     const std::string said = refusal([&] {

@@ -61,24 +61,6 @@ TEST_F(GphotoCamera, APictureThatWaitsFromBeforeIsDrainedAndNotTakenForTheNextOn
   EXPECT_EQ(picture.bytes, wired.recorded.last().bytes);
 }
 
-TEST_F(GphotoCamera, ACableThatIsPulledIsSaidAndTheNextPictureComesWhenItIsBack) {
-  const auto camera = open();
-  camera->capture();
-  wired.server->unplug();
-  EXPECT_THAT(refusal([&] { camera->capture(); }), HasSubstr("camera"));
-  EXPECT_THAT(refusal([&] { camera->capture(); }), HasSubstr("cable"));
-  wired.server->plug_in();
-  EXPECT_TRUE(delivers_what_was_made(*camera));
-}
-
-TEST_F(GphotoCamera, AFileThatBreaksOffIsTakenAgain) {
-  const auto camera = open();
-  for (const long bytes : {0L, 1L, 4096L}) {
-    wired.server->cut_after(bytes);
-    EXPECT_TRUE(delivers_what_was_made(*camera)) << bytes;
-  }
-}
-
 TEST_F(GphotoCamera, NobodyThereIsSaidWithWhatToCheck) {
   wired.server->unplug();
   EXPECT_THAT(refusal([this] { open(); }), HasSubstr("check its cable"));

@@ -8,7 +8,6 @@
 #include "station/bench/camera_adapter.h"
 #include "station/bench/metering.h"
 #include "station/documents/reader.h"
-#include "station/session/capture_session.h"
 #include "tests/places.h"
 
 namespace station {
@@ -126,14 +125,5 @@ TEST(CalibrationValidity, TheReadyCalibrationIsOfTheReadyRigForYears) {
 }
 
 // Not always called calibration.json.
-TEST(CalibrationFiles, AreThoseOfTheDocumentThatWasGiven) {
-  const std::string document = std::string(FIXTURES_DIR) + "/calibrations/simulated.json";
-  const CalibrationFiles files = calibration_files(document, read_calibration(document));
-  ASSERT_EQ(files.size(), 1U);
-  const auto& bytes = files.at("calibration.json");
-  const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  EXPECT_EQ(nlohmann::json::parse(text), read_json_file(document));
-}
-
 }  // namespace
 }  // namespace station

@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include "tests/station/session/capture/fakes.h"
+#include "tests/support/fake_devices.h"
 
 namespace station {
 namespace {

@@ -9,16 +9,16 @@
 #include "calibration/light/spectralon.h"
 #include "station/bench/bench_picture.h"
 #include "station/bench/camera_adapter.h"
+#include "station/bench/mounted_holder.h"
 #include "station/documents/rig_file.h"
 #include "station/documents/spool.h"
-#include "station/session/checks/capture_checks.h"
 #include "tests/places.h"
 
 namespace station {
 namespace {
 
 const inversion::WrappedSpool kSpool;
-const ReferenceChip kPatch;
+const ReferenceChip kChip;
 
 ChipView seen(double strength, double time_s, bool behind = false) {
   return {.behind = behind, .time_s = time_s, .reading = ChipReading{.strength = strength, .sigma = 0}};
@@ -38,14 +38,14 @@ renderer::Camera camera_above() {
 const inversion::NearLight kLamp{.position = {330, 110, 380}, .intensity = {2e6, 3e6, 2e6}, .radius_mm = 4};
 
 double expected_sum(const inversion::NearLight& lamp = kLamp) {
-  const Eigen::Isometry3d chip = holder_from_chip(kPatch, kSpool, rig::Mounting::horizontal);
+  const Eigen::Isometry3d chip = holder_from_chip(kChip, kSpool, rig::Mounting::horizontal);
   const Eigen::Vector3d to_light = lamp.position - chip.translation();
   return 0.4 / std::numbers::pi * 7e6 * to_light.normalized().z() / to_light.squaredNorm();
 }
 
 TEST(ReferenceChip, TheChipOfEachMountingLiesUpAndBehindTheFrontFace) {
-  const Eigen::Isometry3d horizontal = holder_from_chip(kPatch, kSpool, rig::Mounting::horizontal);
-  const Eigen::Isometry3d vertical = holder_from_chip(kPatch, kSpool, rig::Mounting::vertical);
+  const Eigen::Isometry3d horizontal = holder_from_chip(kChip, kSpool, rig::Mounting::horizontal);
+  const Eigen::Isometry3d vertical = holder_from_chip(kChip, kSpool, rig::Mounting::vertical);
   const Eigen::Matrix3d turned = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX()).toRotationMatrix();
   EXPECT_TRUE(horizontal.linear().col(2).isApprox(Eigen::Vector3d::UnitZ(), 1e-12));
   EXPECT_TRUE((turned * vertical.linear().col(2)).isApprox(Eigen::Vector3d::UnitZ(), 1e-12));
@@ -56,7 +56,7 @@ TEST(ReferenceChip, TheChipOfEachMountingLiesUpAndBehindTheFrontFace) {
 TEST(ReferenceChip, ALambertianChipUnderTheCalibratedLampReadsOne) {
   const double grey = expected_sum() / 3;
   const cv::Mat3f picture(400, 600, cv::Vec3f::all(static_cast<float>(0.97 * grey)));
-  const auto reading = read_chip(picture, cv::Mat1b(400, 600, uchar{0}), camera_above(), kPatch, kSpool,
+  const auto reading = read_chip(picture, cv::Mat1b(400, 600, uchar{0}), camera_above(), kChip, kSpool,
                                  rig::Mounting::horizontal, kLamp, {0, 0});
   ASSERT_TRUE(reading);
   EXPECT_NEAR(reading->strength, 0.97, 1e-5);  // single precision
@@ -68,7 +68,7 @@ TEST(ReferenceChip, AChipThatDroopsAsThePanelReadsOne) {
   for (const double side : {1.0, -1.0}) {
     inversion::NearLight lamp = kLamp;
     lamp.position.x() *= side;
-    const Eigen::Isometry3d chip = holder_from_chip(kPatch, kSpool, rig::Mounting::horizontal);
+    const Eigen::Isometry3d chip = holder_from_chip(kChip, kSpool, rig::Mounting::horizontal);
     const Eigen::Vector3d to_light = (lamp.position - chip.translation()).normalized(),
                           to_camera =
                               (camera_above().world_from_camera.translation() - chip.translation()).normalized();
@@ -78,7 +78,7 @@ TEST(ReferenceChip, AChipThatDroopsAsThePanelReadsOne) {
     EXPECT_GT(side * (1 - factor), 0.05);  // what is left out when the chip is taken for Lambertian
     const double grey = factor * expected_sum(lamp) / 3;
     const cv::Mat3f picture(400, 600, cv::Vec3f::all(static_cast<float>(grey)));
-    const auto reading = read_chip(picture, cv::Mat1b(400, 600, uchar{0}), camera_above(), kPatch, kSpool,
+    const auto reading = read_chip(picture, cv::Mat1b(400, 600, uchar{0}), camera_above(), kChip, kSpool,
                                    rig::Mounting::horizontal, lamp, {kDroop, 0});
     ASSERT_TRUE(reading);
     EXPECT_NEAR(reading->strength, 1, 1e-5);  // single precision
@@ -123,7 +123,7 @@ TEST(ReferenceChip, ASaturatedAnUnseenOrAnUnlitChipGivesNoReading) {
   const cv::Mat1b clear(400, 600, uchar{0}), saturated(400, 600, uchar{255});
   const auto read = [&](const cv::Mat1b& flags, const renderer::Camera& camera, rig::Mounting mounting,
                         const inversion::NearLight& light) {
-    return read_chip(picture, flags, camera, kPatch, kSpool, mounting, light, {0, 0}).has_value();
+    return read_chip(picture, flags, camera, kChip, kSpool, mounting, light, {0, 0}).has_value();
   };
   EXPECT_TRUE(read(clear, camera_above(), rig::Mounting::horizontal, kLamp));
   EXPECT_FALSE(read(saturated, camera_above(), rig::Mounting::horizontal, kLamp));

@@ -136,7 +136,7 @@ TEST_F(LightFaults, ATapeThatIsTenCentimetresWrongDoesNotMatter) {
   EXPECT_LT((found.light.positions[0] - right.light.positions[0]).norm(), 1);
 }
 
-TEST_F(LightFaults, ALampThatDimsIsCorrectedByTheReadingOfAReferencePatch) {
+TEST_F(LightFaults, ALampThatDimsIsCorrectedByTheReadingOfAReferenceChip) {
   const std::string folder = copy("dimmed");
   take_again(folder, {"front_light-04"}, [](rig::BenchState& state) {
     if (state.lamp) state.lamp->intensity *= 0.95;

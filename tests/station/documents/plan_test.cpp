@@ -8,7 +8,9 @@
 
 #include "station/documents/plan_file.h"
 #include "tests/places.h"
-#include "tests/station/session/capture/fakes.h"
+#include "tests/station/documents/small_plan.h"
+#include "tests/support/message_of.h"
+#include "tests/support/temporary_folder.h"
 
 namespace station {
 namespace {
@@ -45,7 +47,7 @@ TEST(Plan, HasTwelveReflectionsFiveTransmissionsAndADarkForEach) {
 TEST(Plan, ABracketsExposuresFollowTheirViewUnderTheSameLight) {
   const Plan plan = make_capture_plan({.bracket_stops = {-2, 1.5}});
   EXPECT_EQ(view_count(plan), 17U);
-  EXPECT_EQ(count(plan, [](const PlanStep& step) { return step.kind == StepKind::exposure; }), 34);
+  EXPECT_EQ(count(plan, [](const PlanStep& step) { return step.kind == StepKind::bracket; }), 34);
   EXPECT_EQ(count(plan, [](const PlanStep& step) { return step.kind == StepKind::dark; }), 17);
   for (std::size_t i = 0; i < plan.steps.size(); ++i) {
     const PlanStep& view = plan.steps[i];

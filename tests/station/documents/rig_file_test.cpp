@@ -4,9 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sstream>
-
-#include "station/bench/rig_devices.h"
 #include "station/documents/degree.h"
 #include "station/documents/reader.h"
 #include "tests/places.h"
@@ -34,24 +31,6 @@ std::string said_without(json document, const std::string& object, const std::st
 }
 
 }  // namespace
-
-TEST(OpenRig, OnASimulatedBenchAPersonMayPractise) {
-  json document = rig_document("simulated");
-  document["operator"] = "console";
-  document["turntable"] = "manual";
-  std::istringstream in("\n\n\n");
-  std::ostringstream out;
-  const auto asked = rig::make_person_at_terminal(in, out);
-  const RigDevices devices = open_rig(parse_rig(document, "rig.json"), {}, asked.get());
-  devices.person->arrange({.lamp = rig::Lamp::back});
-  devices.turntable->home();
-  devices.turntable->move_to(1);
-  EXPECT_THAT(out.str(), HasSubstr("Put the flashlight behind the platform and switch it on."));
-  EXPECT_THAT(out.str(), HasSubstr("Turn the platform to 57.3 deg"));
-  EXPECT_EQ(devices.bench->state().arrangement.lamp, rig::Lamp::back);
-  EXPECT_NEAR(devices.bench->state().platform_angle_rad, 1, 0.01);
-  EXPECT_THAT(refusal([&] { open_rig(parse_rig(document, "rig.json"), {}, nullptr); }), HasSubstr("needs a person"));
-}
 
 TEST(RigFileDevices, AreReadWithTheirUnits) {
   const RigFile rig = parse_rig(rig_document("grbl_sony_usb"), "rig.json");
@@ -109,24 +88,6 @@ TEST(RigFileDevices, ASimulatedCameraIsOfOneOfThreeMakesAndItsLensMayHaveNoElect
   document["simulation"]["make"] = "canon";
   EXPECT_EQ(parse_rig(document, "rig.json").simulation->camera_make, rig::CameraMake::canon);
   EXPECT_THAT(said(document, "/simulation/make", "kodak"), HasSubstr("sony"));
-}
-
-TEST(RigDevices, OfTwoWorldsAreRefused) {
-  std::istringstream in;
-  std::ostringstream out;
-  const auto asked = rig::make_person_at_terminal(in, out);
-  json mixed = rig_document("grbl_sony_usb");
-  mixed["turntable"] = "simulated";
-  mixed["simulation"] = rig_document("simulated").at("simulation");
-  mixed.erase("turntable_setup");
-  EXPECT_THAT(refusal([&] { open_rig(parse_rig(mixed, "rig.json"), std::nullopt, asked.get()); }),
-              HasSubstr("the pictures would not turn with it"));
-  EXPECT_THAT(refusal([&] { open_rig(parse_rig(mixed, "rig.json"), std::nullopt, nullptr); }),
-              HasSubstr("run without --unattended"));
-  json real = rig_document("grbl_sony_usb");
-  real["operator"] = "simulated";
-  EXPECT_THAT(refusal([&] { open_rig(parse_rig(real, "rig.json"), std::nullopt, asked.get()); }),
-              HasSubstr("write \"operator\": \"console\""));
 }
 
 }  // namespace station

@@ -101,7 +101,7 @@ TEST(SceneFile, WhatItSaysIsWhereItBelongs) {
   EXPECT_EQ(scene.lights[1].radiance.x(), 0.15);
   EXPECT_EQ(scene.camera.width, 400);
   EXPECT_LT((renderer::project(scene.camera, {0, 0, 84}) - Eigen::Vector2d(199.5, 299.5)).norm(), 1e-9);
-  EXPECT_EQ(scene.exposure, 2.5);
+  EXPECT_EQ(scene.brightness, 2.5);
 }
 
 TEST(SceneFile, ARectanglesBrightSideFacesItsTarget) {

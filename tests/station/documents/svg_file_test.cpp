@@ -18,10 +18,10 @@ using station::parse_svg;
 
 // 100 x 100 mm, one unit a millimetre, fine lines unless the content says otherwise.
 LineArt drawn(const std::string& content) {
-  return parse_svg(
-      R"svg(<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100" stroke-width="0.3">)svg" +
-          content + "</svg>",
-      "motif.svg");
+  return parse_svg(R"svg(<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100")svg"
+                   R"svg( stroke-width="0.3">)svg" +
+                       content + "</svg>",
+                   "motif.svg");
 }
 
 std::vector<Vector2d> line(const std::string& content) {
@@ -139,7 +139,8 @@ TEST(SvgFile, WhatCannotBeSewnIsOneLine) {
 
 TEST(SvgFile, CutAndDamagedDrawingsAreReadOrRefused) {
   const std::string whole = R"svg(<svg width="40mm" viewBox="0 0 40 40"><style>.a{stroke:red}</style>
-    <g transform="translate(3 4) rotate(20)"><path class="a" d="M1 2 C 3 4 5 6 7 8 S 9 1 2 3 Q 1 1 2 2 T 3 3 A 2 3 10 0 1 8 8 z"/>
+    <g transform="translate(3 4) rotate(20)">
+    <path class="a" d="M1 2 C 3 4 5 6 7 8 S 9 1 2 3 Q 1 1 2 2 T 3 3 A 2 3 10 0 1 8 8 z"/>
     <rect x="1" y="2" width="3" height="4" rx="1" style="stroke:#123;stroke-width:2mm"/></g></svg>)svg";
   const auto read = [](const std::string& text) {
     try {

@@ -90,7 +90,7 @@ TEST_F(WeaveDocuments, APatchThatIsWrittenAndReadIsTheSamePatchToTheLastDigit) {
   renderer::YarnPatch patch = renderer::initial_patch(draft);
   make_uneven(patch, draft);
   write_json_file(folder_ / "patch.json", to_json(patch));
-  const renderer::YarnPatch read = read_chip(folder_ / "patch.json");
+  const renderer::YarnPatch read = read_patch(folder_ / "patch.json");
   EXPECT_EQ(read.name, patch.name);
   EXPECT_EQ(read.period_x_mm, patch.period_x_mm);
   EXPECT_EQ(read.period_y_mm, patch.period_y_mm);
@@ -190,7 +190,7 @@ TEST_F(WeaveDocuments, FilesThatAreCutShortAreRefusedWhereverTheyAreCut) {
     for (std::size_t part = 0; part < 10; ++part) {
       const fs::path file = folder_ / "cut.json";
       std::ofstream(file, std::ios::binary) << whole.substr(0, whole.size() * part / 10);
-      const std::string line = refusal([&] { whole == draft ? void(read_draft(file)) : void(read_chip(file)); });
+      const std::string line = refusal([&] { whole == draft ? void(read_draft(file)) : void(read_patch(file)); });
       EXPECT_NE(line.find("ends too early"), std::string::npos) << line;
     }
   }

@@ -29,7 +29,7 @@ using station::HttpResponse;
 using station::HttpServer;
 using station::PageGuard;
 
-// ---- who is answered (row 35)
+// ---- who is answered
 
 HttpRequest asked(const std::string& method = "GET") {
   HttpRequest request{.method = method, .path = "/api/state", .headers = {{"host", "127.0.0.1:8017"}}};
@@ -93,7 +93,7 @@ TEST(PageGuard, WithATokenNobodyElseIsAnswered) {
   EXPECT_EQ(status_of(first, guard), 401);
 }
 
-// ---- what the server survives (row 36)
+// ---- what the server survives
 
 class RunningServer {
  public:
@@ -103,7 +103,8 @@ class RunningServer {
           return std::nullopt;
         },
         handle ? handle : [](const HttpRequest& request) {
-          return request.path == "/events" ? HttpResponse{.stream = true} : HttpResponse{.body = request.path + request.body};
+          if (request.path == "/events") return HttpResponse{.stream = true};
+          return HttpResponse{.body = request.path + request.body};
         }, limits),
         thread_([this] { server_.run(); }) {}
   ~RunningServer() { server_.stop(); }

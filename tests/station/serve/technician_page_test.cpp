@@ -1,5 +1,5 @@
 // The technician's page and who may have it do what: one browser in control, names that stay in the workspace, and a
-// run that does not depend on the network (rows 14, 37).
+// run that does not depend on the network.
 #include <fcntl.h>
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
-// Row 50 of the station's faults without a fuzzer: thousands of damaged files, seeds printed; each is read or refused,
-// and nothing else happens. The fuzz targets of these rooms (their folders fuzz/) go further.
+// Fuzzing without a fuzzer: thousands of damaged files, seeds printed; each is read or refused, and nothing else
+// happens. The fuzz targets of these rooms (their folders fuzz/) go further.
 #include <gtest/gtest.h>
 
 #include <iostream>

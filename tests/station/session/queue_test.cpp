@@ -7,7 +7,6 @@
 
 #include "station/bench/bench_fault.h"
 #include "station/documents/disk/file_name.h"
-#include "station/documents/text_table.h"
 #include "station/output/interrupt.h"
 #include "station/session/spool_queue.h"
 #include "tests/places.h"
@@ -49,7 +48,6 @@ TEST_F(Queue, TheDocumentedTableIsRead) {
   for (const QueuedSpool& spool : queue) EXPECT_TRUE(std::filesystem::exists(spool.spool)) << spool.spool;
 }
 
-// Rows 32 and 45 of the station's faults.
 TEST_F(Queue, WhatSpreadsheetsWriteIsReadOrRefusedAndNeverMisread) {
   EXPECT_EQ(read("\xEF\xBB\xBF"
                  "barcode,spool\r\n1,a.json\r\n2,\r\n")

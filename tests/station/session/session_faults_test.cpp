@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "station/bench/bench_picture.h"
+#include "station/bench/mounted_holder.h"
 #include "station/documents/degree.h"
-#include "station/session/checks/capture_checks.h"
 #include "tests/station/session/recorded_bench.h"
 
 namespace station {
@@ -32,7 +32,7 @@ TEST(SessionFaults, WithoutAFaultEveryViewIsGoodAndEveryCheckThatCanLookLooks) {
   }
 }
 
-// Row 10: acknowledged, read back as asked, and not turned.
+// The turntable acknowledges, is read back as asked, and has not turned.
 TEST(SessionFaults, APlatformThatSlippedIsFoundByItsTagsAndNothingWrongIsKept) {
   RecordedBench bench;
   int moves = 0;
@@ -51,7 +51,7 @@ TEST(SessionFaults, APlatformThatSlippedIsFoundByItsTagsAndNothingWrongIsKept) {
   EXPECT_TRUE(verify_session(bench.path).sound());
 }
 
-// Row 11: a third of a degree while the shutter is open, too little for the angle's check.
+// The platform moves by a third of a degree while the shutter is open, too little for the angle's check.
 TEST(SessionFaults, APictureTakenWhileThePlatformStillMovedIsTakenAgain) {
   RecordedBench bench;
   RecordedBench dry;  // says how many test pictures the first step takes
@@ -73,7 +73,7 @@ TEST(SessionFaults, APictureTakenWhileThePlatformStillMovedIsTakenAgain) {
   EXPECT_TRUE(verify_session(bench.path).sound());
 }
 
-// Row 21: the camera reads back what was asked and its file says another time.
+// The camera reads back what was asked and its file says another time.
 TEST(SessionFaults, AFileWithAnotherExposureThanItsCameraSaysIsRefused) {
   RecordedBench bench;
   bench.on_capture = [](rig::Camera& device) {
@@ -92,7 +92,6 @@ TEST(SessionFaults, AFileWithAnotherExposureThanItsCameraSaysIsRefused) {
   EXPECT_TRUE(fs::is_empty(bench.path / "raw"));
 }
 
-// Row 24: the file is kept aside.
 TEST(SessionFaults, ATruncatedRawFileIsRefusedAndKeptAside) {
   RecordedBench bench;
   std::string step;
@@ -111,7 +110,6 @@ TEST(SessionFaults, ATruncatedRawFileIsRefusedAndKeptAside) {
   EXPECT_TRUE(verify_session(bench.path).sound());
 }
 
-// Row 43, the holder.
 TEST(SessionFaults, ThreadsThatStandTheWrongWayAreFoundInTheFirstPosePicture) {
   RecordedBench bench;
   bool wrong = true;
@@ -129,7 +127,7 @@ TEST(SessionFaults, ThreadsThatStandTheWrongWayAreFoundInTheFirstPosePicture) {
   EXPECT_EQ(bench.run(), "");
 }
 
-// Row 43, the lamp, either way round.
+// The lamp stands wrong either way round.
 TEST(SessionFaults, ALampOnTheWrongSideIsFoundInTheFirstView) {
   for (const rig::Lamp asked : {rig::Lamp::front, rig::Lamp::back}) {
     RecordedBench bench;
@@ -144,8 +142,8 @@ TEST(SessionFaults, ALampOnTheWrongSideIsFoundInTheFirstView) {
   }
 }
 
-// Row 42, warming up: 8 % of the light are missing at first.
-TEST(SessionFaults, ALampThatWarmsUpIsWaitedForByItsPatch) {
+// 8 % of the light are missing at first.
+TEST(SessionFaults, ALampThatWarmsUpIsWaitedForByItsChip) {
   RecordedBench bench;
   bench.asked.rig.lamp_watch_s = 10;
   bench.asked.rig.simulation->truth.lamp_changes.warm_up = 0.08;
@@ -163,7 +161,7 @@ TEST(SessionFaults, ALampThatWarmsUpIsWaitedForByItsPatch) {
   EXPECT_EQ(std::ranges::count(records, "lamp_watch", &JournalRecord::event), 1);
   const auto pictures = pictures_of(bench.path);
   const auto lamp = [&](const char* step) { return *pictures.at(step).verdict.find("lamp")->value; };
-  // What the lamp then still lacks changes by less than a percent in the seconds of three views; the patch is read to
+  // What the lamp then still lacks changes by less than a percent in the seconds of three views; the chip is read to
   // 0.3 %.
   EXPECT_NEAR(lamp("reflection-horizontal-3"), lamp("reflection-horizontal-1"), 1.5);
 }
@@ -199,7 +197,7 @@ TEST(SessionFaults, AViewOutOfFocusIsRefused) {
   EXPECT_TRUE(pictures_of(bench.path).contains("reflection-horizontal-4"));
 }
 
-// Row 44: the computer's clock goes back to 1970 and the camera's by an hour; order is the journal's numbers.
+// The computer's clock goes back to 1970 and the camera's by an hour; order is the journal's numbers.
 TEST(SessionFaults, ClocksThatJumpLoseNothing) {
   struct Jumping final : rig::Clock {
     rig::SimulatedClock before{1.8e9}, after{0};
@@ -219,7 +217,6 @@ TEST(SessionFaults, ClocksThatJumpLoseNothing) {
   for (const JournalRecord& record : bench.records()) EXPECT_EQ(record.seq, ++seq);
 }
 
-// Row 46.
 TEST(SessionFaults, ASessionOfAnotherVersionIsRefusedAndNotTouched) {
   RecordedBench bench;
   EXPECT_EQ(bench.run(), "");

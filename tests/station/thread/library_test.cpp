@@ -6,7 +6,8 @@
 
 #include "station/documents/manifest.h"
 #include "tests/places.h"
-#include "tests/station/session/capture/fakes.h"
+#include "tests/support/message_of.h"
+#include "tests/support/temporary_folder.h"
 
 namespace station {
 namespace {
@@ -45,7 +46,7 @@ TEST_F(ThreadLibrary, RefusesWhatItHasAlreadyAndWhatIsNoThread) {
   EXPECT_THAT(message_of([&] { Library((folder / "letter.txt").parent_path(), true); }), HasSubstr("other files"));
 }
 
-// Row 30 of the station's faults: a flipped bit is not passed on.
+// A flipped bit is not passed on.
 TEST_F(ThreadLibrary, ExportsTheFileAsItWasAddedOrNothing) {
   Library library(place, true);
   library.add(thread("silk_blue"), kNow);

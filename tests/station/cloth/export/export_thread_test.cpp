@@ -87,7 +87,8 @@ f, mean = read("f_cos"), read("f_cos_mean")
 assert f.shape == (9, 37, 36, 8, 3) and f.dtype == numpy.float64, f.shape
 rows = numpy.loadtxt(folder + "/scattering.csv", delimiter=",", skiprows=1).reshape(9, 37, 36, 8, 8)
 assert numpy.allclose(rows[..., 5:], f, rtol=1e-8, atol=0)
-theta_o, theta_i, phi, h = numpy.meshgrid(read("theta_o_rad"), read("theta_i_rad"), read("phi_rad"), read("h"), indexing="ij")
+axes = [read(name) for name in ("theta_o_rad", "theta_i_rad", "phi_rad", "h")]
+theta_o, theta_i, phi, h = numpy.meshgrid(*axes, indexing="ij")
 for column, axis in ((0, h), (1, theta_i), (2, phi), (3, theta_o)):
     assert numpy.allclose(rows[..., column], axis, rtol=1e-8, atol=1e-12), column
 rows = numpy.loadtxt(folder + "/scattering_mean.csv", delimiter=",", skiprows=1).reshape(9, 37, 36, 7)

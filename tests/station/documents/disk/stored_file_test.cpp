@@ -5,7 +5,9 @@
 #include <cerrno>
 #include <span>
 
-#include "tests/station/session/capture/fakes.h"
+#include "tests/support/fake_file_system.h"
+#include "tests/support/message_of.h"
+#include "tests/support/temporary_folder.h"
 
 namespace station {
 namespace {

@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "station/output/compare/compare_pictures.h"
-#include "tests/station/session/capture/fakes.h"
+#include "tests/support/message_of.h"
 
 namespace station {
 namespace {

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "station/bench/camera_adapter.h"
+#include "station/bench/mounted_holder.h"
 #include "station/documents/plan_file.h"
-#include "station/session/checks/capture_checks.h"
 #include "tests/station/session/recorded_bench.h"
 
 namespace station {

@@ -11,7 +11,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-// Row 49 of the station's faults.
 TEST(SessionReport, IsMadeFromTheJournalAndAgainAfterACrash) {
   const TemporaryFolder folder;
   const fs::path session = folder / "session";
@@ -20,7 +19,7 @@ TEST(SessionReport, IsMadeFromTheJournalAndAgainAfterACrash) {
   write_session_report(session);
   const std::string page = text_of(session / "report.html");
   for (const char* said : {"complete", "Verdicts", "reflection-vertical-6", "SHA-256", "threadstation ", "days old",
-                           "Lamp at the reference patch", "<svg"})
+                           "Lamp at the reference chip", "<svg"})
     EXPECT_THAT(page, HasSubstr(said));
   EXPECT_EQ(page.find("src=\"http"), std::string::npos);
   EXPECT_EQ(page.find("<script"), std::string::npos);

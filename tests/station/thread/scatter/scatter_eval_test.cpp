@@ -189,11 +189,11 @@ TEST_F(ScatterEval, WrongTablesAreRefusedInOneLineThatNamesThePlace) {
   refused("", {"queries.csv", "empty", "theta_i_rad"});
   refused(names, {"queries.csv", "no rows"});
   refused("h,theta_i_rad,phi_i_rad,theta_o_rad\n0,0,0,0\n", {"\"phi_o_rad\" is missing"});
-  refused("color," + names + good, {"unknown column \"color\"", "tilt_deg"});
-  refused("h," + names + "0," + good, {"\"h\" is there twice"});
+  refused("color," + names + good, {"column \"color\" is not known", "tilt_deg"});
+  refused("h," + names + "0," + good, {"\"h\" stands there twice"});
   refused(names + good + "1.1,0,1,0,2\n", {"line 3", "\"h\"", "1.1", "from -1 to 1"});
   refused(names + "0.1,1.6,1,0,2\n", {"line 2", "\"theta_i_rad\"", "1.6"});
-  refused(names + "0.1,0,1,0\n", {"line 2", "4 values, expected 5"});
+  refused(names + "0.1,0,1,0\n", {"line 2", "4 cells", "5 columns"});
   refused(names + "0.1,0,nan,0,2\n", {"line 2", "\"phi_i_rad\"", "\"nan\"", "finite"});
   refused(names + "0.1,0,1,inf,2\n", {"\"theta_o_rad\""});
   refused(names + "0.1,0,1,0,2x\n", {"\"phi_o_rad\"", "\"2x\""});
@@ -208,7 +208,7 @@ TEST_F(ScatterEval, WhatIsMissingIsSaidWithWhatToDo) {
   expect_refused(evaluate("thread", queries, kFixtures / "fibers" / "clear.json"), {"threadstation/thread"});
   expect_refused(evaluate("thread", "eta," + std::string(kPlaceColumns) + "\n1.5,0,0,0,0,0\n",
                           kFixtures / "threads" / "silk_red.json"),
-                 {"unknown column \"eta\""});
+                 {"column \"eta\" is not known"});
   expect_refused(evaluate("yarn", queries, folder_ / "none.json"), {"none.json", "no such file"});
   EXPECT_EQ(evaluate("cloth", queries).status, 2);
   EXPECT_EQ(run_threadstation({"scatter"}).status, 2);

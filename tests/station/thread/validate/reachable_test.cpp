@@ -5,7 +5,8 @@
 #include "station/documents/reader.h"
 #include "station/thread/validate/recover_thread.h"
 #include "tests/places.h"
-#include "tests/station/session/capture/fakes.h"
+#include "tests/support/message_of.h"
+#include "tests/support/temporary_folder.h"
 
 namespace station {
 namespace {

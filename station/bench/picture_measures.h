@@ -14,6 +14,9 @@ namespace station {
 // be compared by it.
 double sharpness(const cv::Mat1f& linear_grey, const cv::Mat1b& region);
 
+// The blur of printed edges beyond which a picture is doubtful, and beyond which it is bad.
+inline constexpr double kDoubtfulBlur_px = 2, kBadBlur_px = 3;
+
 // The standard deviation (px) of the blur of the tags' black edges, median over the edges; lens, focus, motion and
 // demosaicing all add to it. Tags with edges below 16 px are left out, because neighbouring edges run together; nothing
 // when no edge is left.

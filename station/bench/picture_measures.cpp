@@ -1,4 +1,4 @@
-#include "station/session/checks/picture_measures.h"
+#include "station/bench/picture_measures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "calibration/sensor/median.h"
+#include "calibration/sensor/sensor_range.h"
 
 namespace station {
 namespace {
 
-constexpr double kSaturated = 0.98;
 constexpr double kSmallestTag_px = 16;
 constexpr int kMostCompared = 1 << 20;  // pixels
 constexpr double kReach_px = 4, kSampleEvery_px = 0.25;
@@ -93,7 +93,7 @@ std::optional<double> motion_px(const calibration::TagObservation& before, const
 }
 
 double saturated_fraction(const calibration::SensorPicture& picture, const cv::Mat1b& region) {
-  const double limit_dn = picture.black_level_dn + kSaturated * (picture.white_level_dn - picture.black_level_dn);
+  const double limit_dn = calibration::dn_at(picture, calibration::kSaturated);
   const cv::Rect box = cv::boundingRect(region);
   int inside = 0, saturated = 0;
   for (int row = box.y; row < box.br().y; ++row)

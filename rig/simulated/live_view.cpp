@@ -1,4 +1,4 @@
-#include "rig/cameras/live_view.h"
+#include "rig/simulated/live_view.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // The figures of one picture, on pictures drawn for the purpose.
-#include "station/session/checks/picture_measures.h"
+#include "station/bench/picture_measures.h"
 
 #include <gtest/gtest.h>
 
