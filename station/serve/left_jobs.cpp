@@ -12,8 +12,8 @@
 namespace station {
 namespace {
 
-// When a process began, in the kernel's ticks since its start; 0 when there is none, or when it has ended and nobody has
-// asked how.
+// When a process began, in the kernel's ticks since its start; 0 when there is none, or when it has ended
+// and nobody has asked how.
 unsigned long long began(pid_t process) {
   constexpr int kFieldsBetween = 18;  // from the state, which follows the name in brackets, to the beginning
   std::ifstream stream("/proc/" + std::to_string(process) + "/stat");
