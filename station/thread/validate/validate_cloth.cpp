@@ -111,8 +111,7 @@ class Study {
       return Woven{.patch = with_fibers_of(patch, {warp.spool, weft_.spool}),
                    .threads = {simulated_fibers(warp.spool).scattering, simulated_fibers(weft_.spool).scattering}};
     });
-    sample.noise_delta_e =
-        compare_pictures(reference[0], reference[1], view.mask, options).mean_delta_e / std::sqrt(2.0);
+    sample.noise_delta_e = compare_pictures(reference[0], reference[1], view.mask, options).mean_delta_e / 2;
     shown.push_back(mean_of(reference));
     for (ModelKind model : request_.models) {
       const PictureHalves predicted = pictures(name, name_of(model), warp, view, [&] {

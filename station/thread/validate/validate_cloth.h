@@ -38,7 +38,8 @@ struct ValidateClothRequest {
 struct PredictedSample {
   std::string weave, warp, side;  // weave and warp: names of their files; side of the lamp: "right", "left", "behind"
   int block_px = 0;
-  double noise_delta_e = 0;  // difference of the reference's two renderings over the root of 2: its noise alone
+  // The noise of the reference, which is the mean of two renderings: half their difference.
+  double noise_delta_e = 0;
   struct OfModel {
     inversion::ModelKind model;
     Comparison comparison;
