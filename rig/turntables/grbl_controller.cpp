@@ -27,6 +27,7 @@ constexpr double kQuietS = 0.1;      // a silence of this length: nothing more i
 constexpr double kHoldTimeoutS = 3;  // from the hold to standing still
 constexpr double kLookS = 0.02;      // the wait per look for homing's answer, which may come much later
 constexpr double kPollS = 0.05;
+constexpr double kStandsS = 1;  // a controller that reports for so long that it stands does not look for its home
 constexpr double kSecondsPerMinute = 60;
 constexpr char kReset = '\x18';
 
@@ -95,9 +96,8 @@ class GrblController final : public MotionController, public GrblSettingsPort {
       return;
     }
     on_guard_ = true;
-    home_seen_ = false;
-    homing_ = true;
-    begin(*grbl_homing_command(setup_, firmware_) + "\n");
+    homings_ = 0;
+    begin_homing();
   }
 
   void start_move(std::int64_t steps) override {
@@ -149,6 +149,14 @@ class GrblController final : public MotionController, public GrblSettingsPort {
     if (stopped_) return;
     line_->write(command);
     if (stopped_) write_stop();
+  }
+
+  void begin_homing() {
+    home_seen_ = false;
+    stands_since_s_.reset();
+    homing_ = true;
+    ++homings_;
+    begin(*grbl_homing_command(setup_, firmware_) + "\n");
   }
 
   bool listen(double timeout_s, const Take& take) {
@@ -322,7 +330,8 @@ class GrblController final : public MotionController, public GrblSettingsPort {
   }
 
   // During homing the firmware answers late or not at all; its ok comes at the end. Homing has ended with the first
-  // report of "idle" behind that or behind a report of "home": an ok alone may be a late one of something else.
+  // report of "idle" behind that or behind a report of "home": an ok alone may be a late one of something else. When
+  // it reports to stand and nothing else, the command or its ok got lost on the wire, and it is told to home again.
   MotionStatus homing_status() {
     if (stopped_) return {Motion::held, 0};
     bool done = false;
@@ -343,6 +352,10 @@ class GrblController final : public MotionController, public GrblSettingsPort {
       throw std::runtime_error("the turntable was asked to home and answered " + grbl_error_words(refused->code));
     }
     if (!done) {
+      const bool stands = seen && !home_seen_ && (seen->state == GrblState::idle || seen->state == GrblState::alarm);
+      const double now_s = clock_.monotonic_s();
+      stands_since_s_ = stands ? std::optional(stands_since_s_.value_or(now_s)) : std::nullopt;
+      if (stands && now_s - *stands_since_s_ > kStandsS && homings_ < kMostTries) begin_homing();
       line_->write("?");
       return {Motion::moving, 0};
     }
@@ -362,6 +375,8 @@ class GrblController final : public MotionController, public GrblSettingsPort {
   bool on_guard_ = false;                               // true: an alarm or a banner means that the position is lost
   bool boots_locked_ = false;                           // an alarm after a reset is no news
   bool home_seen_ = false;                              // homing has begun
+  int homings_ = 0;                                     // how often it was begun
+  std::optional<double> stands_since_s_;                // while it homes
   std::atomic<bool> homing_ = false, stopped_ = false;  // stop() comes from other threads
 };
 

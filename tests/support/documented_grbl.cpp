@@ -98,6 +98,11 @@ class DocumentedGrbl::Board {
     const std::lock_guard hold(mutex_);
     return settings_.all();
   }
+  void close_end_switch() {
+    const std::lock_guard hold(mutex_);
+    update();
+    run_into_switch();
+  }
 
  private:
   enum class State { idle, run, hold, jog, alarm, home };
@@ -501,4 +506,7 @@ std::vector<DocumentedGrbl::Place> DocumentedGrbl::log() {
 }
 std::map<int, double> DocumentedGrbl::settings() {
   return board_->settings();
+}
+void DocumentedGrbl::close_end_switch() {
+  board_->close_end_switch();
 }

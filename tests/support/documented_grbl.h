@@ -52,6 +52,7 @@ class DocumentedGrbl {
   bool turning();
   std::vector<Place> log();  // every 5 ms while it turns, and where it stood at last
   std::map<int, double> settings();
+  void close_end_switch();  // the platform runs into one that its limit settings heed
 
  private:
   class Board;

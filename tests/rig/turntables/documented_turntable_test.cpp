@@ -1,21 +1,16 @@
-// The driver on both simulations of GRBL, and what it says about boards as people have them: with the settings and the
-// homing that the firmware comes with.
+// What the driver says about boards as people have them, with the settings and the homing that GRBL comes with.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "rig/devices/device_contract.h"
 #include "rig/turntables/grbl_settings.h"
 #include "tests/rig/turntables/documented_bench.h"
 #include "tests/rig/turntables/ended_program.h"
-#include "tests/rig/turntables/wired_bench.h"
 
 namespace {
 
 using rig::kDegree;
 using testing::AllOf;
 using testing::HasSubstr;
-
-constexpr double kStepRad = kDegree / 40;
 
 std::string refusal(const std::function<void()>& action) {
   try {
@@ -26,66 +21,7 @@ std::string refusal(const std::function<void()>& action) {
   return "(accepted)";
 }
 
-// One bench of either simulation.
-struct EitherGrbl : testing::TestWithParam<bool> {
-  std::unique_ptr<rig::Turntable> make_turntable() {
-    return GetParam() ? documented.make_turntable() : simulated.make_turntable();
-  }
-  EventfulClock& clock() { return GetParam() ? documented.clock : simulated.clock; }
-  double at_rad() { return GetParam() ? documented.at_rad() : simulated.true_angle_rad(); }
-
-  WiredBench<EventfulClock> simulated{Protocol::grbl};
-  DocumentedBench documented;
-};
-
-INSTANTIATE_TEST_SUITE_P(Simulations, EitherGrbl, testing::Bool(),
-                         [](const auto& test) { return test.param ? "Documented" : "Simulated"; });
-
 }  // namespace
-
-TEST_P(EitherGrbl, KeepsTheContractOfTurntables) {
-  clock().pace = 0.02;
-  const auto table = make_turntable();
-  for (const rig::ContractRow& row : rig::check_turntable(*table, kStepRad))
-    EXPECT_TRUE(row.passed) << row.name << ": " << row.what;
-  EXPECT_NEAR(std::remainder(at_rad(), 360 * kDegree), 0, 1e-9);
-}
-
-TEST_P(EitherGrbl, StandsAtTheNearestStepAndReadsItBack) {
-  const auto table = make_turntable();
-  table->home();
-  EXPECT_NEAR(at_rad(), 0, 1e-9);
-  for (const double wanted_deg : {30.01, -77.7, 359.99, 0.0, -360.0}) {
-    table->move_to(wanted_deg * kDegree);
-    const double expected_rad = std::round(wanted_deg * 40) * kStepRad;
-    EXPECT_NEAR(table->angle_rad(), expected_rad, 1e-9);
-    EXPECT_NEAR(at_rad(), expected_rad, 1e-9);
-  }
-}
-
-TEST_P(EitherGrbl, AStopEndsTheMoveKeepsThePositionAndTheNextMoveGoesOn) {
-  const auto table = make_turntable();
-  table->home();
-  for (const double after_s : {0.06, 0.3, 1.0, 2.5, 3.1}) {
-    clock().plan(after_s, [&] { table->stop(); });
-    EXPECT_THAT(refusal([&] { table->move_to(90 * kDegree); }), HasSubstr("was stopped at"));
-    const double stood_rad = at_rad();
-    EXPECT_NEAR(table->angle_rad(), stood_rad, 1e-9);
-    clock().sleep_s(5);
-    EXPECT_EQ(at_rad(), stood_rad);
-    table->move_to(0);
-    EXPECT_NEAR(at_rad(), 0, 1e-9);
-  }
-}
-
-TEST_P(EitherGrbl, AStopWhileHomingLeavesThePositionUnknown) {
-  const auto table = make_turntable();
-  clock().plan(0.5, [&] { table->stop(); });
-  EXPECT_THAT(refusal([&] { table->home(); }), HasSubstr("home it again"));
-  EXPECT_EQ(table->state(), rig::TurntableState::unknown_position);
-  table->home();
-  EXPECT_NEAR(at_rad(), 0, 1e-9);
-}
 
 TEST(DocumentedTurntable, FindsItsHomeFromAnywhere) {
   for (double stands_at_deg = -360; stands_at_deg < 360; stands_at_deg += 36.5) {

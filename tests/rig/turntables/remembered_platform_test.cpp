@@ -24,16 +24,12 @@ std::string refusal(const std::function<void()>& action) {
 using Rig = WiredBench<EventfulClock>;
 
 // A platform without a home switch, whose mark is at the bench's true angle 0.
-struct RememberedPlatform : testing::Test {
+struct RememberedPlatform : testing::TestWithParam<Protocol> {
   RememberedPlatform() {
     rig.stepper.memory = memory;
     rig.bench.turn_platform(0);
-    restart_board();
+    rig.power_on_another();
     rig.make_turntable()->home();
-  }
-  void restart_board() {
-    rig::SimulatedMotor motor(rig.bench, rig.clock, rig.kStepsPerDeg);
-    rig.port = rig::make_simulated_port(rig::make_simulated_grbl(motor, rig.clock, false));
   }
   // A line whose opening does not reset the board.
   void keep_board_running() {
@@ -41,8 +37,9 @@ struct RememberedPlatform : testing::Test {
       struct Line final : rig::ByteLine {
         Line(std::shared_ptr<rig::SimulatedPort> to, rig::Clock& by) : port(std::move(to)), clock(by) {}
         std::string read(double timeout_s) override {
+          const double until_s = clock.monotonic_s() + timeout_s;
           std::string bytes = port->transmit();
-          if (bytes.empty()) clock.sleep_s(std::min(timeout_s, 0.01));
+          for (; bytes.empty() && clock.monotonic_s() < until_s; bytes = port->transmit()) clock.sleep_s(0.01);
           return bytes;
         }
         void write(std::string_view bytes) override { port->receive(bytes); }
@@ -54,17 +51,20 @@ struct RememberedPlatform : testing::Test {
   }
 
   std::shared_ptr<Memory> memory = std::make_shared<Memory>();
-  Rig rig{Protocol::grbl, rig::HomeBy::here};
+  Rig rig{GetParam(), rig::HomeBy::here};
 };
+
+INSTANTIATE_TEST_SUITE_P(OverTheWire, RememberedPlatform, testing::Values(Protocol::grbl, Protocol::documented_grbl),
+                         testing::PrintToStringParamName());
 
 }  // namespace
 
-TEST_F(RememberedPlatform, IsTurnedBackByTheNextProgramFromWhereItWasLeft) {
+TEST_P(RememberedPlatform, IsTurnedBackByTheNextProgramFromWhereItWasLeft) {
   for (const double left_deg : {45.0, -200.0, 0.025}) {
     const auto table = rig.make_turntable();
     table->home();
     table->move_to(left_deg * kDegree);
-    restart_board();
+    rig.power_on_another();
     const auto next = rig.make_turntable();
     next->home();
     EXPECT_NEAR(rig.true_angle_rad(), 0, 1e-12) << left_deg;
@@ -73,26 +73,26 @@ TEST_F(RememberedPlatform, IsTurnedBackByTheNextProgramFromWhereItWasLeft) {
   EXPECT_EQ(memory->asked, 0);
 }
 
-TEST_F(RememberedPlatform, IsKnownAfterAStop) {
+TEST_P(RememberedPlatform, IsKnownAfterAStop) {
   const auto table = rig.make_turntable();
   table->home();
   rig.clock.plan(1, [&] { table->stop(); });
   EXPECT_THAT(refusal([&] { table->move_to(90 * kDegree); }), HasSubstr("was stopped at"));
   EXPECT_GT(rig.true_angle_rad(), 10 * kDegree);
-  restart_board();
+  rig.power_on_another();
   rig.make_turntable()->home();
   EXPECT_NEAR(rig.true_angle_rad(), 0, 1e-12);
 }
 
-TEST_F(RememberedPlatform, IsAskedForWhenItsProgramWasKilledAndItsBoardReset) {
+TEST_P(RememberedPlatform, IsAskedForWhenItsProgramWasKilledAndItsBoardReset) {
   memory->place = {.steps = 0, .angle_rad = 0, .turning = true};
   rig.bench.turn_platform(70 * kDegree);
-  restart_board();
+  rig.power_on_another();
   EXPECT_THAT(refusal([&] { rig.make_turntable()->home(); }), HasSubstr("threadstation home --mark"));
   EXPECT_NEAR(rig.true_angle_rad(), 70 * kDegree, 1e-12) << "nothing turns before the place is known";
   memory->turn_to_mark = [this] {
     rig.bench.turn_platform(0);
-    restart_board();
+    rig.power_on_another();
   };
   memory->turn_to_mark();
   const auto table = rig.make_turntable();
@@ -102,7 +102,7 @@ TEST_F(RememberedPlatform, IsAskedForWhenItsProgramWasKilledAndItsBoardReset) {
   EXPECT_EQ(memory->asked, 2);
 }
 
-TEST_F(RememberedPlatform, IsCountedByABoardThatWasNotReset) {
+TEST_P(RememberedPlatform, IsCountedByABoardThatWasNotReset) {
   keep_board_running();
   {
     const auto table = rig.make_turntable();
@@ -120,7 +120,7 @@ TEST_F(RememberedPlatform, IsCountedByABoardThatWasNotReset) {
 }
 
 // Somebody else's program turned it, or its board was reset and then turned.
-TEST_F(RememberedPlatform, IsAskedForWhenItsControllerCountsOtherwise) {
+TEST_P(RememberedPlatform, IsAskedForWhenItsControllerCountsOtherwise) {
   keep_board_running();
   rig.make_turntable()->home();
   rig.port->receive("G90 G53 G1 X80 F600\n");
@@ -130,11 +130,11 @@ TEST_F(RememberedPlatform, IsAskedForWhenItsControllerCountsOtherwise) {
   EXPECT_EQ(memory->asked, 1);
 }
 
-TEST_F(RememberedPlatform, TakesAMeasuredAngleForItsOwn) {
+TEST_P(RememberedPlatform, TakesAMeasuredAngleForItsOwn) {
   const auto table = rig.make_turntable();
   table->home();
   rig.bench.turn_platform(20 * kDegree);  // by hand
-  restart_board();
+  rig.power_on_another();
   const auto next = rig.make_turntable();
   next->home();
   EXPECT_EQ(next->angle_rad(), 0);

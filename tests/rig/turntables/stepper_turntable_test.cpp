@@ -89,7 +89,8 @@ struct StepperTurntable : testing::TestWithParam<Protocol> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(OverTheWire, StepperTurntable, testing::Values(Protocol::grbl, Protocol::zaber),
+INSTANTIATE_TEST_SUITE_P(OverTheWire, StepperTurntable,
+                         testing::Values(Protocol::grbl, Protocol::documented_grbl, Protocol::zaber),
                          testing::PrintToStringParamName());
 
 }  // namespace
@@ -302,9 +303,7 @@ TEST_P(StepperTurntable, IsFoundAgainByItsSerialNumberAtAnotherPort) {
   EXPECT_THAT(refusal([&] { table->move_to(0.5); }), HasSubstr("unplugged"));
   EXPECT_EQ(table->state(), rig::TurntableState::unknown_position);
   // Opening by serial number now gives another port.
-  rig::SimulatedMotor motor(rig.bench, rig.clock, rig.kStepsPerDeg);
-  rig.port = rig::make_simulated_port(GetParam() == Protocol::grbl ? rig::make_simulated_grbl(motor, rig.clock, true)
-                                                                   : rig::make_simulated_zaber(motor));
+  rig.power_on_another();
   table->home();
   table->move_to(30 * kDegree);
   EXPECT_NEAR(rig.true_angle_rad(), 30 * kDegree, 1e-12);
@@ -379,6 +378,28 @@ TEST(GrblMove, ThatGotLostIsBegunAgainFromWhereThePlatformStands) {
   rig.clock.plan(0, [] {});
   EXPECT_NEAR(rig.true_angle_rad(), 30 * kDegree, 1e-12);
   EXPECT_LT(largest_rad, 31 * kDegree);
+}
+
+// A controller that stands and has said nothing of homing did not hear of it, or its ok got lost.
+TEST(GrblHoming, WhoseCommandGotLostIsBegunAgain) {
+  for (const Protocol protocol : {Protocol::grbl, Protocol::documented_grbl}) {
+    Rig rig(protocol);
+    int homings = 0;
+    struct Line final : rig::ByteLine {
+      Line(std::unique_ptr<rig::ByteLine> to, int& counted) : line(std::move(to)), homings(counted) {}
+      std::string read(double timeout_s) override { return line->read(timeout_s); }
+      void write(std::string_view bytes) override {
+        if (bytes.find("$H") == std::string_view::npos || ++homings > 1) line->write(bytes);
+      }
+      std::unique_ptr<rig::ByteLine> line;
+      int& homings;
+    };
+    rig.open_line = [&] { return std::make_unique<Line>(rig::open_simulated_line(rig.port, rig.clock), homings); };
+    const auto table = rig.make_turntable();
+    table->home();
+    EXPECT_EQ(homings, 2) << protocol;
+    EXPECT_NEAR(rig.true_angle_rad(), 0, 1e-12) << protocol;
+  }
 }
 
 namespace {

@@ -172,7 +172,7 @@ TEST_P(Wire, WhatWasWrittenJustBeforeTheLineIsClosedIsHeard) {
   {
     const std::lock_guard hold(other_work);
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // it waits for its other work by now
-    open->write(protocol() == Protocol::grbl ? "!" : "/1 1 stop\n");
+    open->write(protocol() == Protocol::zaber ? "/1 1 stop\n" : "!");
     open.reset();
   }
   for (int i = 0; i < 500 && rig.port->operations() == before; ++i)
@@ -230,9 +230,7 @@ TEST_P(Wire, APlugPulledInTheMiddleOfAMoveIsSaidAndAnotherPortIsFoundForHoming) 
   EXPECT_EQ(table->state(), rig::TurntableState::unknown_position);
   EXPECT_THAT(refusal([&] { table->home(); }), testing::AnyOf(HasSubstr("plug"), HasSubstr("start")));
   table->stop();  // nothing is there to be stopped, and nothing fails
-  rig::SimulatedMotor motor(rig.bench, rig.clock, rig.kStepsPerDeg);
-  rig.port = rig::make_simulated_port(protocol() == Protocol::grbl ? rig::make_simulated_grbl(motor, rig.clock, true)
-                                                                   : rig::make_simulated_zaber(motor));
+  rig.power_on_another();
   server = rig::serve_on_pty(rig.port);
   table->home();
   table->move_to(30 * kDegree);
@@ -240,7 +238,7 @@ TEST_P(Wire, APlugPulledInTheMiddleOfAMoveIsSaidAndAnotherPortIsFoundForHoming) 
 }
 
 TEST_P(Wire, SilenceInTheMiddleOfAMoveIsATimeoutAndNoPulledPlug) {
-  const auto home_by = protocol() == Protocol::grbl ? rig::HomeBy::here : rig::HomeBy::home_switch;
+  const auto home_by = protocol() == Protocol::zaber ? rig::HomeBy::home_switch : rig::HomeBy::here;
   Rig silent(protocol(), home_by, {{.at_operation = 60, .fault = rig::LineFault::silence}});
   silent.setup.reply_timeout_s = 0.4;
   silent.open_line = [this] { return open_line(line(), server->path()); };

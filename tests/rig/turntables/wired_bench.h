@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <ostream>
 #include <string>
 
@@ -14,11 +15,12 @@
 #include "rig/turntables/controllers.h"
 #include "rig/turntables/stepper_turntable.h"
 #include "tests/rig/devices/eventful_clock.h"
+#include "tests/support/documented_firmware.h"
 
-enum class Protocol { grbl, zaber };
+enum class Protocol { grbl, documented_grbl, zaber };
 
 inline std::ostream& operator<<(std::ostream& out, Protocol protocol) {
-  return out << (protocol == Protocol::grbl ? "Grbl" : "Zaber");
+  return out << (protocol == Protocol::grbl ? "Grbl" : protocol == Protocol::zaber ? "Zaber" : "DocumentedGrbl");
 }
 
 template <typename ClockKind>
@@ -36,16 +38,23 @@ struct WiredBench {
     setup.steps_per_deg = kStepsPerDeg;
     setup.home_by = stepper.home_by = home_by;
     bench.turn_platform(50 * rig::kDegree);  // where somebody left the platform
-    rig::SimulatedMotor motor(bench, clock, kStepsPerDeg);
-    const bool with_switch = home_by == rig::HomeBy::home_switch;
-    port = rig::make_simulated_port(which == Protocol::grbl ? rig::make_simulated_grbl(motor, clock, with_switch)
-                                                            : rig::make_simulated_zaber(motor),
-                                    std::move(faults));
+    power_on_another(std::move(faults));
+  }
+
+  // Puts another controller in the place of the one before, if any: it counts from where the platform stands.
+  void power_on_another(rig::LineFaultPlan faults = {}) {
+    const rig::SimulatedMotor motor(bench, clock, kStepsPerDeg);
+    const bool with_switch = setup.home_by == rig::HomeBy::home_switch;
+    const bool at_once = !faults.empty();
+    auto firmware = protocol == Protocol::grbl    ? rig::make_simulated_grbl(motor, clock, with_switch)
+                    : protocol == Protocol::zaber ? rig::make_simulated_zaber(motor)
+                                                  : make_documented_firmware(bench, clock, with_switch, at_once);
+    port = rig::make_simulated_port(std::move(firmware), std::move(faults));
   }
 
   std::shared_ptr<rig::MotionController> connect(std::shared_ptr<rig::ByteLine> line) {
-    return protocol == Protocol::grbl ? rig::connect_grbl(std::move(line), clock, setup)
-                                      : rig::connect_zaber(std::move(line), clock, setup);
+    return protocol == Protocol::zaber ? rig::connect_zaber(std::move(line), clock, setup)
+                                       : rig::connect_grbl(std::move(line), clock, setup);
   }
 
   std::unique_ptr<rig::Turntable> make_turntable() {
@@ -53,6 +62,8 @@ struct WiredBench {
   }
 
   double true_angle_rad() const { return bench.state().platform_angle_rad; }
+  // How far the platform stands from an angle, whole turns apart: a homing in one direction may end a turn further on.
+  double off_rad(double angle_rad) const { return std::remainder(true_angle_rad() - angle_rad, 2 * std::numbers::pi); }
 
   Protocol protocol;
   ClockKind clock = make_clock();
