@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-struct HomeHere : testing::Test {
+struct HomeHere : testing::TestWithParam<Board> {
   HomeHere() {
     json calibration = station::read_json_file(std::string(FIXTURES_DIR) + "/calibrations/simulated.json");
     calibration["utc"] = rig::SystemClock().utc();  // it must not be too old
@@ -44,10 +44,13 @@ struct HomeHere : testing::Test {
         found.push_back(record["data"]);
     return found;
   }
-  Lab lab{Board::grbl_here, kLeftNearDeg};
+  Lab lab{GetParam(), kLeftNearDeg};
 };
 
-TEST_F(HomeHere, ACaptureThatWasPausedElsewhereGoesOnFromThereAndEndsAtZero) {
+INSTANTIATE_TEST_SUITE_P(OnBoth, HomeHere, testing::Values(Board::grbl_here, Board::documented_here),
+                         [](const auto& board) { return is_documented(board.param) ? "DocumentedGrbl" : "Grbl"; });
+
+TEST_P(HomeHere, ACaptureThatWasPausedElsewhereGoesOnFromThereAndEndsAtZero) {
   const pid_t first = lab.start(capture());
   ASSERT_TRUE(turns(lab, 3, first));
   while (std::abs(lab.angle_deg()) < 10 && !has_ended(first)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -62,7 +65,7 @@ TEST_F(HomeHere, ACaptureThatWasPausedElsewhereGoesOnFromThereAndEndsAtZero) {
   EXPECT_EQ(events("stop").back().at("outcome"), "complete") << events("stop").back();
 }
 
-TEST_F(HomeHere, AStopOnTheWayBackToZeroLeavesTheSessionComplete) {
+TEST_P(HomeHere, AStopOnTheWayBackToZeroLeavesTheSessionComplete) {
   const pid_t process = lab.start(capture());
   const auto complete = [&] {
     const auto stops = events("stop");
@@ -82,7 +85,7 @@ TEST_F(HomeHere, AStopOnTheWayBackToZeroLeavesTheSessionComplete) {
 }
 
 // The board takes a second and a half to stand.
-TEST_F(HomeHere, AStopAtOnceWaitsUntilThePlatformStands) {
+TEST_P(HomeHere, AStopAtOnceWaitsUntilThePlatformStands) {
   const pid_t process = lab.start(capture());
   ASSERT_TRUE(turns(lab, 3, process));
   const double from_deg = lab.angle_deg();
@@ -94,13 +97,13 @@ TEST_F(HomeHere, AStopAtOnceWaitsUntilThePlatformStands) {
   EXPECT_NEAR(lab.remembered_deg().value_or(999), lab.angle_deg(), 0.03);
 }
 
-TEST_F(HomeHere, SomebodyWhoSaysThatItStandsAtItsMarkIsBelieved) {
+TEST_P(HomeHere, SomebodyWhoSaysThatItStandsAtItsMarkIsBelieved) {
   EXPECT_EQ(lab.run({"home", "--rig", lab.rig_file(), "--mark"}), 0);
   EXPECT_NEAR(lab.angle_deg(), kLeftNearDeg, 0.03) << "it is not turned";
   EXPECT_NEAR(lab.remembered_deg().value_or(999), 0, 0.03);
 }
 
-TEST_F(HomeHere, ThePageTurnsItBack) {
+TEST_P(HomeHere, ThePageTurnsItBack) {
   ::setenv("XDG_STATE_HOME", lab.in("state").c_str(), 1);
   station::TechnicianPage page(
       lab.rig_file(), lab.in("workspace"), [] {}, THREADSTATION_PROGRAM);

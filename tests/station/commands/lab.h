@@ -9,12 +9,14 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -25,6 +27,7 @@
 #include "station/documents/reader.h"
 #include "tests/places.h"
 #include "tests/station/commands/program.h"
+#include "tests/support/documented_firmware.h"
 
 namespace station_test {
 
@@ -34,10 +37,20 @@ inline constexpr double kLeftFarDeg = 100, kLeftNearDeg = 3;  // where somebody 
 inline constexpr double kQuick = 4, kSlow = 0.1, kQuickest = 8;
 inline constexpr auto kPatience = std::chrono::seconds(120);
 
-enum class Board { grbl_with_switch, grbl_here, zaber };
+// Both simulations of GRBL: this project's own, and the one that was written from the protocol's documentation alone.
+enum class Board { grbl_with_switch, grbl_here, documented_with_switch, documented_here, zaber };
+inline constexpr int kBoards = 5;
 
-inline const char* name_of(Board board) {
-  return board == Board::zaber ? "Zaber" : board == Board::grbl_here ? "GRBL without a switch" : "GRBL with a switch";
+inline bool is_here(Board board) {
+  return board == Board::grbl_here || board == Board::documented_here;
+}
+inline bool is_documented(Board board) {
+  return board == Board::documented_with_switch || board == Board::documented_here;
+}
+inline std::string name_of(Board board) {
+  if (board == Board::zaber) return "Zaber";
+  return std::string(is_documented(board) ? "documented GRBL" : "GRBL") +
+         (is_here(board) ? " without a switch" : " with a switch");
 }
 
 // The time of a board that this process plays, at a pace of its own. While the thread that plays the board gets no
@@ -70,6 +83,50 @@ class BoardClock final : public rig::Clock {
   double seen_s_ = real_.monotonic_s(), passed_s_ = 0, pace_ = kQuick;
 };
 
+// A port whose board somebody may switch off, to turn the platform by hand and to switch it on again.
+class AttendedPort final : public rig::SimulatedPort {
+ public:
+  using PowerOn = std::function<std::shared_ptr<rig::SimulatedPort>(std::optional<double> turned_to_deg)>;
+  explicit AttendedPort(PowerOn another) : another_(std::move(another)), port_(another_(std::nullopt)) {}
+
+  void power_on() override { port()->power_on(); }
+  void opened() override {
+    {
+      const std::lock_guard hold(mutex_);
+      if (++openings_ == turned_at_opening_) port_ = another_(turned_to_deg_);
+    }
+    port()->opened();
+  }
+  void receive(std::string_view bytes) override { port()->receive(bytes); }
+  std::string transmit() override { return port()->transmit(); }
+  void unplug() override { port()->unplug(); }
+  bool plugged() override { return port()->plugged(); }
+  int operations() override { return port()->operations(); }
+
+  int openings() const {
+    const std::lock_guard hold(mutex_);
+    return openings_;
+  }
+  // By hand, right before a program opens the port for the Nth time.
+  void turn_before_opening(int opening, double to_deg) {
+    const std::lock_guard hold(mutex_);
+    turned_at_opening_ = opening;
+    turned_to_deg_ = to_deg;
+  }
+
+ private:
+  std::shared_ptr<rig::SimulatedPort> port() const {
+    const std::lock_guard hold(mutex_);
+    return port_;
+  }
+
+  PowerOn another_;
+  mutable std::mutex mutex_;  // guards what follows
+  std::shared_ptr<rig::SimulatedPort> port_;
+  int openings_ = 0, turned_at_opening_ = 0;
+  double turned_to_deg_ = 0;
+};
+
 // A bench whose devices are found at ports, and the rig file that names them.
 class Lab {
  public:
@@ -78,7 +135,7 @@ class Lab {
     document_ = station::read_json_file(
         fixtures + (board == Board::zaber ? "/rigs/simulated_wire_zaber.json" : "/rigs/simulated_wire_grbl.json"));
     document_["simulation"]["turntable"]["scale"] = 1;
-    if (board == Board::grbl_here) document_["turntable_setup"]["home"] = "here";
+    if (is_here(board)) document_["turntable_setup"]["home"] = "here";
     const station::RigFile served = station::parse_rig(document_, "the bench");
     // Exposures are over at once, or calibrations would take minutes; the date is the present one.
     const auto date = std::chrono::system_clock::now().time_since_epoch();
@@ -87,7 +144,12 @@ class Lab {
       return cv::Mat3f(state.lens.height_px, state.lens.width_px, cv::Vec3f::all(0.1F));
     });
     devices_.bench->turn_platform(left_at_deg * station::kDegree);
-    port_ = station::start_firmware(served, *devices_.bench, *board_clock_);
+    port_ = std::make_shared<AttendedPort>([this, board, served](std::optional<double> turned_to_deg) {
+      if (turned_to_deg) devices_.bench->turn_platform(*turned_to_deg * station::kDegree);
+      return is_documented(board)
+                 ? rig::make_simulated_port(make_documented_firmware(*devices_.bench, *board_clock_, !is_here(board)))
+                 : station::start_firmware(served, *devices_.bench, *board_clock_);
+    });
     devices_.simulated_wire = rig::serve_on_pty(port_);
     station::start_simulated_camera(served, devices_);
     const std::string camera = std::to_string(devices_.simulated_camera.network->port());
@@ -102,7 +164,7 @@ class Lab {
     document_["name"] = station::read_json_file(fixtures + "/rigs/simulated.json")["name"];  // of the calibration's rig
     station::write_json_file(rig_file(), document_);
     std::ofstream(folder_ / "answers") << std::string(10000, '\n');
-    if (board == Board::grbl_here)
+    if (is_here(board))
       station::remember_platform(memory_file(), nullptr)
           ->keep({.steps = 0, .angle_rad = left_at_deg * station::kDegree});
   }
@@ -114,6 +176,8 @@ class Lab {
     return devices_.bench->state().platform_angle_rad / station::kDegree;
   }
   double board_time_s() const { return board_clock_->passed_s(); }
+  int openings() const { return port_->openings(); }  // of its turntable's port
+  void turn_by_hand_before_opening(int opening, double to_deg) const { port_->turn_before_opening(opening, to_deg); }
   void set_pace(double pace) const { board_clock_->set_pace(pace); }
   std::map<std::string, std::string> environment() const { return {{"XDG_STATE_HOME", in("state")}}; }
 
@@ -140,7 +204,7 @@ class Lab {
   nlohmann::json document_;
   std::unique_ptr<BoardClock> board_clock_ = std::make_unique<BoardClock>();
   station::RigDevices devices_;
-  std::shared_ptr<rig::SimulatedPort> port_;
+  std::shared_ptr<AttendedPort> port_;
 };
 
 inline bool has_ended(pid_t process) {

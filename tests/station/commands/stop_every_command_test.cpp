@@ -8,6 +8,7 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -33,7 +34,7 @@ using namespace station_test;
 
 constexpr double kMostWayDeg = 5, kMostWayOfKilledDeg = 24;
 constexpr double kSameDeg = 0.03;
-constexpr int kEndings = 5, kBoards = 3, kMotions = 4;
+constexpr int kEndings = 5, kMotions = 4;
 constexpr int kLanes = 3;  // most of the time is waiting
 
 enum class Ending { interrupt, terminate, hang_up, twice, kill };
@@ -71,7 +72,11 @@ std::vector<std::string> turning_commands() {
 struct Way {
   std::string command;
   std::vector<std::string> besides{};  // options that take the place of those that begin something new
-  std::string name() const { return command + (besides.empty() ? "" : " " + besides.front()); }
+  int opening = 1;                     // its motions count since it has opened the turntable for so many times
+  std::string name() const {
+    return command + (besides.empty() ? "" : " " + besides.front()) +
+           (opening == 1 ? "" : ", turntable opened " + std::to_string(opening) + " times");
+  }
   bool goes_on() const { return !besides.empty() && (besides.front() == "--resume" || besides.front() == "--reshoot"); }
 };
 
@@ -114,7 +119,7 @@ void end(pid_t process, Ending ending) {
 
 // What must hold behind a stop: the platform stands where the program says, and the next one finds its angle 0 or asks.
 std::string problem_afterwards(const Lab& lab, Board board, Ending ending, double stood_deg) {
-  if (board == Board::grbl_here && ending != Ending::kill) {
+  if (is_here(board) && ending != Ending::kill) {
     const auto remembered = lab.remembered_deg();
     if (!remembered || std::abs(*remembered - stood_deg) > kSameDeg)
       return "it stands at " + std::to_string(stood_deg) + " deg and remembers " +
@@ -124,11 +129,12 @@ std::string problem_afterwards(const Lab& lab, Board board, Ending ending, doubl
   const ProgramResult home = run_shell("XDG_STATE_HOME='" + lab.in("state").string() + "' " + THREADSTATION_PROGRAM +
                                        " home --rig '" + lab.rig_file().string() + "' < /dev/null");
   const bool done = home.status == 0;
-  const double angle_deg = lab.angle_deg();
-  const bool may_ask = board == Board::grbl_here && ending == Ending::kill;
+  // A switch is found from one side, perhaps a turn further on.
+  const double angle_deg = is_here(board) ? lab.angle_deg() : std::remainder(lab.angle_deg(), 360);
+  const bool may_ask = is_here(board) && ending == Ending::kill;
   if (done && std::abs(angle_deg) > kSameDeg) return "its home is at " + std::to_string(angle_deg) + " deg";
   if (!done && !may_ask) return "it is not homed any more: " + home.error;
-  if (!done && angle_deg != stood_deg) return "it asks where the platform stands and turns it";
+  if (!done && lab.angle_deg() != stood_deg) return "it asks where the platform stands and turns it";
   return "";
 }
 
@@ -146,7 +152,10 @@ Stopped stop(const Way& way, Board board, Ending ending, int times, double delay
     ends(process);
     wait_for(process);
   }
+  // When it opens the turntable once more, somebody has turned it meanwhile.
+  if (way.opening > 1) lab.turn_by_hand_before_opening(way.opening, kLeftFarDeg);
   const pid_t process = lab.start(arguments_for(way, lab));
+  while (lab.openings() < way.opening && !has_ended(process)) std::this_thread::sleep_for(1ms);
   if (!turns(lab, times, process)) {
     kill(process, SIGKILL);
     wait_for(process);
@@ -169,7 +178,7 @@ Stopped stop(const Way& way, Board board, Ending ending, int times, double delay
   const double stood_deg = wait_until_it_stands(lab);
   result.way_deg = std::abs(stood_deg - told_deg);
   // A controller that looks for its switch when its program is killed finds it, and stands there.
-  const bool found_home = ending == Ending::kill && board != Board::grbl_here && std::abs(stood_deg) < 0.1;
+  const bool found_home = ending == Ending::kill && !is_here(board) && std::abs(std::remainder(stood_deg, 360)) < 0.1;
   if (found_home) result.way_deg = 0;
   const double most_deg = ending == Ending::kill ? kMostWayOfKilledDeg : kMostWayDeg;
   if (result.way_deg > most_deg + late_deg)
@@ -184,8 +193,8 @@ struct Case {
   Ending ending;
 };
 
-// Every command that the program lists on every board with every ending; and the further ways of capture with each of
-// them at least once.
+// Every command that the program lists on every board with every ending; and the further ways of capture, and check's
+// turn to its test picture, with each of them at least once. (Without a switch that one turns nothing.)
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   for (int ending = 0; ending < kEndings; ++ending) {
@@ -196,6 +205,9 @@ std::vector<Case> all_cases() {
     const auto board = static_cast<Board>(ending % kBoards);
     for (const auto& besides : {std::vector<std::string>{"--queue", "spools.csv"}, {"--resume"}, {"--reshoot", "1"}})
       cases.push_back({{"capture", besides}, board, static_cast<Ending>(ending)});
+    constexpr std::array kWithSwitch{Board::grbl_with_switch, Board::documented_with_switch, Board::zaber};
+    const Board found = kWithSwitch.at(static_cast<std::size_t>(ending) % kWithSwitch.size());
+    cases.push_back({{.command = "check", .opening = 2}, found, static_cast<Ending>(ending)});
   }
   return cases;
 }
@@ -213,7 +225,7 @@ TEST(StopEveryCommand, TheProgramListsThoseThatTurnThePlatform) {
 
 // Whoever presses Escape in a browser posts this.
 TEST(StopEveryCommand, ThePagesEmergencyStopEndsACheckThatTurns) {
-  for (const Board board : {Board::grbl_with_switch, Board::zaber}) {
+  for (const Board board : {Board::grbl_with_switch, Board::documented_with_switch, Board::zaber}) {
     const Lab lab(board);
     station::TechnicianPage page(
         lab.rig_file(), lab.in("workspace"), [] {}, THREADSTATION_PROGRAM);
@@ -256,7 +268,7 @@ TEST(StopEveryCommand, AtRandomMomentsNeverGoesOnForMoreThanFiveDegreesNorLosesT
       std::unique_lock hold(drawing);
       if (drawn == stops) return;
       const auto& [way, board, ending] = cases[static_cast<std::size_t>(drawn++) % cases.size()];
-      const int times = std::uniform_int_distribution(1, kMotions)(random);
+      const int times = way.opening > 1 ? 1 : std::uniform_int_distribution(1, kMotions)(random);
       const double delay_s = std::uniform_real_distribution(0.0, 1.5)(random);
       hold.unlock();
       Stopped result = stop(way, board, ending, times, delay_s);
