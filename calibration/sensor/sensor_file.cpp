@@ -2,10 +2,13 @@
 
 #include <libraw/libraw.h>
 
+#include <algorithm>
+#include <array>
 #include <ctime>
 #include <fstream>
 #include <memory>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -51,21 +54,46 @@ cv::Mat1w visible_mosaic(const LibRaw& raw) {
   return mosaic;
 }
 
-// Refuses Sony's compressed files (tag 259 = 32767, 8 bits a pixel). They went through a tone curve to 11 bits and keep
-// 16 pixels as two extremes and 7-bit steps between them, which makes the dark beside bright threads wrong.
+// Refuses files that have lost values. Sony's compressed ones (tag 259 = 32767, 8 bits a pixel) went through a tone curve
+// to 11 bits and keep 16 pixels as two extremes and 7-bit steps between them, which makes the dark beside bright threads
+// wrong. Nikon's lossy ones went through a curve, too, and its High Efficiency ones, which LibRaw 0.20 cannot read,
+// through a wavelet transform; the maker note tells (tag 0x0093, by the numbers that ExifTool gives).
 void refuse_lossy(LibRaw& raw, const std::string& name) {
   libraw_decoder_info_t decoder{};
   require(raw.get_decoder_info(&decoder), name, "looking for a decoder");
   if (decoder.decoder_flags & LIBRAW_DECODER_SONYARW2)
     refuse(name, "is a compressed RAW (11 bits, steps between neighbours)",
            "set the camera's RAW File Type to Uncompressed and take it again");
+  constexpr std::array<unsigned, 4> kLossyNef{1, 4, 13, 14};  // lossy of two types, High Efficiency and its star
+  if (std::ranges::find(kLossyNef, raw.imgdata.makernotes.nikon.NEFCompression) != kLossyNef.end())
+    refuse(name, "is a NEF whose compression loses values",
+           "set the camera's NEF (RAW) compression to Lossless compressed or Uncompressed and take it again");
+}
+
+// Refuses Canon's C-RAW, of which LibRaw 0.20 says nothing. Its mosaic of four planes is kept as wavelets, whose number
+// of levels the header has ("CMP1", by the layout that LibRaw reads); there are none in a lossless CR3. Every CR2 with a
+// mosaic is lossless.
+void refuse_canon_lossy(std::span<const std::byte> bytes, const std::string& name) {
+  constexpr std::string_view kBrand = "ftypcrx ", kHeader = "CMP1";
+  constexpr std::size_t kBrandAt = 4, kPlanesAt = 29, kLevelsAt = 30;
+  constexpr unsigned kMosaicPlanes = 4;
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (!text.substr(std::min(kBrandAt, text.size())).starts_with(kBrand)) return;
+  for (std::size_t at = text.find(kHeader); at != std::string_view::npos && at + kLevelsAt < text.size();
+       at = text.find(kHeader, at + 1)) {
+    const auto byte = [&](std::size_t offset) { return std::to_integer<unsigned>(bytes[at + offset]); };
+    if (byte(kPlanesAt) >> 4U == kMosaicPlanes && (byte(kLevelsAt) & 0xfU) > 0)
+      refuse(name, "is a C-RAW, whose compression loses values",
+             "set the camera's image quality to RAW and take it again");
+    if (byte(kPlanesAt) >> 4U == kMosaicPlanes) return;  // what follows is pixels
+  }
 }
 
 SensorPicture unpack(LibRaw& raw, const std::string& name) {
   refuse_lossy(raw, name);
   require(raw.unpack(), name, "unpacking");
   if (raw.imgdata.rawdata.raw_image == nullptr || raw.imgdata.idata.filters < 1000)
-    refuse(name, "holds no 2 x 2 colour mosaic", "set the camera to uncompressed RAW");
+    refuse(name, "holds no 2 x 2 colour mosaic", "set the camera to RAW of full size, uncompressed or lossless");
   SensorPicture picture;
   picture.mosaic = visible_mosaic(raw);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -94,6 +122,7 @@ SensorPicture unpack(LibRaw& raw, const std::string& name) {
 
 SensorPicture read_sensor_bytes(std::span<const std::byte> bytes, const std::string& name_for_errors) {
   if (bytes.empty()) refuse(name_for_errors, "is empty", "take the picture again");
+  refuse_canon_lossy(bytes, name_for_errors);
   const auto raw = std::make_unique<LibRaw>(LIBRAW_OPIONS_NO_DATAERR_CALLBACK);
   // LibRaw takes a non-const pointer and only reads from it.
   void* data = const_cast<std::byte*>(bytes.data());

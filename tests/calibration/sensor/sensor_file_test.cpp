@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
+#include <utility>
 
 #include "rig/simulated/raw_writer.h"
 
@@ -30,6 +32,13 @@ std::string error_of(std::span<const std::byte> bytes) {
     return error.what();
   }
   return "";
+}
+
+// The bytes of a number, the lowest first.
+std::vector<std::byte> little_endian(std::uint64_t value, int count) {
+  std::vector<std::byte> out;
+  for (int i = 0; i < count; ++i) out.push_back(static_cast<std::byte>(value >> (8 * i)));
+  return out;
 }
 
 TEST(SensorFile, TheMosaicComesBackAsItWasRecordedBlackLevelIncluded) {
@@ -84,17 +93,12 @@ TEST(SensorFile, AFileThatIsNoRawPictureGivesOneLineThatNamesIt) {
 TEST(SensorFile, ACompressedFileIsRefusedWithTheMenuToChange) {
   std::vector<std::byte> bytes = rig::encode_raw(frame());
   const auto set_entry = [&](std::uint16_t tag, std::uint16_t type, std::uint32_t from, std::uint32_t to) {
-    const auto number = [&](std::uint64_t value, int count) {
-      std::vector<std::byte> out;
-      for (int i = 0; i < count; ++i) out.push_back(static_cast<std::byte>(value >> (8 * i)));
-      return out;
-    };
-    std::vector<std::byte> entry = number(tag, 2);
-    for (const auto& part : {number(type, 2), number(1, 4), number(from, 4)})
+    std::vector<std::byte> entry = little_endian(tag, 2);
+    for (const auto& part : {little_endian(type, 2), little_endian(1, 4), little_endian(from, 4)})
       entry.insert(entry.end(), part.begin(), part.end());
     const auto found = std::search(bytes.begin(), bytes.end(), entry.begin(), entry.end());
     ASSERT_NE(found, bytes.end()) << "tag " << tag;
-    const std::vector<std::byte> value = number(to, 4);
+    const std::vector<std::byte> value = little_endian(to, 4);
     std::copy(value.begin(), value.end(), found + 8);
   };
   set_entry(259, 3, 1, 32767);
@@ -103,6 +107,66 @@ TEST(SensorFile, ACompressedFileIsRefusedWithTheMenuToChange) {
   EXPECT_NE(error.find("shot.arw"), std::string::npos) << error;
   EXPECT_NE(error.find("compressed"), std::string::npos) << error;
   EXPECT_NE(error.find("Uncompressed"), std::string::npos) << error;
+}
+
+// A Nikon file whose maker note says how it is compressed. The note takes the place of the EXIF serial number.
+std::vector<std::byte> nikon_file(unsigned compression) {
+  constexpr std::uint16_t kSerial = 0xa431, kMakerNote = 0x927c, kUndefined = 7, kShort = 3;
+  rig::RawFrame written = frame();
+  written.make = rig::CameraMake::nikon;
+  std::vector<std::byte> note;
+  const auto append = [&](std::uint64_t value, int count) {
+    for (const std::byte byte : little_endian(value, count)) note.push_back(byte);
+  };
+  for (const char c : std::string_view("Nikon\0\2\x10\0\0", 10)) note.push_back(static_cast<std::byte>(c));
+  append(0x4949, 2);  // a directory of its own, with this one entry
+  append(42, 2);
+  append(8, 4);
+  append(1, 2);
+  append(0x0093, 2);
+  append(kShort, 2);
+  append(1, 4);
+  append(compression, 4);
+  append(0, 4);
+  written.serial = std::string(note.size() - 1, 'S');  // and its end
+  std::vector<std::byte> bytes = rig::encode_raw(written);
+  const std::vector<std::byte> tag = little_endian(kSerial, 2), letter(8, std::byte{'S'});
+  const auto entry = std::search(bytes.begin(), bytes.end(), tag.begin(), tag.end());
+  const auto value = std::search(bytes.begin(), bytes.end(), letter.begin(), letter.end());
+  EXPECT_TRUE(entry != bytes.end() && value != bytes.end());
+  std::ranges::copy(note, value);
+  std::ranges::copy(little_endian(kMakerNote, 2), entry);
+  std::ranges::copy(little_endian(kUndefined, 2), entry + 2);
+  return bytes;
+}
+
+TEST(SensorFile, ANikonFileThatHasLostValuesIsRefusedWithTheMenuToChangeAndALosslessOneIsRead) {
+  for (const unsigned lossy : {1U, 4U, 13U, 14U})
+    EXPECT_NE(error_of(nikon_file(lossy)).find("compression to Lossless compressed or Uncompressed"), std::string::npos)
+        << lossy << error_of(nikon_file(lossy));
+  for (const unsigned lossless : {2U, 3U, 6U}) EXPECT_EQ(error_of(nikon_file(lossless)), "") << lossless;
+}
+
+// The headers of a CR3, without its pixels: that of a preview of three planes, then that of the mosaic.
+std::vector<std::byte> canon_file(int wavelet_levels) {
+  std::vector<std::byte> bytes;
+  const auto append = [&](const std::string& text) {
+    for (const char c : text) bytes.push_back(static_cast<std::byte>(c));
+  };
+  append(std::string("\0\0\0\x18", 4) + "ftypcrx ");
+  for (const auto& [planes, levels] : std::vector<std::pair<int, int>>{{3, 1}, {4, wavelet_levels}}) {
+    append(std::string("\0\0\0\x3c", 4) + "CMP1" + std::string(25, '\0'));
+    append({static_cast<char>(planes << 4), static_cast<char>(levels)});
+    append(std::string(25, '\0'));
+  }
+  return bytes;
+}
+
+TEST(SensorFile, ACanonFileOfWaveletsIsRefusedWithTheMenuToChange) {
+  EXPECT_NE(error_of(canon_file(3)).find("is a C-RAW, whose compression loses values: set the camera's image quality"),
+            std::string::npos)
+      << error_of(canon_file(3));
+  EXPECT_EQ(error_of(canon_file(0)).find("C-RAW"), std::string::npos);
 }
 
 }  // namespace
