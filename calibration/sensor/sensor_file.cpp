@@ -54,10 +54,10 @@ cv::Mat1w visible_mosaic(const LibRaw& raw) {
   return mosaic;
 }
 
-// Refuses files that have lost values. Sony's compressed ones (tag 259 = 32767, 8 bits a pixel) went through a tone curve
-// to 11 bits and keep 16 pixels as two extremes and 7-bit steps between them, which makes the dark beside bright threads
-// wrong. Nikon's lossy ones went through a curve, too, and its High Efficiency ones, which LibRaw 0.20 cannot read,
-// through a wavelet transform; the maker note tells (tag 0x0093, by the numbers that ExifTool gives).
+// Refuses files that have lost values. Sony's compressed ones (tag 259 = 32767, 8 bits a pixel) went through a tone
+// curve to 11 bits and keep 16 pixels as two extremes and 7-bit steps between them, which makes the dark beside bright
+// threads wrong. Nikon's lossy ones went through a curve, too, and its High Efficiency ones, which LibRaw 0.20 cannot
+// read, through a wavelet transform; the maker note tells (tag 0x0093, by the numbers that ExifTool gives).
 void refuse_lossy(LibRaw& raw, const std::string& name) {
   libraw_decoder_info_t decoder{};
   require(raw.get_decoder_info(&decoder), name, "looking for a decoder");
@@ -71,8 +71,8 @@ void refuse_lossy(LibRaw& raw, const std::string& name) {
 }
 
 // Refuses Canon's C-RAW, of which LibRaw 0.20 says nothing. Its mosaic of four planes is kept as wavelets, whose number
-// of levels the header has ("CMP1", by the layout that LibRaw reads); there are none in a lossless CR3. Every CR2 with a
-// mosaic is lossless.
+// of levels the header has ("CMP1", by the layout that LibRaw reads); there are none in a lossless CR3. Every CR2 with
+// a mosaic is lossless.
 void refuse_canon_lossy(std::span<const std::byte> bytes, const std::string& name) {
   constexpr std::string_view kBrand = "ftypcrx ", kHeader = "CMP1";
   constexpr std::size_t kBrandAt = 4, kPlanesAt = 29, kLevelsAt = 30;
