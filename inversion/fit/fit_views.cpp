@@ -3,6 +3,7 @@
 #include <ceres/ceres.h>
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "inversion/fit/loss_terms.h"
@@ -338,6 +339,43 @@ ViewFit fit_best_yarn(const WrappedSpool& spool, const std::vector<View>& views,
   return *std::move(best);
 }
 
+// How well a fit explains the views, its own paths' noise taken out.
+double misfit(const WrappedSpool& spool, const std::vector<View>& views, const ViewFit& fit, std::uint64_t seed) {
+  constexpr int kPaths = 128, kRepetitions = 4;
+  return independent_loss(spool, views, fit, kPaths, kRepetitions, seed).without_noise;
+}
+
+// First the number of fibers is found, then how densely they are packed, each by short fits; then comes the whole fit.
+// It ends without the steps of bias_free.h: a path through a bundle has some ten events, and their products of
+// derivatives say less of the roughness than the paths of the last round do (measured.md).
+ViewFit fit_best_bundle(const WrappedSpool& spool, const std::vector<View>& views, const FitOptions& options) {
+  static const std::vector<int> kShort{64, 128};
+  constexpr double kShareOfShort = 0.5 / (kBundleFiberCounts.size() + kBundlePackings.size() - 1);
+  double done = 0;
+  const auto fit = [&](const BundleFamily& bundle, const std::vector<int>& paths, double share_of_all) {
+    FitOptions one = options;
+    one.paths_per_block = paths;
+    one.without_bias = false;
+    const std::string name = std::to_string(bundle.fiber_count) + " fibers, ";
+    if (options.progress)
+      one.progress = [&, name](const std::string& what, double share) {
+        return options.progress(name + what, done + share * share_of_all);
+      };
+    ViewFit found = fit_family(spool, views, one, bundle, unknowns_of(ScatteringFamily(bundle)).starts);
+    done += share_of_all;
+    return found;
+  };
+  BundleFamily best{};
+  double least = std::numeric_limits<double>::infinity();
+  const auto consider = [&](const BundleFamily& bundle) {
+    const double loss = misfit(spool, views, fit(bundle, kShort, kShareOfShort), options.seed + kSeedStep);
+    if (loss < least) least = loss, best = bundle;
+  };
+  for (const int count : kBundleFiberCounts) consider({count, kBundlePackings.front()});
+  for (std::size_t i = 1; i < kBundlePackings.size(); ++i) consider({best.fiber_count, kBundlePackings[i]});
+  return fit(best, options.paths_per_block, 1 - done);
+}
+
 }  // namespace
 
 FitOptions first_rounds(FitOptions options, std::size_t rounds) {
@@ -362,6 +400,8 @@ ViewFit fit_views(const WrappedSpool& spool, const std::vector<View>& views, con
   switch (options.model) {
     case ModelKind::yarn:
       return fit_best_yarn(spool, views, options);
+    case ModelKind::bundle:
+      return fit_best_bundle(spool, views, options);
     case ModelKind::paper:
       return fit_family(spool, views, options, PaperFamily{}, unknowns_of(PaperFamily{}).starts);
     case ModelKind::fiber:

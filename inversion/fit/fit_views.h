@@ -31,7 +31,7 @@
 
 namespace inversion {
 
-enum class ModelKind { thread, fiber, yarn, paper };
+enum class ModelKind { thread, fiber, yarn, paper, bundle };
 enum class Solver { levenberg_marquardt, adam };
 
 struct FitOptions {

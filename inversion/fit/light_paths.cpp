@@ -7,6 +7,7 @@
 #include "renderer/picture/sampler.h"
 #include "renderer/trace/lights.h"
 #include "renderer/trace/path_vertex.h"
+#include "renderer/trace/scene_walk.h"
 
 namespace inversion {
 namespace {
@@ -25,21 +26,22 @@ class PathRecorder {
   PathRecorder(const renderer::RayScene& rays, const View& view, const renderer::ScatteringModel& traced_with)
       : rays_(rays),
         traced_with_(traced_with),
-        model_(renderer::prepare_curve_models({traced_with}).front()),
+        models_(renderer::prepare_curve_models({traced_with})),
         lights_({.lights = {unit_lamp(view.light)}}) {}
 
   void record(renderer::CameraRay camera_ray, renderer::Sampler& sampler, std::vector<PathEvent>& events) const {
     if (!renderer::advance_to(rays_.bounds(), camera_ray)) return;
     renderer::Ray ray{camera_ray.origin.cast<float>(), camera_ray.direction.cast<float>()};
+    renderer::SceneWalk walk(rays_, models_);
     float throughput = 1;
     for (int vertex = 0; vertex < renderer::kMostVertices && throughput > 0; ++vertex) {
-      const std::optional<renderer::SurfaceHit> hit = rays_.intersect(ray);
+      const std::optional<renderer::SurfaceHit> hit = walk.next(ray, sampler);
       const auto* curve = hit ? std::get_if<renderer::CurvePoint>(&hit->point) : nullptr;
       if (!curve) {
         if (vertex > 0) events.back().inverse_next_pdf = 0;  // nothing there: nothing to shade
         return;
       }
-      ray = record_event(*curve, ray.direction, vertex + 1 >= renderer::kFirstRouletteVertex, sampler, throughput,
+      ray = record_event(*curve, walk, ray.direction, vertex + 1 >= renderer::kFirstRouletteVertex, sampler, throughput,
                          events);
     }
   }
@@ -51,15 +53,16 @@ class PathRecorder {
   }
 
   // Appends the event; returns the ray that goes on and scales its throughput, which is 0 where the path ends.
-  renderer::Ray record_event(const renderer::CurvePoint& curve, const Vector3f& arriving, bool roulette,
-                             renderer::Sampler& sampler, float& throughput, std::vector<PathEvent>& events) const {
+  renderer::Ray record_event(const renderer::CurvePoint& curve, const renderer::SceneWalk& walk,
+                             const Vector3f& arriving, bool roulette, renderer::Sampler& sampler, float& throughput,
+                             std::vector<PathEvent>& events) const {
     const Eigen::Matrix3f frame = renderer::local_from_world(curve);
     const Vector3f wo = frame * -arriving;
-    const CurveLobes<float> lobes = renderer::lobes_at(model_, curve, frame, -arriving);
-    const renderer::ThreadExits exits(renderer::exit_of(model_), curve, -arriving);
+    const CurveLobes<float> lobes = renderer::lobes_at(models_.front(), curve, frame, -arriving);
+    const renderer::ThreadExits exits(renderer::exit_of(models_.front()), curve, -arriving);
     PathEvent event{};
     event.point = point_at(renderer::viewing_offset(wo), wo);
-    event.light_weight = record_light(curve.position, exits, frame, lobes, sampler, event.light);
+    event.light_weight = record_light(curve.position, walk, exits, frame, lobes, sampler, event.light);
 
     const Eigen::Vector2f u = sampler.next_2d(), u_angles = sampler.next_2d();
     const Vector3f next = lobes.sample(u.x(), u.y(), u_angles.x(), u_angles.y());
@@ -94,12 +97,16 @@ class PathRecorder {
   static float way_inside(const renderer::FiberParameters& fiber, float h, float sine, float cosine) {
     return renderer::InnerChord<float>(h, sine, cosine, static_cast<float>(fiber.eta)).length;
   }
+  static float way_inside(const renderer::BundleParameters& bundle, float h, float sine, float cosine) {
+    return way_inside(bundle.fiber, h, sine, cosine);
+  }
   static float way_inside(const renderer::ThreadParameters&, float h, float sine, float cosine) {
     return renderer::InnerChord<float>(h, sine, cosine, static_cast<float>(renderer::kThreadEta)).length;
   }
 
-  float record_light(const Vector3f& position, const renderer::ThreadExits& exits, const Eigen::Matrix3f& frame,
-                     const CurveLobes<float>& lobes, renderer::Sampler& sampler, PathDirection& direction) const {
+  float record_light(const Vector3f& position, const renderer::SceneWalk& walk, const renderer::ThreadExits& exits,
+                     const Eigen::Matrix3f& frame, const CurveLobes<float>& lobes, renderer::Sampler& sampler,
+                     PathDirection& direction) const {
     const Eigen::Vector2f u = sampler.next_2d();
     const renderer::LightExit exit = exits.near(lights_.sample(position.cast<double>(), 0, u)->cast<float>(), sampler);
     const Vector3d origin = exit.place.cast<double>();
@@ -109,13 +116,13 @@ class PathRecorder {
     direction = stored(lobes.angles(frame * wi->cast<float>()));
     const float share = exits.share(exit, wi->cast<float>());
     const auto [ray, lead] = exits.ray(exit, wi->cast<float>());
-    if (!(share > 0) || rays_.occluded(ray, lead + static_cast<float>(light->distance))) return 0;
+    if (!(share > 0) || walk.occluded(ray, lead + static_cast<float>(light->distance), sampler)) return 0;
     return share * light->radiance[0] / static_cast<float>(lights_.pdf(origin, *wi));
   }
 
   const renderer::RayScene& rays_;
   renderer::ScatteringModel traced_with_;
-  renderer::CurveModel model_;
+  std::vector<renderer::CurveModel> models_;  // the one
   renderer::Lights lights_;
 };
 

@@ -90,6 +90,12 @@ FamilyUnknowns unknowns(const YarnFamily&) {
           .starts = {vector_of({0.3, 0.3, 0.3, 0.3, 0.3, 0.3}), vector_of({1, 1, 1, 0.5, 0.2, 0.6})}};
 }
 
+FamilyUnknowns unknowns(const BundleFamily&) {
+  FamilyUnknowns of = unknowns(FiberFamily{});
+  of.starts = {vector_of({0.1, 0.1, 0.1, 0.3, 0.3})};
+  return of;
+}
+
 // The unknowns are the thread's parameters. The paper clamps r0c and r1a to be non-negative and roughnesses and
 // absorption have a range of their own; the other energies are free.
 FamilyUnknowns unknowns(const PaperFamily&) {
@@ -125,6 +131,12 @@ renderer::FiberParameters parameters(const FiberFamily&, const VectorXd& u) {
   return {.sigma_a = u.head<3>(), .beta_m = u[3], .beta_n = u[4]};
 }
 
+renderer::BundleParameters parameters(const BundleFamily& family, const VectorXd& u) {
+  return {.fiber_count = family.fiber_count,
+          .radius_ratio = std::sqrt(family.packing / family.fiber_count),
+          .fiber = parameters(FiberFamily{}, u)};
+}
+
 renderer::YarnParameters parameters(const YarnFamily& family, const VectorXd& u) {
   return {.fiber_count = family.fiber_count,
           .radius_ratio = std::sqrt(kYarnPacking / family.fiber_count),
@@ -140,6 +152,11 @@ BlockShader shader(const ThreadFamily&, const VectorXd& u) {
 
 BlockShader shader(const PaperFamily& family, const VectorXd& u) {
   return ThreadShader{block_model(parameters(family, u)), ThreadJacobian::Identity()};
+}
+
+// Bundles are shaded fiber by fiber.
+BlockShader shader(const BundleFamily& family, const VectorXd& u) {
+  return block_model(parameters(family, u).fiber);
 }
 
 template <class Family>

@@ -1,11 +1,14 @@
 // A family of scattering models as a fit sees it: a vector of unknowns with bounds and starts, and the shading of
-// recorded light paths with its slopes. There are four: the thread model (the default) and, to compare it with, a
-// single fiber, a yarn aggregated analytically, and the thread model as the paper fits it.
+// recorded light paths with its slopes. There are five: the thread model (the default); a thread described by its
+// fibers; and, to compare with, a single fiber, a yarn aggregated analytically, and the thread model as the paper fits
+// it.
 //
 //   family | unknowns | what they are
 //   thread | 16       | thread_unknowns.h
 //   fiber  | 5        | sigma_a (R G B, per thread radius), beta_m, beta_n; index of refraction 1.55
 //   yarn   | 6        | sigma_a (R G B, per thread radius), beta_r, beta_tt, gamma_tt; the number of fibers is given
+//   bundle | 5        | sigma_a (R G B, per fiber radius), beta_m, beta_n of a fiber; index of refraction 1.55; the
+//          |          | number of fibers and how densely they are packed are given
 //   paper  | 16       | the thread's parameters as printed (renderer/scattering/thread.h); energies may be negative,
 //          |          | and light leaves where it came in
 #pragma once
@@ -34,7 +37,11 @@ struct YarnFamily {
   int fiber_count;
 };
 struct PaperFamily {};
-using ScatteringFamily = std::variant<ThreadFamily, FiberFamily, YarnFamily, PaperFamily>;
+struct BundleFamily {
+  int fiber_count;
+  double packing;  // share of the thread's cross-section that its fibers fill
+};
+using ScatteringFamily = std::variant<ThreadFamily, FiberFamily, YarnFamily, PaperFamily, BundleFamily>;
 
 struct FamilyUnknowns {
   std::vector<std::string> names;
@@ -73,5 +80,9 @@ std::vector<renderer::ThreadParameters> other_starting_threads();
 inline constexpr std::array<int, 5> kYarnFiberCounts{5, 10, 20, 40, 80};
 // The share of a yarn's cross-section that its fibers fill.
 inline constexpr double kYarnPacking = 0.45;
+
+// What a bundle is fitted with; the best fit is kept. The first packing is as dense as random placement gets.
+inline constexpr std::array<int, 5> kBundleFiberCounts{5, 10, 20, 40, 80};
+inline constexpr std::array<double, 4> kBundlePackings{0.45, 0.38, 0.3, 0.2};
 
 }  // namespace inversion

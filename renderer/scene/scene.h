@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "renderer/scattering/bundle.h"
 #include "renderer/scattering/fiber.h"
 #include "renderer/scattering/thread.h"
 #include "renderer/scattering/yarn.h"
@@ -21,7 +22,7 @@ namespace renderer {
 
 // How a curve scatters, one of a closed set: the parameters of a fiber, a thread or a yarn, whose models (FiberModel,
 // ThreadModel, YarnModel) evaluate and sample them.
-using ScatteringModel = std::variant<FiberParameters, ThreadParameters, YarnParameters>;
+using ScatteringModel = std::variant<FiberParameters, ThreadParameters, YarnParameters, BundleParameters>;
 
 // Round uniform cubic B-spline curves that share one scattering model.
 struct CurveSet {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "renderer/scene/cloth_shape.h"
+#include "renderer/trace/scene_walk.h"
 
 namespace renderer {
 namespace {
@@ -47,12 +48,14 @@ Array3d ClothReflectance::sample(const Vector3d& wi, const Vector3d& wo, Sampler
   const Vector3f light = wi.cast<float>();
   Ray ray{(place + wo * (above_mm_ / wo.z())).cast<float>(), -wo.cast<float>()};
   Array3f sum = Array3f::Zero(), throughput = Array3f::Ones();
+  SceneWalk walk(rays_, models_);
   for (int vertices = 0; vertices < kMostVertices; ++vertices) {
-    const std::optional<SurfaceHit> hit = rays_.intersect(ray);
+    const std::optional<SurfaceHit> hit = walk.next(ray, sampler);
     if (!hit) break;
     const PathVertex vertex(*hit, -ray.direction, models_);
     const Array3f lit = vertex.evaluate(light).f_cos;
-    if (lit.maxCoeff() > 0 && !rays_.occluded(vertex.ray_toward(light, sampler).ray, kFar_mm)) sum += throughput * lit;
+    if (lit.maxCoeff() > 0 && !walk.occluded(vertex.ray_toward(light, sampler).ray, kFar_mm, sampler))
+      sum += throughput * lit;
     const Vector3f onward = vertex.sample(sampler);
     const ScatteringValue<float> scattering = vertex.evaluate(onward);
     if (!(scattering.pdf > 0)) break;

@@ -9,6 +9,7 @@
 #include "renderer/picture/sampler.h"
 #include "renderer/trace/lights.h"
 #include "renderer/trace/path_vertex.h"
+#include "renderer/trace/scene_walk.h"
 
 namespace renderer {
 namespace {
@@ -36,7 +37,7 @@ struct PathTracer::Impl {
 
   // Each adds the rays that it traces to `traced`.
   Array3f radiance(CameraRay camera_ray, Sampler& sampler, int max_vertices, std::uint64_t& traced) const;
-  Array3f direct_light(const PathVertex& vertex, Sampler& sampler, std::uint64_t& traced) const;
+  Array3f direct_light(const PathVertex& vertex, const SceneWalk& walk, Sampler& sampler) const;
   void add_samples(const PixelRays& pixel_rays, int column, int row, Sampler sampler, int goal, int max_vertices,
                    Film& film, std::uint64_t& traced) const;
 
@@ -46,7 +47,7 @@ struct PathTracer::Impl {
 };
 
 // The light that reaches a vertex directly and goes on along the path, as far as it is light sampling's share.
-Array3f PathTracer::Impl::direct_light(const PathVertex& vertex, Sampler& sampler, std::uint64_t& traced) const {
+Array3f PathTracer::Impl::direct_light(const PathVertex& vertex, const SceneWalk& walk, Sampler& sampler) const {
   const Eigen::Vector2f u = sampler.next_2d();
   const float u_light = lights.size() > 1 ? sampler.next_1d() : 0.0f;
   const std::optional<Vector3d> about = lights.sample(vertex.position().cast<double>(), u_light, u);
@@ -64,9 +65,8 @@ Array3f PathTracer::Impl::direct_light(const PathVertex& vertex, Sampler& sample
   if (!(scattering.f_cos.maxCoeff() > 0)) return Array3f::Zero();
   const float chance = vertex.is_curve() ? std::min(1.0f, scattering.f_cos.maxCoeff() / kFaintScattering) : 1.0f;
   if (!(sampler.next_1d() < chance)) return Array3f::Zero();
-  ++traced;
   const auto [ray, lead] = vertex.ray_from(exit, wi);
-  if (rays.occluded(ray, lead + static_cast<float>(light->distance))) return Array3f::Zero();
+  if (walk.occluded(ray, lead + static_cast<float>(light->distance), sampler)) return Array3f::Zero();
   const auto pdf = static_cast<float>(lights.pdf(origin, *direction));
   return scattering.f_cos * light->radiance * (mis_weight(pdf, scattering.pdf) / (pdf * chance));
 }
@@ -78,16 +78,14 @@ Array3f PathTracer::Impl::radiance(CameraRay camera_ray, Sampler& sampler, int m
   const bool may_hit = advance_to(rays.bounds(), camera_ray);
   Vector3d origin = camera_ray.origin, direction = camera_ray.direction;
   Ray ray{origin.cast<float>(), direction.cast<float>()};
+  SceneWalk walk(rays, models);
   float scattering_pdf = 0, lead = 0;  // the ray begins `lead` before the origin
   for (int vertices = 0;; ++vertices) {
     const bool last = vertices == max_vertices;
     const std::optional<LightHit> light = lights.intersect(origin, direction, vertices == 0);
     if ((last && !light) || (vertices == 0 && !may_hit && !light)) break;
     std::optional<SurfaceHit> hit;
-    if (vertices > 0 || may_hit) {
-      hit = rays.intersect(ray);
-      ++traced;
-    }
+    if (vertices > 0 || may_hit) hit = walk.next(ray, sampler);
     if (light && (!hit || light->distance < static_cast<double>(hit->distance - lead))) {
       const float weight =
           vertices == 0 ? 1.0f : mis_weight(scattering_pdf, static_cast<float>(lights.pdf(origin, direction)));
@@ -97,7 +95,7 @@ Array3f PathTracer::Impl::radiance(CameraRay camera_ray, Sampler& sampler, int m
     if (!hit || last) break;
 
     const PathVertex vertex(*hit, -ray.direction, models);
-    sum += throughput * direct_light(vertex, sampler, traced);
+    sum += throughput * direct_light(vertex, walk, sampler);
     const Vector3f wi = vertex.sample(sampler);
     const ScatteringValue<float> scattering = vertex.evaluate(wi);
     if (!(scattering.pdf > 0)) break;
@@ -115,6 +113,7 @@ Array3f PathTracer::Impl::radiance(CameraRay camera_ray, Sampler& sampler, int m
     origin = exit.place.cast<double>();
     direction = wi.cast<double>();
   }
+  traced += walk.traced();
   return sum;
 }
 

@@ -31,6 +31,10 @@ ThreadModel<float> prepare(const ThreadParameters& p) {
   return ThreadModel<float>(in_scalar<float>(p));
 }
 
+BundleModel prepare(const BundleParameters& p) {
+  return BundleModel(p);
+}
+
 YarnModel<float> prepare(const YarnParameters& p) {
   return YarnModel<float>(in_scalar<float>(p));
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "renderer/picture/sampler.h"
+#include "renderer/scattering/bundle.h"
 #include "renderer/scattering/fiber.h"
 #include "renderer/scattering/thread.h"
 #include "renderer/scattering/yarn.h"
@@ -21,7 +22,7 @@ inline constexpr float kMostSurvival = 0.97f;   // upper bound, so that paths of
 inline constexpr int kMostVertices = 1000;      // a guard; roulette ends paths long before it
 
 // The scattering models of a scene's curves (scattering_models()), in float and with everything precomputed.
-using CurveModel = std::variant<FiberModel<float>, ThreadModel<float>, YarnModel<float>>;
+using CurveModel = std::variant<FiberModel<float>, ThreadModel<float>, YarnModel<float>, BundleModel>;
 std::vector<CurveModel> prepare_curve_models(const std::vector<ScatteringModel>& scattering);
 std::vector<CurveModel> prepare_curve_models(const std::vector<CurveSet>& curves);
 

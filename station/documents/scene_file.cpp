@@ -8,12 +8,12 @@
 #include "renderer/picture/image_file.h"
 #include "renderer/scene/mesh_file.h"
 #include "renderer/scene/patch_curves.h"
+#include "station/documents/bundle_file.h"
 #include "station/documents/degree.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/motif_file.h"
 #include "station/documents/patch_file.h"
 #include "station/documents/reader.h"
-#include "station/documents/thread_file.h"
 
 namespace station {
 namespace {
@@ -161,9 +161,14 @@ void check_threads(const ObjectReader& reader, const SceneCloth& cloth, std::siz
   if (problem) reader.refuse("draft", *problem);
 }
 
-SceneCloth parse_cloth(ObjectReader reader, const std::filesystem::path& folder, std::size_t threads) {
+bool is_thread(const renderer::ScatteringModel& model) {
+  return std::holds_alternative<renderer::ThreadParameters>(model);
+}
+
+SceneCloth parse_cloth(ObjectReader reader, const std::filesystem::path& folder,
+                       const std::vector<renderer::ScatteringModel>& threads) {
   SceneCloth cloth{.weave = parse_weave(reader, folder)};
-  check_threads(reader, cloth, threads);
+  check_threads(reader, cloth, threads.size());
   ObjectReader shape = reader.object("shape");
   cloth.shape = parse_shape(shape, {"swatch", "cylinder", "mesh", "skirt", "pleats", "drape"}, folder);
   shape.finish();
@@ -171,6 +176,8 @@ SceneCloth parse_cloth(ObjectReader reader, const std::filesystem::path& folder,
   if (reader.has("method")) cloth.two_scale = reader.choice("method", {"two_scale", "brute_force"}) == "two_scale";
   if (reader.has("absorption")) {
     if (!cloth.two_scale) reader.refuse("absorption", "is for cloth in two scales; leave the method out");
+    if (!std::ranges::all_of(threads, is_thread))
+      reader.refuse("absorption", "is that of threads, and the scene lists a bundle file; list thread files");
     cloth.absorption = parse_absorption(reader.object("absorption"), folder);
   }
   reader.finish();
@@ -194,13 +201,16 @@ SceneEmbroidery parse_embroidery(ObjectReader reader, const std::filesystem::pat
   made.cloth = reader.integer("cloth", 0, static_cast<int>(scene.cloths.size()) - 1);
   made.motif = read_motif(folder / reader.text("motif"));
   const int thread = reader.integer("thread", 0, static_cast<int>(scene.threads.size()) - 1);
+  const auto* sewn = std::get_if<renderer::ThreadParameters>(&scene.threads[static_cast<std::size_t>(thread)]);
+  if (!sewn)
+    reader.refuse("thread", "is a bundle file; stitches are coloured by a thread's absorption, list its thread file");
   made.diameter_mm = reader.number("diameter_mm", kLeastSize, kMostDiameter);
   const json& absorptions = reader.raw("sigma_a");
   if (!absorptions.is_array() || absorptions.size() != made.motif.threads.size())
     reader.refuse("sigma_a", "expected a list with R, G, B for each of the motif's " +
                                  std::to_string(made.motif.threads.size()) + " threads");
   for (const json& rgb : absorptions) {
-    made.threads.push_back(scene.threads[static_cast<std::size_t>(thread)]);
+    made.threads.push_back(*sewn);
     made.threads.back().sigma_a = absorption_of(reader, rgb);
   }
   if (reader.has("at_mm")) {
@@ -324,9 +334,9 @@ void read_threads(ObjectReader& reader, const std::filesystem::path& folder, Sce
   if (!names.is_array()) reader.refuse("threads", "expected a list of thread files");
   for (const json& name : names) {
     if (!name.is_string()) reader.refuse("threads", "found " + name.dump() + ", expected the name of a thread file");
-    const ThreadFile thread = read_thread(folder / name.get<std::string>());
+    const ClothThread thread = read_cloth_thread(folder / name.get<std::string>());
     if (scene.threads.empty()) scene.linear_srgb_from_camera = thread.linear_srgb_from_camera;
-    scene.threads.push_back(thread.parameters);
+    scene.threads.push_back(thread.scattering);
   }
 }
 
@@ -347,7 +357,7 @@ SceneFile parse_scene(const json& document, const std::string& source, const std
   scene.name = reader.text("name");
   read_threads(reader, folder, scene);
   for (const ObjectReader& cloth : reader.objects("cloths"))
-    scene.cloths.push_back(parse_cloth(cloth, folder, scene.threads.size()));
+    scene.cloths.push_back(parse_cloth(cloth, folder, scene.threads));
   if (reader.has("embroideries"))
     for (const ObjectReader& embroidery : reader.objects("embroideries"))
       scene.embroideries.push_back(parse_embroidery(embroidery, folder, scene));

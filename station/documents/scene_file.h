@@ -57,7 +57,7 @@ struct SceneBody {
 struct SceneFile {
   std::string source;  // the file, for messages
   std::string name{};
-  std::vector<renderer::ThreadParameters> threads{};
+  std::vector<renderer::ScatteringModel> threads{};
   std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // the first thread's; for display only
   std::vector<SceneCloth> cloths{};
   std::vector<SceneEmbroidery> embroideries{};

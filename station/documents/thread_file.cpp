@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "station/documents/digitized_thread.h"
 #include "station/documents/parameter_ranges.h"
 #include "station/documents/reader.h"
 
@@ -101,24 +102,7 @@ const std::map<std::string, renderer::ThreadExit>& thread_exits() {
 }
 
 ThreadFile parse_thread(const json& document, const std::string& source) {
-  ObjectReader reader(document, source, "thread", 1);
-  ThreadFile thread;
-  thread.name = reader.text("name");
-  thread.diameter_mm = reader.number("diameter_mm", 0.005, 20);
-  thread.parameters = parse_parameters(reader.object("parameters"));
-  if (reader.has("units") && reader.raw("units") != units())
-    reader.refuse("units", "are not those of version 1; leave the key out or write the thread again");
-  if (reader.has("linear_srgb_from_camera")) {
-    const std::vector<double> colour = reader.numbers("linear_srgb_from_camera", 9);
-    std::copy(colour.begin(), colour.end(), thread.linear_srgb_from_camera.begin());
-  }
-  for (const auto& [key, member] : {std::pair{"fit", &thread.fit}, std::pair{"provenance", &thread.provenance}})
-    if (reader.has(key)) {
-      *member = reader.raw(key);
-      if (!member->is_object()) reader.refuse(key, "expected an object");
-    }
-  reader.finish();
-  return thread;
+  return parse_digitized<ThreadParameters>("thread", document, source, units(), parse_parameters);
 }
 
 ThreadFile read_thread(const std::filesystem::path& file) {
@@ -126,15 +110,7 @@ ThreadFile read_thread(const std::filesystem::path& file) {
 }
 
 json to_json(const ThreadFile& thread) {
-  return {{"format", "threadstation/thread"},
-          {"version", 1},
-          {"name", thread.name},
-          {"diameter_mm", thread.diameter_mm},
-          {"parameters", parameters_json(thread.parameters)},
-          {"units", units()},
-          {"linear_srgb_from_camera", thread.linear_srgb_from_camera},
-          {"fit", thread.fit},
-          {"provenance", thread.provenance}};
+  return digitized_json("thread", thread, parameters_json(thread.parameters), units());
 }
 
 }  // namespace station

@@ -11,17 +11,11 @@
 #include <string>
 
 #include "renderer/scattering/thread.h"
+#include "station/documents/digitized_thread.h"
 
 namespace station {
 
-struct ThreadFile {
-  std::string name;
-  double diameter_mm = 0.5;
-  renderer::ThreadParameters parameters;
-  std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major; for display only
-  nlohmann::json fit = nlohmann::json::object();         // how well it agrees with its views; may be empty
-  nlohmann::json provenance = nlohmann::json::object();  // session, software, date; may be empty
-};
+using ThreadFile = DigitizedThread<renderer::ThreadParameters>;
 
 // The rules by which light leaves a thread, by the names that files give them.
 const std::map<std::string, renderer::ThreadExit>& thread_exits();

@@ -10,9 +10,9 @@
 #include "renderer/scene/patch_curves.h"
 #include "renderer/weave/woven_patch.h"
 #include "station/cloth/render/build_scene.h"
+#include "station/documents/bundle_file.h"
 #include "station/documents/degree.h"
 #include "station/documents/draft_file.h"
-#include "station/documents/thread_file.h"
 
 namespace station {
 namespace {
@@ -23,7 +23,7 @@ constexpr double kFar_mm = 1e6;  // of cameras and lights: a period is a million
 constexpr double kLightRadius_rad = 3 * kDegree;
 constexpr double kMostDifference = 0.1;  // of a yarn's diameter from its thread's
 
-void check_diameter(const renderer::YarnSystem& system, const ThreadFile& thread, const std::filesystem::path& draft,
+void check_diameter(const renderer::YarnSystem& system, const ClothThread& thread, const std::filesystem::path& draft,
                     const std::filesystem::path& file, const char* name) {
   if (std::abs(system.diameter_mm / thread.diameter_mm - 1) <= kMostDifference) return;
   char text[160];
@@ -56,7 +56,7 @@ ClothSample cloth_of_scene(const std::filesystem::path& file) {
 ClothSample cloth_of_draft(const std::filesystem::path& file, const std::filesystem::path& warp,
                            const std::filesystem::path& weft) {
   renderer::Draft draft = read_draft(file);
-  const ThreadFile warp_thread = read_thread(warp), weft_thread = read_thread(weft);
+  const ClothThread warp_thread = read_cloth_thread(warp), weft_thread = read_cloth_thread(weft);
   check_diameter(draft.warp, warp_thread, file, warp, "warp");
   check_diameter(draft.weft, weft_thread, file, weft, "weft");
   draft.warp.threads = {0};
@@ -65,7 +65,7 @@ ClothSample cloth_of_draft(const std::filesystem::path& file, const std::filesys
   draft.slubs.shade_mm = 0;
   return {.name = draft.name,
           .patch = renderer::woven_patch(draft).patch,
-          .threads = {warp_thread.parameters, weft_thread.parameters},
+          .threads = {warp_thread.scattering, weft_thread.scattering},
           .linear_srgb_from_camera = warp_thread.linear_srgb_from_camera};
 }
 
@@ -77,7 +77,7 @@ renderer::Scene endless_cloth(const ClothSample& cloth) {
   renderer::Scene scene;
   scene.cloths.push_back({.surface = renderer::surface_of(swatch, patch, Eigen::Isometry3d::Identity()),
                           .patch = patch,
-                          .threads = {cloth.threads.begin(), cloth.threads.end()}});
+                          .threads = cloth.threads});
   return scene;
 }
 

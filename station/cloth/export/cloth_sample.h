@@ -17,7 +17,7 @@ namespace station {
 struct ClothSample {
   std::string name;
   renderer::YarnPatch patch;
-  std::vector<renderer::ThreadParameters> threads;
+  std::vector<renderer::ScatteringModel> threads;
   std::array<double, 9> linear_srgb_from_camera{1, 0, 0, 0, 1, 0, 0, 0, 1};  // the first thread's
 };
 
@@ -25,7 +25,7 @@ struct ClothSample {
 // has not exactly one cloth, or one on anything but a flat swatch in two scales.
 ClothSample cloth_of_scene(const std::filesystem::path& scene);
 // The cloth of a draft with all its ends in one thread and all its picks in the other, whatever threads the draft
-// names. Errors: those of draft_file.h and thread_file.h; std::runtime_error, one line, when yarns and threads differ
+// names. Errors: those of draft_file.h and bundle_file.h; std::runtime_error, one line, when yarns and threads differ
 // in diameter by more than a tenth.
 ClothSample cloth_of_draft(const std::filesystem::path& draft, const std::filesystem::path& warp,
                            const std::filesystem::path& weft);

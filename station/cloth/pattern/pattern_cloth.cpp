@@ -77,6 +77,19 @@ Eigen::Vector2i crossings_of(const SceneCloth& cloth) {
   return {warp, static_cast<int>(yarns.size()) - warp};
 }
 
+std::vector<renderer::ThreadParameters> threads_of(const SceneFile& scene, const PatternRequest& request) {
+  std::vector<renderer::ThreadParameters> threads;
+  for (const renderer::ScatteringModel& model : scene.threads) {
+    const auto* thread = std::get_if<renderer::ThreadParameters>(&model);
+    if (!thread)
+      throw std::runtime_error((request.scene.empty() ? request.thread : request.scene).string() +
+                               ": pictures are woven by the absorption of threads, and a bundle file was given; give "
+                               "the thread file of the same spool");
+    threads.push_back(*thread);
+  }
+  return threads;
+}
+
 inversion::TexturedCloth cloth_of(const SceneFile& scene, const PatternRequest& request) {
   const auto count = static_cast<int>(scene.cloths.size());
   if (request.cloth < 0 || request.cloth >= count)
@@ -86,7 +99,7 @@ inversion::TexturedCloth cloth_of(const SceneFile& scene, const PatternRequest& 
   if (!scene.cloths[place].two_scale)
     throw std::runtime_error(request.scene.string() +
                              ": the cloth is rendered by brute force, which shows no pictures; leave its method out");
-  return {woven_cloth(scene, place), crossings_of(scene.cloths[place]), scene.threads};
+  return {woven_cloth(scene, place), crossings_of(scene.cloths[place]), threads_of(scene, request)};
 }
 
 // A sheet of panels beside each other: pictures, a map of errors (white: a CIEDE2000 of 20), a mask.

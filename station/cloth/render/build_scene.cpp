@@ -63,7 +63,7 @@ std::vector<BuiltCloth> build_cloths(const SceneFile& file) {
 
 renderer::Scene build_scene(const SceneFile& file, const std::vector<BuiltCloth>& cloths) {
   renderer::Scene scene;
-  const std::vector<renderer::ScatteringModel> threads(file.threads.begin(), file.threads.end());
+  const std::vector<renderer::ScatteringModel>& threads = file.threads;
   for (std::size_t i = 0; i < file.cloths.size(); ++i) {
     const auto& [patch, shape] = cloths.at(i);
     const Eigen::Isometry3d& world_from_cloth = file.cloths[i].world_from_cloth;

@@ -74,6 +74,7 @@ std::map<std::string, inversion::ModelKind> names_of_models() {
   return {{"thread", inversion::ModelKind::thread},
           {"fiber", inversion::ModelKind::fiber},
           {"yarn", inversion::ModelKind::yarn},
+          {"bundle", inversion::ModelKind::bundle},
           {"paper", inversion::ModelKind::paper}};
 }
 
@@ -133,6 +134,10 @@ json fit_document(const inversion::ViewFit& fit, const inversion::FitOptions& op
     document["relative_rmse_held_out"] = inversion::overall_relative_rmse(held_out);
   if (options.model == inversion::ModelKind::thread) document["bands"] = bands_json(fit);
   if (const auto* yarn = std::get_if<renderer::YarnParameters>(&fit.model)) document["fiber_count"] = yarn->fiber_count;
+  if (const auto* bundle = std::get_if<renderer::BundleParameters>(&fit.model)) {
+    document["fiber_count"] = bundle->fiber_count;
+    document["radius_ratio"] = bundle->radius_ratio;
+  }
   return document;
 }
 

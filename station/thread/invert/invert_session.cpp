@@ -5,12 +5,12 @@
 
 #include "inversion/fit/fit_doubts.h"
 #include "renderer/picture/image_file.h"
+#include "station/documents/bundle_file.h"
 #include "station/documents/disk/stored_file.h"
 #include "station/documents/fiber_file.h"
 #include "station/documents/number_text.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
-#include "station/documents/thread_file.h"
 #include "station/documents/views_file.h"
 #include "station/documents/yarn_file.h"
 #include "station/output/interrupt.h"
@@ -46,7 +46,7 @@ std::filesystem::path model_file(const InvertRequest& request) {
   return folder_of(request) / (name_of(request.fit.model) + ".json");
 }
 
-// The document of a fitted model; a thread's says what it was fitted to as well.
+// The document of a fitted model; a thread's and a bundle's say what they were fitted to as well.
 struct ModelDocument {
   const SessionFile& asked;
   const DevelopedViews& developed;
@@ -54,13 +54,17 @@ struct ModelDocument {
 
   json operator()(const renderer::FiberParameters& fiber) const { return to_json(fiber); }
   json operator()(const renderer::YarnParameters& yarn) const { return to_json(yarn); }
-  json operator()(const renderer::ThreadParameters& thread) const {
-    return to_json(ThreadFile{.name = asked.spool.name,
-                              .diameter_mm = asked.spool.wrapping.thread_diameter_mm,
-                              .parameters = thread,
-                              .linear_srgb_from_camera = developed.linear_srgb_from_camera,
-                              .fit = fit_part,
-                              .provenance = provenance});
+  json operator()(const renderer::ThreadParameters& thread) const { return to_json(digitized(thread)); }
+  json operator()(const renderer::BundleParameters& bundle) const { return to_json(digitized(bundle)); }
+
+  template <class Parameters>
+  DigitizedThread<Parameters> digitized(const Parameters& parameters) const {
+    return {.name = asked.spool.name,
+            .diameter_mm = asked.spool.wrapping.thread_diameter_mm,
+            .parameters = parameters,
+            .linear_srgb_from_camera = developed.linear_srgb_from_camera,
+            .fit = fit_part,
+            .provenance = provenance};
   }
 };
 

@@ -71,6 +71,13 @@ TEST(PathTracerTest, YarnsOfOneWhiteFiberInAUniformEnvironmentDisappear) {
   EXPECT_NEAR(mean(image), 1, 3e-3);  // about three standard errors
 }
 
+TEST(PathTracerTest, WhiteBundlesInAUniformEnvironmentDisappear) {
+  const BundleParameters bundle{.fiber = {.beta_m = 0.2, .beta_n = 0.3}};
+  const PathTracer tracer({.curves = {crossed_threads(bundle)}, .lights = {{.radius_mm = 500}}});
+  const cv::Mat3f image = tracer.render(small_camera({0, 2, 20}, 4), {.samples_per_pixel = 256});
+  EXPECT_NEAR(mean(image), 1, 3e-3);  // about three standard errors
+}
+
 TEST(PathTracerTest, DiffuseFloorInAUniformEnvironmentShowsItsAlbedo) {
   const PathTracer tracer({.meshes = {white_floor(0.6f)}, .lights = {{.radius_mm = 500}}});
   EXPECT_NEAR(mean(tracer.render(small_camera({0, 2, 20}, 4), {.samples_per_pixel = 64})), 0.6, 3e-3);

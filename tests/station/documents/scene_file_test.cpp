@@ -84,13 +84,21 @@ TEST(SceneFile, OptionsOfAThreadAreReadAndWrittenOnlyWhereTheyDiffer) {
   EXPECT_NE(refusal([&] { parse_thread(document, "t"); }).find("parameters.transmittance_powers"), std::string::npos);
 }
 
+TEST(SceneFile, CanListABundleInPlaceOfAThread) {
+  json document = read_json_file(kScenes / "satin_cylinder.json");
+  document["threads"][1] = "../bundles/silk_red.json";
+  const SceneFile scene = parse_scene(document, "scene", kScenes);
+  EXPECT_EQ(std::get<renderer::BundleParameters>(scene.threads.at(1)).fiber_count, 20);
+}
+
 TEST(SceneFile, WhatItSaysIsWhereItBelongs) {
   json document = read_json_file(kScenes / "satin_cylinder.json");
   document["cloths"][0]["world_from_cloth"] = {{1, 0, 0, 5}, {0, 1, 0, 6}, {0, 0, 1, 7}, {0, 0, 0, 1}};
   document["exposure"] = 2.5;
   const SceneFile scene = parse_scene(document, "scene", kScenes);
   ASSERT_EQ(scene.threads.size(), 2u);
-  EXPECT_EQ(scene.threads[1].sigma_a, read_thread(kThreads / "silk_gold.json").parameters.sigma_a);
+  EXPECT_EQ(std::get<renderer::ThreadParameters>(scene.threads[1]).sigma_a,
+            read_thread(kThreads / "silk_gold.json").parameters.sigma_a);
   EXPECT_EQ(std::get<renderer::CylinderShape>(scene.cloths[0].shape).radius_mm, 41);
   EXPECT_EQ(scene.cloths[0].world_from_cloth.translation(), Eigen::Vector3d(5, 6, 7));
   EXPECT_EQ(std::get<renderer::Draft>(scene.cloths[0].weave).warp.threads, std::vector<int>{0});
