@@ -355,6 +355,7 @@ ViewFit fit_best_bundle(const WrappedSpool& spool, const std::vector<View>& view
   const auto fit = [&](const BundleFamily& bundle, const std::vector<int>& paths, double share_of_all) {
     FitOptions one = options;
     one.paths_per_block = paths;
+    one.solver = Solver::levenberg_marquardt;
     one.without_bias = false;
     const std::string name = std::to_string(bundle.fiber_count) + " fibers, ";
     if (options.progress)

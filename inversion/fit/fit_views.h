@@ -14,6 +14,9 @@
 // Eq. 6's hinges that keep energies positive are bounds here (thread_unknowns.h), for both solvers; its trend is
 // rounded within a thousandth of its corner.
 //
+// ModelKind::bundle finds the number of fibers and their packing by short fits, then the fibers' scattering by
+// Levenberg-Marquardt alone: it heeds neither `solver` nor `without_bias`.
+//
 // ModelKind::paper is the paper's own recipe, to tell what the model cannot do from what is done differently here:
 // single pixels, all of the same weight in a view; the printed parameters with the printed hinges; light leaves where
 // it came in; Adam from one start, 100 steps of rate 0.01; no prior, no robust weights. The paper gives neither the

@@ -8,6 +8,8 @@
 //
 //   radiance of a block / intensity = mean over its paths of  sum_v  [prod_(u<v) f_u(next) / pdf_u]  f_v(light) w_v
 //
+// The events of a bundle's paths are those of its fibers, and are shaded as a fiber's.
+//
 // Of the light only the lamp is sampled: it is small, and no lobe is narrow enough (roughness >= 0.02) to prefer
 // finding the lamp by chance. The holder's frame ends paths (view.h).
 #pragma once

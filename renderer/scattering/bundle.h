@@ -25,26 +25,24 @@
 
 namespace renderer {
 
-template <class S>
-struct BasicBundleParameters {
+struct BundleParameters {
   int fiber_count = 20;
   double radius_ratio = 0.15;  // fiber radius / thread radius
-  BasicFiberParameters<S> fiber{};
+  FiberParameters fiber{};     // of each, without tilt
 };
-using BundleParameters = BasicBundleParameters<double>;
 
 // Bundles placed at random, in units of the fiber's radius, for sections between round and eight times as wide as high:
-// as many of the fibers as find room.
+// as many of the fibers as find room. Where a section is lower than a fiber is thick, they are those of one as high.
 class BundleSections {
  public:
-  static constexpr int kDraws = 128;  // of each flatness
   static constexpr double kMostFlat = 8;
 
-  BundleSections(int fiber_count, double radius_ratio) : fiber_count_(fiber_count), radius_ratio_(radius_ratio) {}
+  BundleSections(int fiber_count, double radius_ratio);
 
   // Bundle number `draw` of sections that are about `flatness` >= 1 times as wide (x) as high. Those of a flatness are
   // placed when first asked for; any number of threads may ask at a time.
   const CircleGrid& section(double flatness, int draw) const;
+  int draws() const { return draws_; }  // of each flatness; more where few fibers make bundles unlike each other
   double radius_ratio() const { return radius_ratio_; }
 
  private:
@@ -55,7 +53,7 @@ class BundleSections {
     std::vector<CircleGrid> draws;
   };
 
-  int fiber_count_;
+  int fiber_count_, draws_;
   double radius_ratio_;
   mutable std::array<Level, kLevels> levels_;
 };

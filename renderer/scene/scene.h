@@ -21,7 +21,7 @@
 namespace renderer {
 
 // How a curve scatters, one of a closed set: the parameters of a fiber, a thread or a yarn, whose models (FiberModel,
-// ThreadModel, YarnModel) evaluate and sample them.
+// ThreadModel, YarnModel) evaluate and sample them, or of a bundle, whose fibers rays meet in its place.
 using ScatteringModel = std::variant<FiberParameters, ThreadParameters, YarnParameters, BundleParameters>;
 
 // Round uniform cubic B-spline curves that share one scattering model.

@@ -38,7 +38,7 @@ struct Ellipse {
 BundleWalk::BundleWalk(const BundleSections& sections, const CurvePoint& entry, Sampler& sampler)
     : axis_(entry.position - entry.out), tangent_(entry.tangent), curve_set_(entry.curve_set) {
   const Vector2f u = sampler.next_2d();
-  const int draw = std::min(static_cast<int>(u.x() * BundleSections::kDraws), BundleSections::kDraws - 1);
+  const int draw = std::min(static_cast<int>(u.x() * static_cast<float>(sections.draws())), sections.draws() - 1);
   const Vector3f across = entry.normal.cross(tangent_);
   const Ellipse section({entry.side.dot(across), entry.side.dot(entry.normal)},
                         {entry.out.dot(across), entry.out.dot(entry.normal)});

@@ -45,13 +45,13 @@ struct BlockMean {
 
 // Block means by the path tracer, and their variance by independent renderings.
 std::vector<BlockMean> path_traced(const WrappedSpool& spool, const View& view, const std::vector<Block>& blocks,
-                                   const ThreadParameters& thread) {
-  constexpr int kRenderings = 8, kSamples = 64;
+                                   const renderer::ScatteringModel& thread, int samples = 64) {
+  constexpr int kRenderings = 8;
   const renderer::PathTracer tracer(view_scene(spool, thread, view.light));
   std::vector<BlockMean> found(blocks.size());
   std::vector<Array3d> squares(blocks.size(), Array3d::Zero());
   for (int i = 0; i < kRenderings; ++i) {
-    renderer::RenderOptions options{.samples_per_pixel = kSamples, .seed = 100 + static_cast<std::uint64_t>(i)};
+    renderer::RenderOptions options{.samples_per_pixel = samples, .seed = 100 + static_cast<std::uint64_t>(i)};
     options.only = view.mask;
     const cv::Mat3f picture = tracer.render(view.camera, options);
     for (std::size_t b = 0; b < blocks.size(); ++b) {
@@ -66,8 +66,9 @@ std::vector<BlockMean> path_traced(const WrappedSpool& spool, const View& view, 
 }
 
 // Block estimates, and their variance by what each path gives alone.
-std::vector<BlockMean> shaded(const LightPaths& paths, const ThreadParameters& thread) {
-  const BlockModel model = block_model(thread);
+template <class Parameters>
+std::vector<BlockMean> shaded(const LightPaths& paths, const Parameters& thread) {
+  const auto model = block_model(thread);
   LightPaths alone = paths;  // every path a block of its own
   alone.block_paths.resize(paths.path_ends.size() + 1);
   std::iota(alone.block_paths.begin(), alone.block_paths.end(), 0U);
@@ -83,8 +84,8 @@ std::vector<BlockMean> shaded(const LightPaths& paths, const ThreadParameters& t
 }
 
 // Differences between the estimates and the path tracer's, in standard errors: each block's and all blocks'.
-void expect_agreement(const LightPaths& paths, const ThreadParameters& shaded_with,
-                      const std::vector<BlockMean>& expected) {
+template <class Parameters>
+void expect_agreement(const LightPaths& paths, const Parameters& shaded_with, const std::vector<BlockMean>& expected) {
   const std::vector<BlockMean> found = shaded(paths, shaded_with);
   Array3d difference = Array3d::Zero(), variance = Array3d::Zero(), whole = Array3d::Zero();
   for (std::size_t b = 0; b < expected.size(); ++b) {
@@ -102,7 +103,7 @@ class LightPathsTest : public testing::TestWithParam<Standpoint> {
  protected:
   static constexpr int kPaths = 4096;
 
-  LightPaths traced_with(const ThreadParameters& thread, int count = kPaths) const {
+  LightPaths traced_with(const renderer::ScatteringModel& thread, int count = kPaths) const {
     return trace_light_paths(rays_, view_, blocks_, thread, count, 7);
   }
 
@@ -116,6 +117,16 @@ TEST_P(LightPathsTest, ShadedWithAnyParametersTheyGiveThePathTracersPicture) {
   const std::vector<BlockMean> expected = path_traced(spool_, view_, blocks_, known_thread());
   for (const ThreadParameters& traced : {known_thread(), other_thread(), glowing_thread()})
     expect_agreement(traced_with(traced), known_thread(), expected);
+}
+
+TEST_P(LightPathsTest, ThoseOfABundleShadedFiberByFiberGiveThePathTracersPicture) {
+  renderer::BundleParameters truth{.fiber = {.sigma_a = {0.01, 0.03, 0.08}, .beta_m = 0.35, .beta_n = 0.4}},
+      near = truth;
+  near.fiber.sigma_a = {0.012, 0.04, 0.07};
+  near.fiber.beta_m = 0.38, near.fiber.beta_n = 0.43;
+  const std::vector<BlockMean> expected = path_traced(spool_, view_, blocks_, truth, 256);
+  for (const renderer::BundleParameters& traced : {truth, near})
+    expect_agreement(traced_with(traced, 12 * kPaths), truth.fiber, expected);
 }
 
 TEST_P(LightPathsTest, LightThatScattersManyTimesIsNotLostWherePathsEndByChance) {
