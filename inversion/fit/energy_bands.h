@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "inversion/fit/fit_views.h"
+#include "inversion/fit/view_fit.h"
 
 namespace inversion {
 

@@ -20,6 +20,11 @@ BiasFreeTerms data_terms(const ViewObjective::Halves& both) {
           .hessian = 0.5 * (product + product.transpose())};
 }
 
+MatrixXd whole_hessian(const ViewObjective::Halves& both) {
+  const MatrixXd by = 0.5 * (both.jacobians[0] + both.jacobians[1]);
+  return by.transpose() * by;
+}
+
 void MeanTerms::add(const ViewObjective::Halves& both, const VectorXd& unknowns) {
   const auto& [a, b] = both.residuals;
   const auto& [by_a, by_b] = both.jacobians;

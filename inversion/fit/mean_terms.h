@@ -12,6 +12,10 @@ namespace inversion {
 // The data's part of the loss, r_A' r_B / 2.
 BiasFreeTerms data_terms(const ViewObjective::Halves& both);
 
+// J' J of all paths together, unknowns x unknowns: positive, and larger than the Hessian of data_terms by the noise of
+// J, so that steps by it are on average too short, but none is long because noise has left a direction flat.
+Eigen::MatrixXd whole_hessian(const ViewObjective::Halves& both);
+
 class MeanTerms {
  public:
   // Terms of a set of paths whose noise is independent of the others', traced at these unknowns, near theirs.

@@ -92,7 +92,7 @@ FamilyUnknowns unknowns(const YarnFamily&) {
 
 FamilyUnknowns unknowns(const BundleFamily&) {
   FamilyUnknowns of = unknowns(FiberFamily{});
-  of.starts = {vector_of({0.1, 0.1, 0.1, 0.3, 0.3})};
+  of.starts = {vector_of({0.1, 0.1, 0.1, 0.5, 0.5})};
   return of;
 }
 

@@ -28,16 +28,25 @@ Eigen::Array3d mean_variance(const Block& block, const View& view) {
   return variance_by(*view.noise, block_mean(block, view.image)) / static_cast<double>(block.pixels.size());
 }
 
+// At least one.
+std::vector<Block> every(int stride, std::vector<Block> blocks) {
+  std::vector<Block> kept;
+  for (std::size_t i = 0; i < blocks.size(); i += static_cast<std::size_t>(stride))
+    kept.push_back(std::move(blocks[i]));
+  return kept;
+}
+
 }  // namespace
 
-ViewObjective::ViewObjective(const WrappedSpool& spool, const std::vector<View>& views, const ScatteringFamily& family)
+ViewObjective::ViewObjective(const WrappedSpool& spool, const std::vector<View>& views, const ScatteringFamily& family,
+                             int block_stride)
     : family_(family), rays_(spool_rays(spool)), block_px_(kBlock_pooled * pooled_px(spool, views)) {
   if (views.empty()) throw std::runtime_error("there is no view to fit a thread to; develop the session first");
   for (const View& view : views) {
     check(view);
     const double diffuser = diffuser_radiance(view.light).mean();
     views_.push_back({.view = &view,
-                      .blocks = mask_blocks(view.mask, block_px_),
+                      .blocks = every(block_stride, mask_blocks(view.mask, block_px_)),
                       .variances = {},
                       .references = {},
                       .scale = view.light.intensity.array() / diffuser,

@@ -14,8 +14,11 @@ namespace inversion {
 
 class ViewObjective {
  public:
-  // Refers to the views: they must outlive it.
-  ViewObjective(const WrappedSpool& spool, const std::vector<View>& views, const ScatteringFamily& family);
+  // Refers to the views: they must outlive it. Of each view's blocks every `block_stride`-th counts, for a first look:
+  // as many paths say more of a misfit in fewer blocks, because the misfit grows with the number of blocks and its
+  // noise with the power 3/2 of it.
+  ViewObjective(const WrappedSpool& spool, const std::vector<View>& views, const ScatteringFamily& family,
+                int block_stride = 1);
 
   // Records the light paths that residuals() shades from now on. Calls step(done, total) after each view.
   void trace(const Eigen::VectorXd& traced_with, int paths_per_block, std::uint64_t seed,

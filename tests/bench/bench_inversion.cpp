@@ -9,6 +9,7 @@
 
 #include "inversion/fit/block_estimate.h"
 #include "inversion/fit/fit_views.h"
+#include "inversion/fit/independent_loss.h"
 #include "inversion/view/blocks.h"
 #include "tests/inversion/fit/synthetic_spool.h"
 

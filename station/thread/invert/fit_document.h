@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "inversion/fit/fit_views.h"
+#include "inversion/fit/view_fit.h"
 #include "inversion/view/agreement.h"
 
 namespace station {

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "inversion/fit/fit_views.h"
+#include "inversion/fit/independent_loss.h"
 #include "station/output/progress.h"
 
 namespace station {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "inversion/fit/fit_views.h"
+#include "inversion/fit/independent_loss.h"
 #include "inversion/view/agreement.h"
 #include "tests/inversion/fit/synthetic_spool.h"
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "inversion/fit/energy_bands.h"
+#include "inversion/fit/fit_views.h"
 #include "inversion/view/agreement.h"
 #include "tests/inversion/fit/synthetic_spool.h"
 

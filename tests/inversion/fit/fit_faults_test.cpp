@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "inversion/fit/fit_doubts.h"
+#include "inversion/fit/fit_views.h"
 #include "tests/inversion/fit/synthetic_spool.h"
 
 namespace inversion {

@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "inversion/fit/fit_views.h"
+#include "inversion/fit/independent_loss.h"
 #include "inversion/fit/light_paths.h"
 #include "inversion/fit/loss_terms.h"
 #include "inversion/view/agreement.h"

@@ -1,0 +1,26 @@
+// The fit of a bundle, whose number of fibers and packing cannot be changed by a step in its unknowns. Many bundles are
+// fitted, and the best are fitted on:
+//
+//   stage | bundles                                                  | blocks     | compared by paths a block
+//   1     | counts at the densest packing, from the middle one as    | each third | 3 x 1024
+//         | long as they get better; all packings of the best; then  |            |
+//         | its neighbours in count                                  |            |
+//   2     | the best three                                           | all        | 4 x 1024
+//   3     | the best one                                             | all        |
+//
+// They are compared by how well they explain the views without their own paths' noise (independent_loss.h), which is
+// larger than what tells 10 fibers from 20. For the same reason every stage ends with steps that are free of it
+// (bias_free.h).
+#pragma once
+
+#include <vector>
+
+#include "inversion/fit/view_fit.h"
+#include "inversion/view/view.h"
+
+namespace inversion {
+
+// The fit, by Levenberg-Marquardt whatever the options say. Errors: those of fit_views.
+ViewFit fit_best_bundle(const WrappedSpool& spool, const std::vector<View>& views, const FitOptions& options);
+
+}  // namespace inversion
