@@ -16,17 +16,18 @@ using Eigen::VectorXd;
 struct Stage {
   std::vector<int> paths_per_block;  // of the rounds; the steps behind them take as many as the last
   Effort effort;
-  int comparisons;  // independent_loss, with as many paths each
+  int comparisons;  // relative_misfit, with as many paths each
 };
 
 const Stage kBrief{.paths_per_block = {64, 256, 1024},
                    .effort = {.block_stride = 3, .own_steps = 1, .joint_steps = 2, .by_whole_hessian = true},
                    .comparisons = 3};
-const Stage kLonger{.paths_per_block = {1024},
-                    .effort = {.rounds = false, .own_steps = 1, .joint_steps = 2, .by_whole_hessian = true},
-                    .comparisons = 4};
+const Stage kLonger{
+    .paths_per_block = {1024},
+    .effort = {.rounds = false, .robust = false, .own_steps = 1, .joint_steps = 1, .by_whole_hessian = true},
+    .comparisons = 4};
 constexpr Effort kToTheEnd{.rounds = false, .own_steps = 1, .joint_steps = 5, .by_whole_hessian = true};
-constexpr std::size_t kFinalists = 3;
+constexpr std::size_t kFinalists = 4;
 constexpr double kShareOfBrief = 0.4, kShareOfLonger = 0.35;  // of the work; the rest is the last fit's
 
 struct Candidate {
@@ -57,7 +58,7 @@ class BundleSearch {
 
  private:
   std::vector<Candidate> fit_briefly() {
-    constexpr double kShare = kShareOfBrief / (kBundleFiberCounts.size() + kBundlePackings.size() + 1);
+    constexpr double kShare = kShareOfBrief / (kBundleFiberCounts.size() + 2 * (kBundlePackings.size() - 1));
     std::vector<Candidate> tried;
     const auto try_one = [&](std::size_t count, double packing) {
       const BundleFamily bundle{kBundleFiberCounts[count], packing};
@@ -78,11 +79,10 @@ class BundleSearch {
     while (count > 0 && gets_better(count - 1)) continue;
     if (count == kMiddle)
       while (gets_better(count + 1)) continue;
-    for (std::size_t i = 1; i < kBundlePackings.size(); ++i) try_one(count, kBundlePackings[i]);
-    const double packing = std::min_element(tried.begin(), tried.end(), explains_better)->bundle.packing;
-    if (packing == kBundlePackings.front()) return tried;  // the neighbours are among them
-    if (count > 0) try_one(count - 1, packing);
-    if (count + 1 < kBundleFiberCounts.size()) try_one(count + 1, packing);
+    // Fewer fibers that are packed densely look much like more of them that are not.
+    for (std::size_t i = 1; i < kBundlePackings.size(); ++i)
+      for (std::size_t more = count; more < std::min(count + 2, kBundleFiberCounts.size()); ++more)
+        try_one(more, kBundlePackings[i]);
     return tried;
   }
 
@@ -91,9 +91,9 @@ class BundleSearch {
     std::vector<int> paths = stage.paths_per_block;
     for (int& one : paths) one = std::min(one, options_.paths_per_block.back());
     const ViewFit found = fit(bundle, paths, stage.effort, starts, share);
-    const IndependentLoss loss = independent_loss(spool_, views_, found, paths.back(), stage.comparisons,
-                                                  options_.seed + kFitSeedStep, stage.effort.block_stride);
-    return {.bundle = bundle, .unknowns = found.unknowns, .misfit = loss.without_noise};
+    const double misfit = relative_misfit(spool_, views_, found, paths.back(), stage.comparisons,
+                                          options_.seed + kFitSeedStep, stage.effort.block_stride);
+    return {.bundle = bundle, .unknowns = found.unknowns, .misfit = misfit};
   }
 
   ViewFit fit(const BundleFamily& bundle, const std::vector<int>& paths, const Effort& effort,

@@ -2,13 +2,13 @@
 // fitted, and the best are fitted on:
 //
 //   stage | bundles                                                  | blocks     | compared by paths a block
-//   1     | counts at the densest packing, from the middle one as    | each third | 3 x 1024
-//         | long as they get better; all packings of the best; then  |            |
-//         | its neighbours in count                                  |            |
-//   2     | the best three                                           | all        | 4 x 1024
+//   1     | counts at the densest packing, from the middle one as    | every 3rd  | 3 x 1024
+//         | far as they get better; all packings of the best and of  |            |
+//         | the next larger count                                    |            |
+//   2     | the best four                                            | all        | 4 x 1024
 //   3     | the best one                                             | all        |
 //
-// They are compared by how well they explain the views without their own paths' noise (independent_loss.h), which is
+// They are compared by how well they explain the views without their own paths' noise (relative_misfit), which is
 // larger than what tells 10 fibers from 20. For the same reason every stage ends with steps that are free of it
 // (bias_free.h).
 #pragma once

@@ -188,8 +188,9 @@ MeanTerms remove_bias(ViewObjective& objective, const Search& search, Attempt& a
   const auto loss = [&](int step, const VectorXd& unknowns) {
     const std::string name = "without bias, step " + std::to_string(step + 1);
     const auto number = options.paths_per_block.size() + static_cast<std::size_t>(step);
+    const double done = attempt.rounds.empty() ? step / (1.0 * steps.own_steps + steps.joint_steps) : 1;
     objective.trace(unknowns, paths, options.seed + kFitSeedStep * number, [&](int, int) {
-      if (options.progress && !options.progress(name, 1)) throw std::runtime_error(kStopped);
+      if (options.progress && !options.progress(name, done)) throw std::runtime_error(kStopped);
     });
     const ViewObjective::Halves both = objective.halves(unknowns);
     if (step + 1 >= steps.own_steps) mean.add(both, unknowns);
@@ -197,7 +198,7 @@ MeanTerms remove_bias(ViewObjective& objective, const Search& search, Attempt& a
     if (search.effort.by_whole_hessian) terms.hessian = whole_hessian(both);
     return terms;
   };
-  if (options.robust) {
+  if (options.robust && search.effort.robust) {
     if (attempt.rounds.empty()) objective.trace(attempt.unknowns, paths, options.seed, [](int, int) {});
     attempt.view_weights = objective.weigh_robustly(attempt.unknowns);
   }
@@ -307,15 +308,15 @@ ViewFit fit_family(const WrappedSpool& spool, const std::vector<View>& views, co
     for (int k = 0; k < renderer::kThreadParameterCount; ++k)
       if (std::find(options.held.begin(), options.held.end(), group_of(k)) != options.held.end())
         search.held.push_back(k);
-  const bool by_pixels = options.model == ModelKind::paper,
-             by_rounds = !by_pixels && options.solver == Solver::levenberg_marquardt;
-  Attempt best = by_pixels       ? search_by_pixels(PixelLoss(spool, views, family), objective, search, starts.front())
-                 : !by_rounds    ? search_by_adam(objective, search, starts.front())
-                 : effort.rounds ? search_by_rounds(objective, search, starts)
-                                 : Attempt{.unknowns = starts.front()};
+  const bool by_pixels = options.model == ModelKind::paper, by_adam = !by_pixels && options.solver == Solver::adam,
+             without_bias = !by_pixels && !by_adam && options.without_bias &&
+                            options.paths_per_block.back() >= kFewestPathsWithoutBias;
+  Attempt best = by_pixels ? search_by_pixels(PixelLoss(spool, views, family), objective, search, starts.front())
+                 : by_adam ? search_by_adam(objective, search, starts.front())
+                 : effort.rounds || !without_bias ? search_by_rounds(objective, search, starts)
+                                                  : Attempt{.unknowns = starts.front()};
   MeanTerms mean;
-  if (by_rounds && options.without_bias && options.paths_per_block.back() >= kFewestPathsWithoutBias)
-    mean = remove_bias(objective, search, best);
+  if (without_bias) mean = remove_bias(objective, search, best);
   ViewFit fit{
       .family = family,
       .model = model_at(family, best.unknowns),

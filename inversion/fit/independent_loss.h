@@ -16,6 +16,12 @@ struct IndependentLoss {
   double without_noise = 0;  // by products of residuals of different repetitions: the misfit alone; may be below zero
 };
 IndependentLoss independent_loss(const WrappedSpool& spool, const std::vector<View>& views, const ViewFit& fit,
-                                 int paths_per_block, int repetitions, std::uint64_t seed, int block_stride = 1);
+                                 int paths_per_block, int repetitions, std::uint64_t seed);
+
+// The mean square of relative residuals (ViewObjective::relative_scales) of every `block_stride`-th block, without the
+// paths' noise; may be below zero. Dark views and colours, which hardly count in eq. 6, count here, as their noise is
+// less too, so that fewer paths tell models apart.
+double relative_misfit(const WrappedSpool& spool, const std::vector<View>& views, const ViewFit& fit,
+                       int paths_per_block, int repetitions, std::uint64_t seed, int block_stride);
 
 }  // namespace inversion

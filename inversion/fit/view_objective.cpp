@@ -142,6 +142,20 @@ std::vector<double> ViewObjective::weigh_robustly(const Eigen::VectorXd& unknown
   return weights.views;
 }
 
+Eigen::VectorXd ViewObjective::relative_scales() const {
+  constexpr double kLeastOfMean = 0.1;
+  Eigen::VectorXd scales(residual_count());
+  for (const ViewBlocks& v : views_) {
+    Eigen::Array3d mean = Eigen::Array3d::Zero();
+    for (const Eigen::Array3d& reference : v.references) mean += reference / static_cast<double>(v.references.size());
+    for (std::size_t b = 0; b < v.blocks.size(); ++b)
+      scales.segment<3>(static_cast<Eigen::Index>(3 * (v.first_block + b))) =
+          (residual_weight(v, b) * (v.references[b].max(kLeastOfMean * mean) * mean.mean() * residual_count()).sqrt())
+              .inverse();
+  }
+  return scales;
+}
+
 std::vector<int> ViewObjective::residual_views() const {
   std::vector<int> views;
   for (std::size_t v = 0; v < views_.size(); ++v)

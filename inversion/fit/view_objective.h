@@ -45,6 +45,10 @@ class ViewObjective {
   // the weight of each view.
   std::vector<double> weigh_robustly(const Eigen::VectorXd& unknowns);
 
+  // Factors that make residuals() relative: half their squared norm is then half the mean of (I - I_ref)^2 / (I_ref m),
+  // m being the view's mean over all blocks and channels. Of I_ref at least a tenth of its channel's mean is taken.
+  Eigen::VectorXd relative_scales() const;
+
   // The number of the view that each residual belongs to.
   std::vector<int> residual_views() const;
 
