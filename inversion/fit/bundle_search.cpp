@@ -1,8 +1,6 @@
 #include "inversion/fit/bundle_search.h"
 
 #include <algorithm>
-#include <array>
-#include <utility>
 
 #include "inversion/fit/fit_family.h"
 #include "inversion/fit/independent_loss.h"

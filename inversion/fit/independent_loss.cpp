@@ -6,7 +6,6 @@
 #include "inversion/fit/view_objective.h"
 
 namespace inversion {
-
 namespace {
 
 IndependentLoss loss_of(ViewObjective& objective, const Eigen::VectorXd& unknowns, const Eigen::VectorXd& scales,

@@ -28,9 +28,8 @@ using nlohmann::json;
 
 constexpr int kProcessSocket = 3;
 // How often one question may make the process end, hang or lose the camera. A process that ends is quickly replaced,
-// one that hangs costs its whole time-out. One loss is a fault of the line, and on a busy computer another follows when
-// the library, new to the camera, waits in vain for its own few seconds.
-constexpr int kMostEnded = 3, kMostHung = 2, kMostLost = 3;
+// one that hangs costs its whole time-out.
+constexpr int kMostEnded = 3, kMostHung = 2, kMostLost = 2;
 
 // The process is gone or does not answer and has to be started again.
 struct ProcessLost : std::runtime_error {
