@@ -1,6 +1,6 @@
 // Bundles drawn at random, photographed by the path tracer and fitted as if nothing were known of them. Their number of
-// fibers and packing are among those that a fit tries. THREADSTATION_BUNDLES in the environment says how many there are,
-// THREADSTATION_SEED from which seed they are drawn.
+// fibers and packing are among those that a fit tries. THREADSTATION_BUNDLES in the environment says how many there
+// are, THREADSTATION_SEED from which seed they are drawn.
 #include <gtest/gtest.h>
 
 #include <array>
