@@ -155,6 +155,29 @@ YarnPatch with_strands(const YarnPatch& patch, const std::vector<Strands>& of_ya
   return divided;
 }
 
+YarnPatch repeated(const YarnPatch& patch, int across, int along) {
+  YarnPatch all = patch;
+  all.period_x_mm *= across, all.period_y_mm *= along;
+  all.yarns.clear();
+  const Vector3d x(patch.period_x_mm, 0, 0), y(0, patch.period_y_mm, 0);
+  for (const bool warp : {true, false})
+    for (int copy = 0; copy < (warp ? across : along); ++copy)
+      for (const Yarn& yarn : patch.yarns) {
+        if (yarn.warp != warp) continue;
+        Yarn& longer = all.yarns.emplace_back(yarn);
+        longer.control_points.clear();
+        for (int period = 0; period < (warp ? along : across); ++period)
+          for (const Vector3d& point : yarn.control_points)
+            longer.control_points.push_back(point + (warp ? copy * x + period * y : copy * y + period * x));
+        for (int period = 1; period < (warp ? along : across); ++period) {
+          longer.thickness.insert(longer.thickness.end(), yarn.thickness.begin(), yarn.thickness.end());
+          longer.twist.insert(longer.twist.end(), yarn.twist.begin(), yarn.twist.end());
+          longer.threads.insert(longer.threads.end(), yarn.threads.begin(), yarn.threads.end());
+        }
+      }
+  return all;
+}
+
 RelaxedPatch woven_patch(const Draft& draft, const RelaxationOptions& options) {
   if (!draft.relaxed) {
     RelaxedPatch drawn{.patch = initial_patch(draft, options.points_per_crossing)};

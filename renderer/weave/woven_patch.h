@@ -23,6 +23,7 @@ RelaxedPatch woven_patch(const Draft& draft, const RelaxationOptions& options = 
 // pressed as it is. Each ply is a yarn of the thread, thinner than its yarn: it scatters and absorbs as the thread does
 // whose spool was digitized, at each crossing of light with it.
 YarnPatch with_plies(const YarnPatch& patch, const Plies& plies);
+
 // The round strands of one yarn, which keep their places in its section all along it, as untwisted fibers do.
 struct Strands {
   double radius_mm = 0;
@@ -34,6 +35,10 @@ struct Strands {
 // of the yarns. Strands are round in flat yarns too. Errors: std::invalid_argument when the counts differ;
 // std::runtime_error when a strand is thicker than its yarn.
 YarnPatch with_strands(const YarnPatch& patch, const std::vector<Strands>& of_yarns);
+
+// Several periods of a patch as one: `across` of its warp ends' period beside each other, `along` behind each other, each
+// yarn as long as all of them. The cloth is the same; its yarns can then be made unlike each other.
+YarnPatch repeated(const YarnPatch& patch, int across, int along);
 
 // The radius of a ply: as given, or as large as lets the plies touch each other inside the yarn.
 double ply_radius_mm(const Plies& plies, double yarn_radius_mm);

@@ -26,6 +26,8 @@ void add_validate_cloth_command(CLI::App& app) {
   command->add_option("--out", request.out, "folder of photographs, pictures and results")->required();
   command->add_option("--model", request.models, "models to fit; thread, fiber and yarn without this")
       ->transform(CLI::CheckedTransformer(names_of_models()));
+  command->add_flag("--true-fibers", request.true_fibers,
+                    "predict with the spools' own fibers as bundles, too: what is not the fit's error");
   command->add_option("--exit", request.exit, "where light leaves the thread, in the thread model's fits and pictures")
       ->transform(CLI::CheckedTransformer(thread_exits()));
   command

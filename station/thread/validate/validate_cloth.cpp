@@ -1,5 +1,6 @@
 #include "station/thread/validate/validate_cloth.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -31,6 +32,10 @@ using inversion::View;
 namespace fs = std::filesystem;
 
 constexpr int kWarp = 0, kWeft = 1;  // of the cloth's threads
+constexpr const char* kTrueFibers = "true fibers";
+// Warp ends and weft picks of the reference's patch, at least. Bundles of ten fibers differ in brightness by some ten
+// percent; of so many the mean is within about 1 %.
+constexpr int kReferenceYarns = 40;
 constexpr const char* kStopped = "the validation was interrupted; the same command goes on with the pictures it has";
 
 struct SpoolToFit {
@@ -52,6 +57,25 @@ void require_thread_of(const Spool& spool, double yarn_diameter_mm) {
                              number_text(yarn_diameter_mm, 3) + " mm; give a draft of this thread");
 }
 
+int yarns_of(const renderer::YarnPatch& patch, bool warp) {
+  return static_cast<int>(std::ranges::count(patch.yarns, warp, &renderer::Yarn::warp));
+}
+
+renderer::YarnPatch of_many_yarns(const renderer::YarnPatch& patch) {
+  const auto times = [&](bool warp) {
+    const int yarns = yarns_of(patch, warp);
+    return (kReferenceYarns + yarns - 1) / yarns;
+  };
+  return renderer::repeated(patch, times(true), times(false));
+}
+
+renderer::BundleParameters true_bundle(const Spool& spool) {
+  const SimulatedFibers& fibers = simulated_fibers(spool);
+  return {.fiber_count = fibers.fibers_per_thread,
+          .radius_ratio = 2 * fibers.fiber_radius_mm / spool.wrapping.thread_diameter_mm,
+          .fiber = fibers.scattering};
+}
+
 class Study {
  public:
   explicit Study(const ValidateClothRequest& request)
@@ -70,7 +94,9 @@ class Study {
     }
     views_ = cylinder_views(rig_, cylinder_, request.width_px, request.height_px);
     views_.push_back(swatch_.view);
-    pictures_ = drafts_.size() * warps_.size() * views_.size() * (1 + request.models.size());
+    for (const ModelKind model : request.models) models_.push_back(name_of(model));
+    if (request.true_fibers) models_.push_back(kTrueFibers);
+    pictures_ = drafts_.size() * warps_.size() * views_.size() * (1 + models_.size());
     fs::create_directories(request.out / "samples");
   }
 
@@ -108,14 +134,14 @@ class Study {
     const std::string name = draft + "-" + sample.warp + "-" + view.id;
     const CompareOptions options{.fit_scale = false, .block_px = sample.block_px};
     const PictureHalves reference = pictures(name, "reference", warp, view, [&] {
-      return Woven{.patch = with_fibers_of(patch, {warp.spool, weft_.spool}),
+      return Woven{.patch = with_fibers_of(of_many_yarns(patch), {warp.spool, weft_.spool}),
                    .threads = {simulated_fibers(warp.spool).scattering, simulated_fibers(weft_.spool).scattering}};
     });
     sample.noise_delta_e = compare_pictures(reference[0], reference[1], view.mask, options).mean_delta_e / 2;
     shown.push_back(mean_of(reference));
-    for (ModelKind model : request_.models) {
-      const PictureHalves predicted = pictures(name, name_of(model), warp, view, [&] {
-        return Woven{.patch = patch, .threads = {fitted(warp, model), fitted(weft_, model)}};
+    for (const std::string& model : models_) {
+      const PictureHalves predicted = pictures(name, model, warp, view, [&] {
+        return Woven{.patch = patch, .threads = {model_of(warp, model), model_of(weft_, model)}};
       });
       shown.push_back(mean_of(predicted));
       sample.models.push_back({model, compare_pictures(shown.front(), shown.back(), view.mask, options)});
@@ -170,15 +196,19 @@ class Study {
       if (sample.starts_with(file.stem().string() + "-")) words += read_json_file(file).dump();
     for (int number : {request_.samples_per_pixel, request_.photograph_samples, request_.width_px, request_.height_px})
       words += "/" + std::to_string(number);
+    words += "/" + std::to_string(kReferenceYarns);
     if (what == name_of(ModelKind::thread)) words += "/" + std::to_string(static_cast<int>(request_.exit));
     return words + "/" + std::to_string(request_.seed);
   }
 
-  // The model fitted to a spool, which is photographed and fitted when first asked for.
-  const renderer::ScatteringModel& fitted(const SpoolToFit& of, ModelKind model) {
+  // The model of a spool's thread; the spool is photographed and fitted when first asked for.
+  renderer::ScatteringModel model_of(const SpoolToFit& of, const std::string& model_name) {
+    if (model_name == kTrueFibers) return true_bundle(of.spool);
     const std::string name = of.file.stem().string();
-    const auto key = std::pair(name, model);
+    const auto key = std::pair(name, model_name);
     if (const auto found = fits_.find(key); found != fits_.end()) return found->second;
+    const auto named = [](ModelKind kind) { return std::string(name_of(kind)); };
+    const ModelKind model = *std::ranges::find(request_.models, model_name, named);
     const auto step = [&](const std::string& what, double) {
       progress_.show(static_cast<int>(done_), static_cast<int>(pictures_), name + ": " + what);
     };
@@ -210,8 +240,9 @@ class Study {
   SpoolToFit weft_;
   std::vector<std::pair<std::string, renderer::Draft>> drafts_;
   std::vector<View> views_;
+  std::vector<std::string> models_;
   std::map<std::string, std::vector<View>> photographs_;
-  std::map<std::pair<std::string, ModelKind>, renderer::ScatteringModel> fits_;
+  std::map<std::pair<std::string, std::string>, renderer::ScatteringModel> fits_;  // by spool and model
   std::size_t pictures_ = 0, done_ = 0;
 };
 
@@ -232,7 +263,7 @@ std::map<std::string, Summary> summaries(const std::vector<PredictedSample>& sam
     Summary& noise = sums["noise of the reference" + lit];
     ++noise.pictures, noise.delta_e += sample.noise_delta_e;
     for (const PredictedSample::OfModel& of : sample.models) {
-      Summary& sum = sums[name_of(of.model) + lit];
+      Summary& sum = sums[of.model + lit];
       ++sum.pictures, sum.delta_e += of.comparison.mean_delta_e;
       for (const double brightness : of.comparison.brightness) {
         sum.off_percent += percent_off(brightness);
@@ -269,13 +300,13 @@ std::string describe(const std::vector<PredictedSample>& samples) {
   std::string text =
       "CIEDE2000 of block averages, mean red, green and blue over the reference's (% off), and the highlight's column, "
       "width (px), height (of the reference's) and hue (deg)\n"
-      "weave            warp                       lamp   model      mean  95 % below   red green  blue  "
+      "weave            warp                       lamp   model        mean  95 % below   red green  blue  "
       "column  width  height   hue\n";
   const auto add_line = [&](const PredictedSample& of, const std::string& what, double mean, double most,
                             const std::array<double, 3>& brightness, const HighlightProfile& highlight, double unit) {
     char line[200];
     std::snprintf(line, sizeof line,
-                  "%-16s %-26s %-6s %-9s %5.2f  %10.2f %+5.1f %+5.1f %+5.1f  %6.0f %6.0f  %6.3f %5.0f\n",
+                  "%-16s %-26s %-6s %-11s %5.2f  %10.2f %+5.1f %+5.1f %+5.1f  %6.0f %6.0f  %6.3f %5.0f\n",
                   of.weave.c_str(), of.warp.c_str(), of.side.c_str(), what.c_str(), mean, most,
                   percent_off(brightness[0]), percent_off(brightness[1]), percent_off(brightness[2]), highlight.peak_px,
                   highlight.width_px, highlight.peak / unit, highlight.hue_deg);
@@ -286,7 +317,7 @@ std::string describe(const std::vector<PredictedSample>& samples) {
     const HighlightProfile& reference = sample.models.front().comparison.photograph;
     add_line(sample, "reference", sample.noise_delta_e, 0, {1, 1, 1}, reference, reference.peak);
     for (const PredictedSample::OfModel& of : sample.models)
-      add_line(sample, name_of(of.model), of.comparison.mean_delta_e, of.comparison.delta_e_95,
+      add_line(sample, of.model, of.comparison.mean_delta_e, of.comparison.delta_e_95,
                of.comparison.brightness, of.comparison.rendering, reference.peak);
   }
   for (const auto& [what, sum] : summaries(samples)) {
@@ -307,7 +338,7 @@ nlohmann::json to_json(const std::vector<PredictedSample>& samples) {
   nlohmann::json document = nlohmann::json::array();
   for (const PredictedSample& sample : samples) {
     nlohmann::json models = nlohmann::json::object();
-    for (const PredictedSample::OfModel& of : sample.models) models[name_of(of.model)] = to_json(of.comparison);
+    for (const PredictedSample::OfModel& of : sample.models) models[of.model] = to_json(of.comparison);
     document.push_back({{"weave", sample.weave},
                         {"warp", sample.warp},
                         {"lamp", sample.side},

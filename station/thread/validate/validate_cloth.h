@@ -4,7 +4,8 @@
 //   spool     | simulated fibers, photographed in 17 views and fitted with the thread model and both baselines
 //   sample    | each weave in each warp colour, all with the same weft: on the black cylinder, lit from right and left,
 //             | and as an upright swatch with the lamp behind it
-//   reference | the same cloth, every yarn made of the fibers of its spool: a patch of fibers in two scales
+//   reference | the same cloth, every yarn made of the fibers of its spool: a patch of fibers in two scales, of so many
+//             | yarns, each with a bundle of its own, that it does not hang on how a few bundles fell
 //   table     | CIEDE2000 of block averages, the mean radiance over the reference's in each channel, and place, width,
 //             | height and hue of the highlight, all in one unit of radiance: nothing is scaled to fit
 #pragma once
@@ -27,6 +28,7 @@ struct ValidateClothRequest {
   std::vector<std::filesystem::path> warps, drafts;
   std::vector<inversion::ModelKind> models{inversion::ModelKind::thread, inversion::ModelKind::fiber,
                                            inversion::ModelKind::yarn};
+  bool true_fibers = false;  // besides, predict with each spool's own fibers as a bundle: what no fit can better
   renderer::ThreadExit exit = renderer::ThreadParameters{}.exit;  // of the thread model
   int samples_per_pixel = 64;                                     // in each of the two renderings of every picture
   int photograph_samples = 96;                                    // in each of the two photographs of a spool's view
@@ -41,7 +43,7 @@ struct PredictedSample {
   // The noise of the reference, which is the mean of two renderings: half their difference.
   double noise_delta_e = 0;
   struct OfModel {
-    inversion::ModelKind model;
+    std::string model;  // its name; "true fibers" for those of the spool
     Comparison comparison;
   };
   std::vector<OfModel> models;

@@ -134,6 +134,32 @@ TEST(WovenPatchTest, StrandsKeepTheirPlacesInTheYarn) {
                std::runtime_error);
 }
 
+TEST(RepeatedTest, HasTheSameYarnsInEveryPeriod) {
+  Draft draft = twill_draft(2, 1);
+  draft.slubs = {.radius = 0.1};
+  draft.unevenness.shades = 2, draft.slubs.shade_mm = 1;
+  const YarnPatch once = woven_patch(draft).patch, all = repeated(once, 2, 3);
+  ASSERT_EQ(once.yarns.size(), 6U);
+  ASSERT_EQ(all.yarns.size(), 2U * 3U + 3U * 3U);
+  EXPECT_DOUBLE_EQ(all.period_x_mm, 2 * once.period_x_mm);
+  EXPECT_DOUBLE_EQ(all.period_y_mm, 3 * once.period_y_mm);
+  for (std::size_t i = 0; i < all.yarns.size(); ++i) {
+    const bool warp = i < 6;
+    const std::size_t copy = warp ? i / 3 : (i - 6) / 3;
+    const Yarn &yarn = all.yarns[i], &of = once.yarns[warp ? i % 3 : 3 + (i - 6) % 3];
+    ASSERT_EQ(yarn.warp, warp);
+    const Vector3d shift = static_cast<double>(copy) *
+                           (warp ? Vector3d(once.period_x_mm, 0, 0) : Vector3d(0, once.period_y_mm, 0));
+    ASSERT_EQ(yarn.control_points.size(), (warp ? 3U : 2U) * of.control_points.size());
+    for (double t = -3.3; t < 100; t += 1.7) {
+      const Vector3d there = spline_value(center_line(once, of), t) + shift;
+      EXPECT_LT((spline_value(center_line(all, yarn), t) - there).norm(), 1e-9) << "yarn " << i << " at " << t;
+      EXPECT_NEAR(thickness(yarn, t), thickness(of, t), 1e-12);
+      EXPECT_EQ(thread_of_segment(yarn, static_cast<int>(t)), thread_of_segment(of, static_cast<int>(t)));
+    }
+  }
+}
+
 TEST(WovenPatchTest, StrandsOfAFlatYarnAreRoundAndLieInItsSection) {
   YarnPatch yarns = relax(plain_cloth(1.25, 1.25, 0.5)).patch;
   for (Yarn& yarn : yarns.yarns) yarn.flatness = 2.25;  // 0.375 mm wide and 0.167 mm high, from the middle
