@@ -1,5 +1,6 @@
 #include "renderer/trace/bundle_walk.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -14,6 +15,9 @@ constexpr float kRound = 1.01f;        // up to this flatness a section counts a
 constexpr float kLeastCosine = 1e-4f;  // of a ray's inclination, below which it flies along the fibers
 // How far below a fiber's surface scattered rays start, in radii.
 constexpr float kStartDepth = 1e-3f;
+// How far along the axis a section counts as straight, in its longer half axes.
+constexpr float kStraight = 0.25f;
+constexpr int kMostSteps = 64;  // of them that a ray goes without meeting a fiber, before it counts as having left
 
 // The ellipse of all points x a + y b with x^2 + y^2 = 1.
 struct Ellipse {
@@ -36,13 +40,18 @@ struct Ellipse {
 }  // namespace
 
 BundleWalk::BundleWalk(const BundleSections& sections, const CurvePoint& entry, Sampler& sampler)
-    : axis_(entry.position - entry.out), tangent_(entry.tangent), curve_set_(entry.curve_set) {
+    : line_(entry.axis),
+      met_(entry.position - entry.out),
+      axis_(met_),
+      tangent_(entry.tangent),
+      curve_set_(entry.curve_set) {
   const Vector2f u = sampler.next_2d();
   const int draw = std::min(static_cast<int>(u.x() * static_cast<float>(sections.draws())), sections.draws() - 1);
   const Vector3f across = entry.normal.cross(tangent_);
   const Ellipse section({entry.side.dot(across), entry.side.dot(entry.normal)},
                         {entry.out.dot(across), entry.out.dot(entry.normal)});
   fiber_radius_ = static_cast<float>(sections.radius_ratio()) * std::sqrt(section.area);
+  reach_ = std::sqrt(section.flatness * section.area) / fiber_radius_;
   Vector2f wide, high;
   if (section.flatness < kRound) {
     const float angle = 2 * std::numbers::pi_v<float> * u.y();
@@ -58,26 +67,57 @@ BundleWalk::BundleWalk(const BundleSections& sections, const CurvePoint& entry, 
   y_ = (high.x() * across + high.y() * entry.normal) / fiber_radius_;
 }
 
+void BundleWalk::move_to(const Vector3f& place) {
+  constexpr int kIterations = 2;
+  CurveAxis::Place here = line_.at(t_);
+  for (int i = 0; i < kIterations; ++i) {
+    t_ += (place - met_ - here.offset).dot(here.derivative) / here.derivative.squaredNorm();
+    here = line_.at(t_);
+  }
+  axis_ = met_ + here.offset;
+  const Vector3f along = here.derivative.normalized(), tangent = along.dot(tangent_) < 0 ? Vector3f(-along) : along;
+  const auto turn = Eigen::Quaternionf::FromTwoVectors(tangent_, tangent);
+  x_ = turn * x_, y_ = turn * y_;
+  tangent_ = tangent;
+}
+
 std::optional<SurfaceHit> BundleWalk::next(const Ray& ray) {
-  const Vector2f flight = in_section(ray.direction);
-  const float speed = flight.norm();  // fiber radii per mm
-  if (!(speed * fiber_radius_ > kLeastCosine)) return std::nullopt;
-  const Eigen::Vector2d origin = in_section(ray.origin - axis_).cast<double>(),
-                        direction = flight.cast<double>() / speed;
-  const CircleHit hit = fibers_->nearest(origin, direction, fiber_);
-  if (hit.circle < 0) return std::nullopt;
-  fiber_ = hit.circle;
-  const Vector2f outward = (origin + hit.distance * direction - fibers_->center(fiber_)).cast<float>();
-  CurvePoint point;
-  point.curve_set = curve_set_;
-  point.tangent = tangent_;
-  const float scale = fiber_radius_ * fiber_radius_;  // x_ and y_ are as long as the inverse of the radius
-  point.normal = ((outward.x() * x_ + outward.y() * y_) * scale).normalized();
-  point.out = fiber_radius_ * (1 - kStartDepth) * point.normal;
-  point.side = point.out.cross(tangent_);
-  const auto distance = static_cast<float>(hit.distance) / speed;
-  point.position = ray.origin + distance * ray.direction - kStartDepth * fiber_radius_ * point.normal;
-  return SurfaceHit{distance, point};
+  const float step = kStraight * reach_ * fiber_radius_;  // mm along the axis
+  Vector3f origin = ray.origin;
+  float before = 0;
+  for (int steps = 0; steps < kMostSteps; ++steps) {
+    const Vector2f flight = in_section(ray.direction);
+    const float speed = flight.norm();  // fiber radii per mm
+    const float along = std::abs(ray.direction.dot(tangent_)), straight = along > 0 ? step / along : 1e30f;
+    CircleHit hit;
+    Eigen::Vector2d from, direction;
+    if (speed * fiber_radius_ > kLeastCosine) {
+      from = in_section(origin - axis_).cast<double>(), direction = flight.cast<double>() / speed;
+      hit = fibers_->nearest(from, direction, fiber_);
+    }
+    const float distance = static_cast<float>(hit.distance) / speed;
+    if (hit.circle < 0 || distance > straight) {
+      origin += straight * ray.direction;
+      before += straight;
+      if (in_section(origin - axis_).norm() > reach_) return std::nullopt;
+      move_to(origin);
+      continue;
+    }
+    fiber_ = hit.circle;
+    const Vector2f outward = (from + hit.distance * direction - fibers_->center(fiber_)).cast<float>();
+    move_to(origin + distance * ray.direction);
+    const float scale = fiber_radius_ * fiber_radius_;  // x_ and y_ are as long as the inverse of the radius
+    const Vector2f place = fibers_->center(fiber_).cast<float>() + (1 - kStartDepth) * outward;
+    CurvePoint point;
+    point.curve_set = curve_set_;
+    point.tangent = tangent_;
+    point.normal = ((outward.x() * x_ + outward.y() * y_) * scale).normalized();
+    point.out = fiber_radius_ * (1 - kStartDepth) * point.normal;
+    point.side = point.out.cross(point.tangent);
+    point.position = axis_ + (place.x() * x_ + place.y() * y_) * scale;
+    return SurfaceHit{before + distance, point};
+  }
+  return std::nullopt;
 }
 
 }  // namespace renderer

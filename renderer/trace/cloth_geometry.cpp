@@ -25,12 +25,22 @@ SurfaceRange shell_heights(const YarnPatch& patch) {
   return {range.low_mm - more, range.high_mm + more};
 }
 
+// How far yarns are kept beyond the cell. Light goes along among a yarn's fibers for a radius or two before it leaves.
+double margin_mm(const Cloth& cloth) {
+  constexpr double kRadii = 6;
+  const auto is_bundle = [](const ScatteringModel& model) { return std::holds_alternative<BundleParameters>(model); };
+  if (std::ranges::none_of(cloth.threads, is_bundle)) return 0;
+  double thickest = 0;
+  for (const Yarn& yarn : cloth.patch.yarns) thickest = std::max(thickest, yarn.radius_mm);
+  return kRadii * thickest;
+}
+
 std::vector<ColumnYarns> yarns_of(const Cloth& cloth) {
   check_cloth(cloth.patch, cloth.threads.size());
   std::vector<ColumnYarns> yarns;
   for (const RoundYarns& part : round_yarns_of(cloth.patch))
     for (const int thread : threads_of(part.patch)) {
-      yarns.push_back({cell_curves_of(part.patch, thread), static_cast<std::uint32_t>(thread)});
+      yarns.push_back({cell_curves_of(part.patch, thread, margin_mm(cloth)), static_cast<std::uint32_t>(thread)});
       yarns.back().curves.placed = Eigen::Scaling(Vector3f(part.stretch.cast<float>()));
     }
   return yarns;
@@ -76,7 +86,7 @@ ClothGeometry::ClothGeometry(const Cloth& cloth, std::uint32_t first_curve_set)
       first_curve_set_(first_curve_set),
       yarns_(yarns_of(cloth)),
       grid_(yarns_, {cloth.patch.period_x_mm, cloth.patch.period_y_mm}, shell_.least_spread),
-      places_(cloth.patch, 0),
+      places_(cloth.patch, margin_mm(cloth)),
       absorption_(checked_absorption(cloth)) {}
 
 void ClothGeometry::attach_to(RTCDevice device, RTCScene scene) const {
@@ -150,6 +160,8 @@ CurvePoint ClothGeometry::point_at(const ClothHit& hit) const {
   Eigen::Matrix3f section = to_world.leftCols<3>().cast<float>();
   section.leftCols<2>().colwise().normalize();
   place_section(section, point);
+  point.axis =
+      CurveAxis(yarns.curves, hit.segment, hit.u, to_world.leftCols<3>().cast<float>() * yarns.curves.placed.linear());
   if (absorption_) {
     const Eigen::Vector2i texel = absorption_->texel_at(patch.head<2>());
     point.absorption = &absorption_->sigma_a(texel.y(), texel.x());

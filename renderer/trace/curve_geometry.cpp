@@ -51,6 +51,19 @@ Ray unplaced(const Eigen::Affine3f& placed, const Ray& ray) {
   return {inverse * ray.origin, inverse.linear() * ray.direction};
 }
 
+// The axis at parameter u of a segment, with the radius there; and the axis's derivative by u.
+Eigen::Vector4f center_of(const CurveSet& curves, std::uint32_t segment, float u) {
+  const Eigen::Vector4f* p = &curves.control_points[curves.segments[segment]];
+  const float w = 1 - u;
+  return (w * w * w * p[0] + (4 + 3 * u * u * (u - 2)) * p[1] + (4 + 3 * w * w * (w - 2)) * p[2] + u * u * u * p[3]) /
+         6;
+}
+Vector3f derivative_of(const CurveSet& curves, std::uint32_t segment, float u) {
+  const Eigen::Vector4f* p = &curves.control_points[curves.segments[segment]];
+  const float w = 1 - u;
+  return 0.5f * (-w * w * p[0] + u * (3 * u - 4) * p[1] - w * (3 * w - 4) * p[2] + u * u * p[3]).head<3>();
+}
+
 bool is_in_place(const CurveSet& curves) {
   return curves.placed.matrix() == Eigen::Matrix4f::Identity();
 }
@@ -93,12 +106,8 @@ std::size_t bytes_of(const CurveSet& curves) {
 
 CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u, const Vector3f& hit_normal,
                           const Ray& ray, float distance, const Spread& spread) {
-  const Eigen::Vector4f* p = &curves.control_points[curves.segments[segment]];
-  const float w = 1 - u;
-  const Eigen::Vector4f center =
-      (w * w * w * p[0] + (4 + 3 * u * u * (u - 2)) * p[1] + (4 + 3 * w * w * (w - 2)) * p[2] + u * u * u * p[3]) / 6;
-  const Vector3f derivative =
-      (-w * w * p[0] + u * (3 * u - 4) * p[1] - w * (3 * w - 4) * p[2] + u * u * p[3]).head<3>();
+  const Eigen::Vector4f center = center_of(curves, segment, u);
+  const Vector3f derivative = derivative_of(curves, segment, u);
   const bool in_place = is_in_place(curves);
   const Ray local = in_place ? ray : unplaced(curves.placed, ray);
   // From the patch to the world round the axis, as yarn_grid_kernel.cpp has it.
@@ -122,6 +131,7 @@ CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u
   point.side = point.out.cross(point.tangent);
   point.position = center.head<3>() + point.out.cwiseQuotient(here);
   point.position.z() += fall(point.out);
+  point.axis = CurveAxis(curves, segment, u, curves.placed.linear());
   if (in_place) return point;
   const Eigen::Matrix3f linear = curves.placed.linear();
   point.position = curves.placed * point.position;
@@ -129,6 +139,21 @@ CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u
   point.tangent = (linear * point.tangent).normalized();
   place_section(linear, point);
   return point;
+}
+
+CurveAxis::CurveAxis(const CurveSet& curves, std::uint32_t segment, float u, const Eigen::Matrix3f& linear)
+    : curves_(&curves), segment_(segment), u_(u), met_(center_of(curves, segment, u).head<3>()), linear_(linear) {}
+
+CurveAxis::Place CurveAxis::at(float t) const {
+  const std::vector<std::uint32_t>& all = curves_->segments;  // those that go on share control points
+  std::uint32_t segment = segment_;
+  float u = u_ + t;
+  for (; u > 1 && segment + 1 < all.size() && all[segment + 1] == all[segment] + 1; --u) ++segment;
+  for (; u < 0 && segment > 0 && all[segment - 1] + 1 == all[segment]; ++u) --segment;
+  const float on_curve = std::clamp(u, 0.0f, 1.0f);
+  const Vector3f derivative = derivative_of(*curves_, segment, on_curve);
+  const Vector3f offset = center_of(*curves_, segment, on_curve).head<3>() + (u - on_curve) * derivative - met_;
+  return {linear_ * offset, linear_ * derivative};
 }
 
 void place_section(const Eigen::Matrix3f& linear, CurvePoint& point) {

@@ -15,6 +15,28 @@ struct Ray {
   Eigen::Vector3f direction;  // unit
 };
 
+// The axis of a curve, before and behind the place where the curve was met.
+class CurveAxis {
+ public:
+  CurveAxis() = default;  // of no curve
+  // Met at parameter u of the segment; the curves must outlive it. `linear`: from their frame to the world, there.
+  CurveAxis(const CurveSet& curves, std::uint32_t segment, float u, const Eigen::Matrix3f& linear);
+
+  struct Place {
+    Eigen::Vector3f offset;      // mm, from the axis where the curve was met
+    Eigen::Vector3f derivative;  // of it by t
+  };
+  // The axis at t segments from there. Beyond the curve's ends it goes on straight.
+  Place at(float t) const;
+
+ private:
+  const CurveSet* curves_ = nullptr;
+  std::uint32_t segment_ = 0;
+  float u_ = 0;
+  Eigen::Vector3f met_ = Eigen::Vector3f::Zero();  // in the curves' frame
+  Eigen::Matrix3f linear_ = Eigen::Matrix3f::Identity();
+};
+
 struct CurvePoint {
   std::uint32_t curve_set;   // number of the scattering model, as in scattering_models()
   Eigen::Vector3f position;  // just below the surface, where scattered rays start: they cannot meet the same spot again
@@ -22,6 +44,7 @@ struct CurvePoint {
   // The section across the tangent is the ellipse of all points axis + x side + y out with x^2 + y^2 = 1, mm; `out`
   // leads from the axis to `position`, `side` along the surface there. On a round yarn both are as long as the radius.
   Eigen::Vector3f side, out;
+  CurveAxis axis{};
   const cv::Vec3f* absorption = nullptr;  // texel of the cloth's AbsorptionTexture there, if it has one
 };
 

@@ -18,6 +18,7 @@ using Eigen::Array3d;
 using Eigen::Vector3d;
 
 constexpr double kRadius_mm = 0.25;
+constexpr double kWave_mm = 1.8;  // of two crossings of plain weave
 constexpr int kBundles = 256, kSamples = 24;
 const BundleParameters kThread{
     .fiber_count = 20, .radius_ratio = 0.15, .fiber = {.sigma_a = {0.05, 0.4, 1.5}, .beta_m = 0.3, .beta_n = 0.35}};
@@ -27,6 +28,7 @@ struct Case {
   int threads;      // side by side, touching
   double flatness;  // of their sections; the area stays
   Vector3d to_light;
+  double crimp_mm = 0;  // height of the waves in which threads run, kWave_mm long, up at x = 0
 };
 
 // From threads as round curves along x.
@@ -35,9 +37,20 @@ Eigen::Affine3f flattened(double flatness) {
   return Eigen::Affine3f(Eigen::Scaling(1.0f, static_cast<float>(root), static_cast<float>(1 / root)));
 }
 
-void add_line(CurveSet& set, const Eigen::Vector2d& at, double radius_mm) {
-  const auto y = static_cast<float>(at.x()), z = static_cast<float>(at.y()), radius = static_cast<float>(radius_mm);
-  set.add_clamped_curve({{-30, y, z, radius}, {0, y, z, radius}, {30, y, z, radius}});
+// A line at `at` (y, and across it and the thread) in the sections of a thread along x.
+void add_line(CurveSet& set, const Eigen::Vector2d& at, double radius_mm, double crimp_mm) {
+  constexpr int kPointsPerWave = 32;
+  constexpr double kHalf_mm = 30;
+  const auto y = static_cast<float>(at.x()), radius = static_cast<float>(radius_mm);
+  const double step = crimp_mm > 0 ? kWave_mm / kPointsPerWave : kHalf_mm, k = 2 * std::numbers::pi / kWave_mm;
+  std::vector<Eigen::Vector4f> points;
+  for (double x = -kHalf_mm; x < kHalf_mm + step / 2; x += step) {
+    const Eigen::Vector2d along = Eigen::Vector2d(1, -crimp_mm / 2 * k * std::sin(k * x)).normalized(),
+                          up(-along.y(), along.x()),
+                          place = Eigen::Vector2d(x, crimp_mm / 2 * std::cos(k * x)) + at.y() * up;
+    points.push_back({static_cast<float>(place.x()), y, static_cast<float>(place.y()), radius});
+  }
+  set.add_clamped_curve(points);
 }
 
 // The place of thread number i in the plane across, before threads are flattened.
@@ -47,7 +60,7 @@ Eigen::Vector2d place_of(int i, const Case& of) {
 
 CurveSet as_bundles(const Case& of) {
   CurveSet set{.scattering = kThread};
-  for (int i = 0; i < of.threads; ++i) add_line(set, place_of(i, of), kRadius_mm);
+  for (int i = 0; i < of.threads; ++i) add_line(set, place_of(i, of), kRadius_mm, of.crimp_mm);
   set.placed = flattened(of.flatness);
   return set;
 }
@@ -62,7 +75,7 @@ CurveSet as_fibers(const Case& of, std::uint64_t seed) {
                            7919 * seed + 101 * static_cast<std::uint64_t>(i) + attempt, FiberPlacement::area_uniform,
                            of.flatness);
     const Eigen::Vector2d middle(std::sqrt(of.flatness) * place_of(i, of).x(), 0);
-    for (const Eigen::Vector2d& fiber : fibers) add_line(set, middle + fiber, fiber_radius);
+    for (const Eigen::Vector2d& fiber : fibers) add_line(set, middle + fiber, fiber_radius, of.crimp_mm);
   }
   return set;
 }
@@ -105,7 +118,10 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"LitAlong", 1, 1, {0.8, 0.2, 0.5}}, Case{"TouchingInFront", 3, 1, {0.1, 0.5, 0.8}},
                     Case{"TouchingFromBehind", 3, 1, {0.1, 0.4, -0.9}}, Case{"FlatInFront", 1, 2, {0.1, 0.5, 0.8}},
                     Case{"FlatFromBehind", 1, 2, {0.1, 0.4, -0.9}},
-                    Case{"FlatTouchingFromBehind", 3, 2.4, {0.1, 0.4, -0.9}}),
+                    Case{"FlatTouchingFromBehind", 3, 2.4, {0.1, 0.4, -0.9}},
+                    Case{"CrimpedInFront", 1, 1, {0.1, 0.5, 0.8}, 0.5},
+                    Case{"CrimpedAlong", 1, 1, {0.8, 0.2, 0.5}, 0.5},
+                    Case{"CrimpedFromBehind", 3, 1, {0.1, 0.4, -0.9}, 0.5}),
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST(BundleSectionsTest, HoldTheirFibersWithoutOverlapWithinTheSection) {
