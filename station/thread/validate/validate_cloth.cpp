@@ -317,8 +317,8 @@ std::string describe(const std::vector<PredictedSample>& samples) {
     const HighlightProfile& reference = sample.models.front().comparison.photograph;
     add_line(sample, "reference", sample.noise_delta_e, 0, {1, 1, 1}, reference, reference.peak);
     for (const PredictedSample::OfModel& of : sample.models)
-      add_line(sample, of.model, of.comparison.mean_delta_e, of.comparison.delta_e_95,
-               of.comparison.brightness, of.comparison.rendering, reference.peak);
+      add_line(sample, of.model, of.comparison.mean_delta_e, of.comparison.delta_e_95, of.comparison.brightness,
+               of.comparison.rendering, reference.peak);
   }
   for (const auto& [what, sum] : summaries(samples)) {
     char line[200];

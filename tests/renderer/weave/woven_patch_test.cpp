@@ -148,8 +148,8 @@ TEST(RepeatedTest, HasTheSameYarnsInEveryPeriod) {
     const std::size_t copy = warp ? i / 3 : (i - 6) / 3;
     const Yarn &yarn = all.yarns[i], &of = once.yarns[warp ? i % 3 : 3 + (i - 6) % 3];
     ASSERT_EQ(yarn.warp, warp);
-    const Vector3d shift = static_cast<double>(copy) *
-                           (warp ? Vector3d(once.period_x_mm, 0, 0) : Vector3d(0, once.period_y_mm, 0));
+    const Vector3d shift =
+        static_cast<double>(copy) * (warp ? Vector3d(once.period_x_mm, 0, 0) : Vector3d(0, once.period_y_mm, 0));
     ASSERT_EQ(yarn.control_points.size(), (warp ? 3U : 2U) * of.control_points.size());
     for (double t = -3.3; t < 100; t += 1.7) {
       const Vector3d there = spline_value(center_line(once, of), t) + shift;
