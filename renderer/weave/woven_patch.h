@@ -36,8 +36,8 @@ struct Strands {
 // std::runtime_error when a strand is thicker than its yarn.
 YarnPatch with_strands(const YarnPatch& patch, const std::vector<Strands>& of_yarns);
 
-// Several periods of a patch as one: `across` of them side by side along x, `along` along y, each yarn as long as all of
-// them. The cloth is the same; its yarns can then be made unlike each other.
+// Several periods of a patch as one: `across` of them side by side along x, `along` along y, each yarn as long as all
+// of them. The cloth is the same; its yarns can then be made unlike each other.
 YarnPatch repeated(const YarnPatch& patch, int across, int along);
 
 // The radius of a ply: as given, or as large as lets the plies touch each other inside the yarn.
