@@ -52,6 +52,7 @@ BundleWalk::BundleWalk(const BundleSections& sections, const CurvePoint& entry, 
                         {entry.out.dot(across), entry.out.dot(entry.normal)});
   fiber_radius_ = static_cast<float>(sections.radius_ratio()) * std::sqrt(section.area);
   reach_ = std::sqrt(section.flatness * section.area) / fiber_radius_;
+  height_ = reach_ / section.flatness;
   Vector2f wide, high;
   if (section.flatness < kRound) {
     const float angle = 2 * std::numbers::pi_v<float> * u.y();
@@ -79,6 +80,11 @@ void BundleWalk::move_to(const Vector3f& place) {
   const auto turn = Eigen::Quaternionf::FromTwoVectors(tangent_, tangent);
   x_ = turn * x_, y_ = turn * y_;
   tangent_ = tangent;
+}
+
+bool BundleWalk::contains(const Vector3f& place) {
+  move_to(place);
+  return in_section(place - axis_).cwiseQuotient(Vector2f(reach_, height_)).squaredNorm() < 1;
 }
 
 std::optional<SurfaceHit> BundleWalk::next(const Ray& ray) {

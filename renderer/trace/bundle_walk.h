@@ -25,6 +25,8 @@ class BundleWalk {
   // The fiber that the ray meets first. The ray starts anywhere in the thread, and not on a fiber but the one found
   // last, which it leaves. None when it leaves the thread without meeting one.
   std::optional<SurfaceHit> next(const Ray& ray);
+  // Whether a place near those met so far lies in the thread.
+  bool contains(const Eigen::Vector3f& place);
 
  private:
   Eigen::Vector2f in_section(const Eigen::Vector3f& v) const { return {v.dot(x_), v.dot(y_)}; }
@@ -36,7 +38,7 @@ class BundleWalk {
   Eigen::Vector3f met_;             // the axis where the thread was met
   float t_ = 0;                     // where the section is, on line_
   Eigen::Vector3f axis_, tangent_;  // there: a point of the axis, the direction of all fibers
-  float reach_;                     // half the section's longer axis, in units of the fiber's radius
+  float reach_, height_;            // half the section's longer and shorter axis, in units of the fiber's radius
   Eigen::Vector3f x_, y_;           // of the section that the bundle was drawn in, in units of the fiber's radius
   float fiber_radius_;              // mm
   std::uint32_t curve_set_;

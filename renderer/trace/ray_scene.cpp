@@ -18,9 +18,19 @@ using Eigen::Vector3f;
 // How far above a mesh scattered rays start, relative to its coordinates.
 constexpr float kMeshLift = 1e-5f;
 
-RTCRayHit nearest(RTCScene scene, const Ray& ray, ClothQuery& query) {
+// Share of the radius up to which yarns that lie in each other only touch: relaxation leaves less.
+constexpr double kTouching = 0.02;
+
+double overlap_of_yarns(const YarnPatch& patch) {
+  double thinnest = std::numeric_limits<double>::infinity();
+  for (const Yarn& yarn : patch.yarns) thinnest = std::min(thinnest, yarn.radius_mm);
+  return -patch.least_gap_mm / thinnest;
+}
+
+RTCRayHit nearest(RTCScene scene, const Ray& ray, ClothQuery& query,
+                  float distance = std::numeric_limits<float>::infinity()) {
   RTCRayHit found{};
-  found.ray = embree_ray(ray, std::numeric_limits<float>::infinity());
+  found.ray = embree_ray(ray, distance);
   found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(scene, &query.context, &found);
   return found;
@@ -70,6 +80,7 @@ RayScene::RayScene(Scene scene)
     cloths_.push_back(std::make_shared<ClothGeometry>(cloth, curve_set));
     cloths_.back()->attach_to(device_.get(), embree_.get());
     curve_set += static_cast<std::uint32_t>(cloth.threads.size());
+    yarns_overlap_ |= overlap_of_yarns(cloth.patch) > kTouching;
   }
   rtcCommitScene(embree_.get());
   if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) {
@@ -95,9 +106,9 @@ void RayScene::add_mesh(const TriangleMesh& mesh) {
   rtcReleaseGeometry(geometry);
 }
 
-std::optional<SurfaceHit> RayScene::intersect(const Ray& ray) const {
+std::optional<SurfaceHit> RayScene::intersect(const Ray& ray, float distance) const {
   ClothQuery query;
-  const RTCRayHit found = nearest(embree_.get(), ray, query);
+  const RTCRayHit found = nearest(embree_.get(), ray, query, distance);
   if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   const auto first_mesh = static_cast<std::uint32_t>(scene_.curves.size());
   const auto first_cloth = first_mesh + static_cast<std::uint32_t>(scene_.meshes.size());

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 #include <atomic>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <variant>
@@ -35,14 +36,17 @@ class RayScene {
  public:
   explicit RayScene(Scene scene);
 
-  // The nearest hit along the ray, if there is one.
-  std::optional<SurfaceHit> intersect(const Ray& ray) const;
+  // The nearest hit within `distance` along the ray, if there is one.
+  std::optional<SurfaceHit> intersect(const Ray& ray, float distance = std::numeric_limits<float>::infinity()) const;
   // True when anything lies within `distance` along the ray.
   bool occluded(const Ray& ray, float distance) const;
   // The yarn that a ray meets first; none when it meets nothing, or a body before any yarn.
   std::optional<YarnPlace> yarn_at(const Ray& ray) const;
   // True when the ray's first hit is on a curve, also on one of a cloth.
   bool meets_curve_first(const Ray& ray) const;
+
+  // Whether yarns of a cloth lie in each other, as those of scaled heights do. Explicit curves are not asked.
+  bool yarns_overlap() const { return yarns_overlap_; }
 
   // Bytes of the control points and segments of all yarns and fibers, which are the same for every size of a two-scale
   // cloth. Embree's tree and the cells of surfaces come on top.
@@ -62,6 +66,7 @@ class RayScene {
   std::shared_ptr<RTCDeviceTy> device_;
   std::vector<std::shared_ptr<const ClothGeometry>> cloths_;  // outlive the scene, which calls them
   std::shared_ptr<RTCSceneTy> embree_;
+  bool yarns_overlap_ = false;
   Eigen::AlignedBox3d bounds_;  // empty for a scene without surfaces
 };
 

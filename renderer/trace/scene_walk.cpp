@@ -1,6 +1,7 @@
 #include "renderer/trace/scene_walk.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace renderer {
 
@@ -14,55 +15,67 @@ const BundleModel* SceneWalk::bundle_of(const SurfaceHit& hit) const {
   return curve ? std::get_if<BundleModel>(&(*models_)[curve->curve_set]) : nullptr;
 }
 
-std::optional<SurfaceHit> SceneWalk::next(const Ray& ray, Sampler& sampler) {
-  if (bundle_) {
-    if (const std::optional<SurfaceHit> fiber = bundle_->next(ray)) return fiber;
-    bundle_.reset();
-  }
+std::optional<SurfaceHit> SceneWalk::next(const Ray& ray, float distance, Bundles& inside, Sampler& sampler) const {
+  const bool overlap = scene_->yarns_overlap();
   float before = 0;
   for (Ray rest = ray;;) {
-    ++traced_;
-    std::optional<SurfaceHit> hit = scene_->intersect(rest);
-    if (!hit) return std::nullopt;
-    const BundleModel* thread = bundle_of(*hit);
-    before += hit->distance;
-    if (!thread) {
-      hit->distance = before;
-      return hit;
+    std::optional<SurfaceHit> fiber;
+    std::optional<BundleWalk>* of_fiber = nullptr;
+    Bundles gone = inside;  // each where its own next fiber is
+    for (std::size_t i = 0; i < inside.size(); ++i) {
+      if (!gone[i]) continue;
+      std::optional<SurfaceHit> found = gone[i]->next(rest);
+      if (found && (!fiber || found->distance < fiber->distance)) fiber = found, of_fiber = &gone[i];
     }
-    const auto& entry = std::get<CurvePoint>(hit->point);
-    bundle_.emplace(thread->sections(), entry, sampler);
-    rest.origin = entry.position;
-    if (std::optional<SurfaceHit> fiber = bundle_->next(rest)) {
+    std::optional<SurfaceHit> hit;
+    const float most = std::min(distance - before, fiber ? fiber->distance : std::numeric_limits<float>::infinity());
+    if (!fiber || overlap) {
+      ++traced_;
+      hit = scene_->intersect(rest, most);
+    }
+    if (!hit && (!fiber || fiber->distance > most)) return std::nullopt;
+    const auto keep_those_around = [&](const Eigen::Vector3f& place) {
+      for (std::optional<BundleWalk>& bundle : inside)
+        if (bundle && (!overlap || !bundle->contains(place))) bundle.reset();
+    };
+    if (!hit) {
+      if (overlap) {
+        const std::size_t number = static_cast<std::size_t>(of_fiber - gone.data());
+        inside[number].reset();
+        keep_those_around(std::get<CurvePoint>(fiber->point).position);
+        inside[number] = *of_fiber;
+      } else {
+        inside = gone;
+      }
       fiber->distance += before;
       return fiber;
     }
-    bundle_.reset();
+    const BundleModel* thread = bundle_of(*hit);
+    if (!thread) {
+      inside = {};
+      hit->distance += before;
+      return hit;
+    }
+    const auto& entry = std::get<CurvePoint>(hit->point);
+    keep_those_around(entry.position);
+    const auto free = std::ranges::find_if(inside, [](const auto& bundle) { return !bundle; });
+    (free == inside.end() ? inside.front() : *free).emplace(thread->sections(), entry, sampler);
+    before += hit->distance;
+    rest.origin = entry.position;
   }
 }
 
+std::optional<SurfaceHit> SceneWalk::next(const Ray& ray, Sampler& sampler) {
+  return next(ray, std::numeric_limits<float>::infinity(), inside_, sampler);
+}
+
 bool SceneWalk::occluded(const Ray& ray, float distance, Sampler& sampler) const {
-  if (bundle_) {
-    BundleWalk here = *bundle_;
-    if (const auto fiber = here.next(ray); fiber && fiber->distance < distance) return true;
-  }
   if (!has_bundles_) {
     ++traced_;
     return scene_->occluded(ray, distance);
   }
-  float left = distance;
-  for (Ray rest = ray;;) {
-    ++traced_;
-    const std::optional<SurfaceHit> hit = scene_->intersect(rest);
-    if (!hit || hit->distance >= left) return false;
-    const BundleModel* thread = bundle_of(*hit);
-    if (!thread) return true;
-    const auto& entry = std::get<CurvePoint>(hit->point);
-    left -= hit->distance;
-    rest.origin = entry.position;
-    BundleWalk bundle(thread->sections(), entry, sampler);
-    if (const auto fiber = bundle.next(rest); fiber && fiber->distance < left) return true;
-  }
+  Bundles inside = inside_;
+  return next(ray, distance, inside, sampler).has_value();
 }
 
 }  // namespace renderer

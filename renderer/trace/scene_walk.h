@@ -1,7 +1,9 @@
 // What the rays of one light path meet, one after the other, in a scene some of whose curves may be bundles of fibers
-// (bundle_walk.h): surfaces, curves and, in place of a bundle's thread, the fibers of a bundle drawn for the path.
+// (bundle_walk.h): surfaces, curves and, in place of a bundle's thread, the fibers of a bundle drawn for the path. Where
+// yarns lie in each other (RayScene::yarns_overlap) the fibers of all of them are there.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -26,12 +28,18 @@ class SceneWalk {
   std::uint64_t traced() const { return traced_; }
 
  private:
+  // Bundles that the path is in: one, or where yarns are pressed into each other several.
+  using Bundles = std::array<std::optional<BundleWalk>, 4>;
+
   const BundleModel* bundle_of(const SurfaceHit& hit) const;
+  // What the ray meets first within `distance`, from among the bundles that it is in, which are then those that it is
+  // in there.
+  std::optional<SurfaceHit> next(const Ray& ray, float distance, Bundles& inside, Sampler& sampler) const;
 
   const RayScene* scene_;
   const std::vector<CurveModel>* models_;
   bool has_bundles_;
-  std::optional<BundleWalk> bundle_;  // that the path is in
+  Bundles inside_;
   mutable std::uint64_t traced_ = 0;
 };
 
