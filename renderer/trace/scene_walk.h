@@ -1,6 +1,6 @@
 // What the rays of one light path meet, one after the other, in a scene some of whose curves may be bundles of fibers
-// (bundle_walk.h): surfaces, curves and, in place of a bundle's thread, the fibers of a bundle drawn for the path. Where
-// yarns lie in each other (RayScene::yarns_overlap) the fibers of all of them are there.
+// (bundle_walk.h): surfaces, curves and, in place of a bundle's thread, the fibers of a bundle drawn for the path.
+// Where yarns lie in each other (RayScene::yarns_overlap) the fibers of all of them are there.
 #pragma once
 
 #include <array>
