@@ -18,13 +18,13 @@ struct Stage {
 };
 
 const Stage kBrief{.paths_per_block = {64, 256, 1024},
-                   .effort = {.block_stride = 3, .own_steps = 1, .joint_steps = 2, .by_whole_hessian = true},
+                   .effort = {.block_stride = 3, .approach_steps = 1, .joint_steps = 2, .by_whole_hessian = true},
                    .comparisons = 3};
 const Stage kLonger{
     .paths_per_block = {1024},
-    .effort = {.rounds = false, .robust = false, .own_steps = 1, .joint_steps = 1, .by_whole_hessian = true},
+    .effort = {.rounds = false, .robust = false, .approach_steps = 1, .joint_steps = 1, .by_whole_hessian = true},
     .comparisons = 4};
-constexpr Effort kToTheEnd{.rounds = false, .own_steps = 1, .joint_steps = 5, .by_whole_hessian = true};
+constexpr Effort kToTheEnd{.rounds = false, .approach_steps = 1, .joint_steps = 5, .by_whole_hessian = true};
 constexpr std::size_t kFinalists = 4;
 constexpr double kShareOfBrief = 0.4, kShareOfLonger = 0.35;  // of the work; the rest is the last fit's
 

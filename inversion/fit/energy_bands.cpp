@@ -8,9 +8,10 @@ namespace {
 constexpr int kValues = 7;  // three energies, their sum, three albedos
 using Values = Eigen::Matrix<double, kValues, 1>;
 
-Values values_at(const ThreadUnknowns& unknowns, double cosine) {
+Values values_at(const Eigen::VectorXd& unknowns, double cosine) {
   constexpr int kOffsets = 16;
-  renderer::ThreadParameters p = parameters_of(unknowns);
+  renderer::ThreadParameters p =
+      unknowns.size() == kTintedCount ? tinted_parameters_of(unknowns) : parameters_of(unknowns);
   p.limit_energy = false;
   const auto lambda = renderer::thread_lobe_energies<double>(p, cosine);
   Values values;
@@ -39,15 +40,15 @@ std::vector<EnergyBand> energy_bands(const ViewFit& fit, const Eigen::MatrixXd& 
   return energy_bands(fit.unknowns, covariance, tenths);
 }
 
-std::vector<EnergyBand> energy_bands(const ThreadUnknowns& at, const Eigen::MatrixXd& covariance,
+std::vector<EnergyBand> energy_bands(const Eigen::VectorXd& at, const Eigen::MatrixXd& covariance,
                                      const std::vector<double>& cosines) {
   constexpr double kStep = 1e-5;
   std::vector<EnergyBand> bands;
   for (const double cosine : cosines) {
     const Values values = values_at(at, cosine);
-    Eigen::Matrix<double, kValues, renderer::kThreadParameterCount> slopes;
-    for (int k = 0; k < renderer::kThreadParameterCount; ++k) {
-      ThreadUnknowns beside = at;
+    Eigen::Matrix<double, kValues, Eigen::Dynamic> slopes(kValues, at.size());
+    for (Eigen::Index k = 0; k < at.size(); ++k) {
+      Eigen::VectorXd beside = at;
       beside[k] += kStep;
       slopes.col(k) = (values_at(beside, cosine) - values) / kStep;
     }

@@ -20,9 +20,9 @@ struct EnergyBand {
 std::vector<EnergyBand> energy_bands(const ViewFit& fit);
 // The same from another covariance of the fit's unknowns.
 std::vector<EnergyBand> energy_bands(const ViewFit& fit, const Eigen::MatrixXd& covariance);
-// The bands of a thread that was fitted earlier, at these c (0 to 1); `covariance` is that of its unknowns, all zero
-// when not known.
-std::vector<EnergyBand> energy_bands(const ThreadUnknowns& at, const Eigen::MatrixXd& covariance,
+// The bands of a thread that was fitted earlier, at these c (0 to 1), from its unknowns, with the tint or without;
+// `covariance` is theirs, all zero when not known.
+std::vector<EnergyBand> energy_bands(const Eigen::VectorXd& at, const Eigen::MatrixXd& covariance,
                                      const std::vector<double>& cosines);
 
 }  // namespace inversion

@@ -80,7 +80,7 @@ void highlights(const std::vector<View>& views, const std::vector<ViewAgreement>
   if (range < 2 * kColour || reflected.minCoeff() > -kColour || reflected.maxCoeff() < kColour) return;
   doubts.push_back("reflections have another colour than the model can give them (red " + percent(reflected[0]) +
                    ", green " + percent(reflected[1]) + ", blue " + percent(reflected[2]) +
-                   " too bright): highlights of their own colour, as of metallic threads; set lambda0_rgb by hand");
+                   " too bright): highlights of their own colour, as of metallic threads; fit them with --tint");
 }
 
 void misfit(const std::vector<ViewAgreement>& agreements, std::vector<std::string>& doubts) {

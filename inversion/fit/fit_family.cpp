@@ -8,7 +8,9 @@
 
 #include "inversion/fit/loss_terms.h"
 #include "inversion/fit/mean_terms.h"
+#include "inversion/fit/noise_weights.h"
 #include "inversion/fit/pixel_loss.h"
+#include "inversion/fit/step_coordinates.h"
 #include "inversion/fit/view_objective.h"
 #include "inversion/solve/adam.h"
 #include "inversion/solve/bias_free.h"
@@ -16,6 +18,7 @@
 namespace inversion {
 namespace {
 
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -50,8 +53,8 @@ void set_bounds(ceres::Problem& problem, const Search& search, VectorXd& unknown
   }
   if (static_cast<int>(search.held.size()) == count)
     problem.SetParameterBlockConstant(unknowns.data());
-  else if (!search.held.empty())
-    problem.SetManifold(unknowns.data(), new ceres::SubsetManifold(count, search.held));
+  else
+    problem.SetManifold(unknowns.data(), new StepManifold(StepCoordinates(search.unknowns), count, search.held));
 }
 
 FitRound solve(const ViewObjective& objective, const Search& search, double prior_scale,
@@ -91,13 +94,18 @@ struct Attempt {
   int start = 0;
   VectorXd unknowns;
   std::vector<FitRound> rounds{};
+  double prior_scale = 0;  // in the last round
   std::vector<double> view_weights{};
   double loss() const { return rounds.empty() ? 0 : rounds.back().loss_after; }
 };
 
+bool has_prior(const Search& search) {
+  return search.options->model == ModelKind::thread && !search.options->tinted;
+}
+
 // The prior's chi square counts as much as that of residuals of the size that the round before left.
 double prior_scale(const ViewObjective& objective, const Search& search, const std::vector<FitRound>& before) {
-  if (search.options->model != ModelKind::thread) return 0;
+  if (!has_prior(search)) return 0;
   const auto last =
       std::find_if(before.rbegin(), before.rend(), [](const FitRound& round) { return !round.bias_free; });
   if (last == before.rend()) return 0;
@@ -128,9 +136,16 @@ class RoundRunner {
     objective_.trace(attempt.unknowns, paths, options.seed + kFitSeedStep * round, [&](int views_done, int total) {
       if (!go_on("tracing", kTracingShare * views_done / total)) throw std::runtime_error(kStopped);
     });
+    // The prior counts from the last short round on. If that is the first, it counts as much as the paths' noise: what
+    // they say nothing of stays near the prior.
+    const bool last_short = round + 2 == options.paths_per_block.size();
+    const double first_scale = last_short && has_prior(search_)
+                                   ? options.prior_weight * objective_.residual_variances(attempt.unknowns).mean()
+                                   : 0;
     const auto search_on = [&] {
+      attempt.prior_scale = attempt.rounds.empty() ? first_scale : prior_scale(objective_, search_, attempt.rounds);
       return solve(
-          objective_, search_, prior_scale(objective_, search_, attempt.rounds),
+          objective_, search_, attempt.prior_scale,
           [&](int step) {
             return go_on("step " + std::to_string(step), kTracingShare + (1 - kTracingShare) * step / kMostSteps);
           },
@@ -158,7 +173,46 @@ class RoundRunner {
   double whole_ = 0, done_ = 0;
 };
 
-Attempt search_by_rounds(ViewObjective& objective, const Search& search, const std::vector<VectorXd>& starts) {
+// NoiseWeights' groups.
+std::vector<int> views_and_colours(const ViewObjective& objective) {
+  std::vector<int> groups = objective.residual_views();
+  for (std::size_t i = 0; i < groups.size(); ++i) groups[i] = 3 * groups[i] + static_cast<int>(i % 3);
+  return groups;
+}
+
+// The residuals of an attempt by paths that no attempt has seen.
+struct Tested {
+  VectorXd variances, products;  // as NoiseWeights takes them
+};
+Tested tested(ViewObjective& objective, const Search& search, const VectorXd& unknowns) {
+  const FitOptions& options = *search.options;
+  objective.trace(unknowns, options.paths_per_block.back(), options.seed - kFitSeedStep, [&](int, int) {
+    if (options.progress && !options.progress("comparing starts", 0)) throw std::runtime_error(kStopped);
+  });
+  const ViewObjective::Halves both = objective.halves(unknowns);
+  return {.variances = objective.residual_variances(unknowns),
+          .products = both.residuals[0].cwiseProduct(both.residuals[1]) - objective.photograph_variances()};
+}
+
+// The number of the attempt whose misfit is least when all are weighted by the noise alike. The loss of eq. 6 on an
+// attempt's own paths is mostly their noise, which is least where lobes are wide.
+std::size_t nearest(ViewObjective& objective, const Search& search, const std::vector<Attempt>& attempts) {
+  std::vector<Tested> all;
+  for (const Attempt& attempt : attempts) all.push_back(tested(objective, search, attempt.unknowns));
+  NoiseWeights weights(views_and_colours(objective));
+  for (const Tested& one : all) weights.add(one.variances, one.products);
+  const VectorXd factors = weights.factors();
+  std::size_t best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double misfit = all[i].products.dot(factors.cwiseAbs2());
+    if (misfit < least) least = misfit, best = i;
+  }
+  return best;
+}
+
+Attempt search_by_rounds(ViewObjective& objective, const Search& search, const std::vector<VectorXd>& starts,
+                         bool without_bias) {
   std::vector<Attempt> attempts;
   for (const VectorXd& start : starts)
     attempts.push_back({.start = static_cast<int>(attempts.size()), .unknowns = start});
@@ -166,48 +220,129 @@ Attempt search_by_rounds(ViewObjective& objective, const Search& search, const s
   const std::size_t last = search.options->paths_per_block.size() - 1;
   for (Attempt& attempt : attempts)
     for (std::size_t round = 0; round < last; ++round) runner.run(attempt, round);
-  Attempt& best = *std::min_element(attempts.begin(), attempts.end(),
-                                    [](const Attempt& a, const Attempt& b) { return a.loss() < b.loss(); });
+  Attempt& best = attempts.size() > 1 && without_bias
+                      ? attempts[nearest(objective, search, attempts)]
+                      : *std::min_element(attempts.begin(), attempts.end(),
+                                          [](const Attempt& a, const Attempt& b) { return a.loss() < b.loss(); });
   runner.run(best, last, search.options->robust && last > 0);
   return best;
 }
 
-// Goes on from where the search has ended by steps without bias. The last step's paths remain recorded. Returns the
-// terms of the paths that count together at the end.
-MeanTerms remove_bias(ViewObjective& objective, const Search& search, Attempt& attempt) {
+// LinearisedFit::bounds.
+std::vector<int> touched_bounds(const Search& search, const VectorXd& unknowns) {
+  constexpr double kTouching = 1e-9;
+  const VectorXd &low = search.unknowns.lower, &high = search.unknowns.upper;
+  std::vector<int> bounds;
+  for (Eigen::Index k = 0; k < unknowns.size(); ++k)
+    bounds.push_back(unknowns[k] <= low[k] + kTouching ? -1 : unknowns[k] >= high[k] - kTouching ? 1 : 0);
+  return bounds;
+}
+
+// The fit by the paths that were recorded last, without the gradient and what several sets of paths say.
+LinearisedFit linearised(const ViewObjective& objective, const Search& search, double prior_scale,
+                         const VectorXd& unknowns) {
+  LinearisedFit fit;
+  RowMajor jacobian(objective.residual_count(), unknowns.size());
+  fit.residuals.resize(objective.residual_count());
+  objective.residuals(unknowns, fit.residuals.data(), jacobian.data());
+  fit.jacobian = jacobian;
+  fit.variances = objective.residual_variances(unknowns);
+  fit.views = objective.residual_views();
+  fit.held.assign(static_cast<std::size_t>(unknowns.size()), false);
+  for (int k : search.held) fit.held[static_cast<std::size_t>(k)] = true;
+  fit.bounds = touched_bounds(search, unknowns);
+  fit.scales = VectorXd::Ones(unknowns.size());
+  fit.penalty_jacobian = OtherTerms(*search.family, 0).jacobian(unknowns);
+  if (prior_scale > 0) fit.prior_jacobian = PriorTerm(prior_scale).jacobian();
+  return fit;
+}
+
+// The spread of where Levenberg-Marquardt has ended.
+MatrixXd spread_of_rounds(const ViewObjective& objective, const Search& search, const Attempt& attempt) {
+  if (attempt.rounds.empty()) return MatrixXd::Zero(attempt.unknowns.size(), attempt.unknowns.size());
+  LinearisedFit fit = linearised(objective, search, attempt.prior_scale, attempt.unknowns);
+  fit.gradient_covariance = gradient_covariance(fit.jacobian, fit.residuals);
+  return certainty_of(fit).noise_covariance;
+}
+
+// What a set of paths counts of the next one in `Unbiased::mean`, on the approach: the Hessian changes less there than
+// by its noise.
+constexpr double kOldInMean = 0.8;
+
+// Where steps without bias have ended.
+struct Unbiased {
+  MeanTerms mean{};           // of the sets of paths
+  Eigen::VectorXd factors{};  // of the residuals of eq. 6, as in the last of them; empty: 1
+  double variance = 0;        // of the mean residual of all sets, as the steps weigh them
+  double prior_scale = 0;     // of PriorTerm
+  Eigen::MatrixXd left{};     // BiasFreeEnd, of the unknowns
+  Eigen::MatrixXd start_covariance{};
+};
+
+// Goes on from where the search has ended by steps without bias, whose residuals are weighted by their noise. The
+// prior's chi square counts as much as that of the mean over all sets of paths: by the noise of one set it would draw
+// an unusual thread away from what its photographs say. The last step's paths remain recorded.
+Unbiased remove_bias(ViewObjective& objective, const Search& search, Attempt& attempt) {
   const FitOptions& options = *search.options;
   const int paths = options.paths_per_block.back();
-  OtherTerms others(*search.family, prior_scale(objective, search, attempt.rounds));
-  const BiasFreeOptions steps{.lower = search.unknowns.lower,
-                              .upper = search.unknowns.upper,
+  const bool with_prior = has_prior(search) && !attempt.rounds.empty();
+  const VectorXd photographs = objective.photograph_variances();
+  const StepCoordinates coordinates(search.unknowns);
+  NoiseWeights weights(views_and_colours(objective));
+  const auto learn_noise = [&](const ViewObjective::Halves& both, const VectorXd& unknowns) {
+    weights.add(objective.residual_variances(unknowns),
+                both.residuals[0].cwiseProduct(both.residuals[1]) - photographs);
+  };
+  Unbiased end{.start_covariance = spread_of_rounds(objective, search, attempt)};
+  double sets = 0, squared_sets = 0;
+  const BiasFreeOptions steps{.lower = coordinates.of(search.unknowns.lower),
+                              .upper = coordinates.of(search.unknowns.upper),
                               .held = search.held,
-                              .exact = [&](const VectorXd& unknowns) { return others.at(unknowns); },
-                              .own_steps = search.effort.own_steps,
+                              .exact =
+                                  [&](const VectorXd& at) {
+                                    const VectorXd unknowns = coordinates.unknowns(at);
+                                    OtherTerms others(*search.family, end.prior_scale);
+                                    return coordinates.of(others.at(unknowns), unknowns);
+                                  },
+                              .approach_steps = search.effort.approach_steps,
                               .joint_steps = search.effort.joint_steps};
-  MeanTerms mean;
-  const auto loss = [&](int step, const VectorXd& unknowns) {
+  const auto loss = [&](int step, const VectorXd& at) {
+    const VectorXd unknowns = coordinates.unknowns(at);
     const std::string name = "without bias, step " + std::to_string(step + 1);
     const auto number = options.paths_per_block.size() + static_cast<std::size_t>(step);
-    const double done = attempt.rounds.empty() ? step / (1.0 * steps.own_steps + steps.joint_steps) : 1;
+    const double done = attempt.rounds.empty() ? step / (1.0 * steps.approach_steps + steps.joint_steps) : 1;
     objective.trace(unknowns, paths, options.seed + kFitSeedStep * number, [&](int, int) {
       if (options.progress && !options.progress(name, done)) throw std::runtime_error(kStopped);
     });
-    const ViewObjective::Halves both = objective.halves(unknowns);
-    if (step + 1 >= steps.own_steps) mean.add(both, unknowns);
+    ViewObjective::Halves both = objective.halves(unknowns);
+    end.factors = weights.factors();
+    const double variance = weights.weighted_variance(), alike = weights.variance_alike(photographs);
+    learn_noise(both, unknowns);
+    scale_rows(both, end.factors);
+    const double old = step < steps.approach_steps ? steps.old : 1.0;
+    end.mean.add(both, unknowns, std::max(old, kOldInMean));
+    sets = old * sets + 1, squared_sets = old * old * squared_sets + 1;
+    end.variance = alike + (variance - alike) * squared_sets / (sets * sets);
+    if (with_prior) end.prior_scale = options.prior_weight * end.variance;
     BiasFreeTerms terms = data_terms(both);
     if (search.effort.by_whole_hessian) terms.hessian = whole_hessian(both);
-    return terms;
+    terms.variance = variance;
+    return coordinates.of(std::move(terms), unknowns);
   };
-  if (options.robust && search.effort.robust) {
-    if (attempt.rounds.empty()) objective.trace(attempt.unknowns, paths, options.seed, [](int, int) {});
-    attempt.view_weights = objective.weigh_robustly(attempt.unknowns);
-  }
+  if (attempt.rounds.empty()) objective.trace(attempt.unknowns, paths, options.seed, [](int, int) {});
+  if (options.robust && search.effort.robust) attempt.view_weights = objective.weigh_robustly(attempt.unknowns);
+  learn_noise(objective.halves(attempt.unknowns), attempt.unknowns);
   FitRound round{.paths_per_block = paths, .bias_free = true, .converged = true};
-  round.losses = minimise_bias_free(loss, steps, attempt.unknowns);
+  VectorXd at = coordinates.of(attempt.unknowns);
+  const VectorXd slopes = coordinates.slopes(attempt.unknowns);
+  BiasFreeEnd reached = minimise_bias_free(loss, steps, at);
+  attempt.unknowns = coordinates.unknowns(at);
+  end.left = coordinates.slopes(attempt.unknowns).asDiagonal() * reached.left * slopes.cwiseInverse().asDiagonal();
+  round.losses = std::move(reached.losses);
   round.steps = static_cast<int>(round.losses.size());
   round.loss_before = round.losses.front(), round.loss_after = round.losses.back();
   attempt.rounds.push_back(std::move(round));
-  return mean;
+  return end;
 }
 
 // By the loss of the pictures alone, with light paths of each step's own.
@@ -265,36 +400,22 @@ Attempt search_by_pixels(const PixelLoss& pixels, ViewObjective& objective, cons
   return attempt;
 }
 
-// LinearisedFit::bounds.
-std::vector<int> touched_bounds(const Search& search, const VectorXd& unknowns) {
-  constexpr double kTouching = 1e-9;
-  const VectorXd &low = search.unknowns.lower, &high = search.unknowns.upper;
-  std::vector<int> bounds;
-  for (Eigen::Index k = 0; k < unknowns.size(); ++k)
-    bounds.push_back(unknowns[k] <= low[k] + kTouching ? -1 : unknowns[k] >= high[k] - kTouching ? 1 : 0);
-  return bounds;
-}
-
 // The certainty at the unknowns, by the paths that were recorded last and by the terms met on the way there, if any.
 Certainty certainty_at(const ViewObjective& objective, const Search& search, double prior_scale,
-                       const VectorXd& unknowns, MeanTerms mean) {
-  LinearisedFit fit;
-  RowMajor jacobian(objective.residual_count(), unknowns.size());
-  fit.residuals.resize(objective.residual_count());
-  objective.residuals(unknowns, fit.residuals.data(), jacobian.data());
-  fit.jacobian = jacobian;
-  if (mean.empty()) mean.add(objective.halves(unknowns), unknowns);
-  fit.hessian = mean.hessian();
-  fit.gradient_covariance = mean.gradient_covariance();
-  fit.variances = objective.residual_variances(unknowns);
-  fit.views = objective.residual_views();
-  fit.held.assign(static_cast<std::size_t>(unknowns.size()), false);
-  for (int k : search.held) fit.held[static_cast<std::size_t>(k)] = true;
-  fit.bounds = touched_bounds(search, unknowns);
-  fit.gradient = mean.gradient(unknowns) + OtherTerms(*search.family, prior_scale).at(unknowns).gradient;
-  fit.scales = VectorXd::Ones(unknowns.size());
-  fit.penalty_jacobian = OtherTerms(*search.family, 0).jacobian(unknowns);
-  if (prior_scale > 0) fit.prior_jacobian = PriorTerm(prior_scale).jacobian();
+                       const VectorXd& unknowns, Unbiased end) {
+  LinearisedFit fit = linearised(objective, search, prior_scale, unknowns);
+  if (end.factors.size() > 0) {
+    fit.residuals.array() *= end.factors.array();
+    fit.jacobian = end.factors.asDiagonal() * fit.jacobian;
+    fit.variances.array() *= end.factors.array().square();
+  }
+  if (end.mean.empty()) end.mean.add(objective.halves(unknowns), unknowns);
+  fit.hessian = end.mean.hessian();
+  fit.gradient_covariance = end.mean.gradient_covariance(unknowns);
+  fit.gradient = end.mean.gradient(unknowns) + OtherTerms(*search.family, prior_scale).at(unknowns).gradient;
+  fit.mean_variance = end.variance;
+  fit.left = std::move(end.left);
+  fit.start_covariance = std::move(end.start_covariance);
   return certainty_of(fit);
 }
 
@@ -305,7 +426,7 @@ ViewFit fit_family(const WrappedSpool& spool, const std::vector<View>& views, co
   ViewObjective objective(spool, views, family, effort.block_stride);
   Search search{.family = &family, .options = &options, .effort = effort, .unknowns = unknowns_of(family), .held = {}};
   if (options.model == ModelKind::thread)
-    for (int k = 0; k < renderer::kThreadParameterCount; ++k)
+    for (int k = 0; k < static_cast<int>(search.unknowns.names.size()); ++k)
       if (std::find(options.held.begin(), options.held.end(), group_of(k)) != options.held.end())
         search.held.push_back(k);
   const bool by_pixels = options.model == ModelKind::paper, by_adam = !by_pixels && options.solver == Solver::adam,
@@ -313,16 +434,20 @@ ViewFit fit_family(const WrappedSpool& spool, const std::vector<View>& views, co
                             options.paths_per_block.back() >= kFewestPathsWithoutBias;
   Attempt best = by_pixels ? search_by_pixels(PixelLoss(spool, views, family), objective, search, starts.front())
                  : by_adam ? search_by_adam(objective, search, starts.front())
-                 : effort.rounds || !without_bias ? search_by_rounds(objective, search, starts)
+                 : effort.rounds || !without_bias ? search_by_rounds(objective, search, starts, without_bias)
                                                   : Attempt{.unknowns = starts.front()};
-  MeanTerms mean;
-  if (without_bias) mean = remove_bias(objective, search, best);
+  Unbiased end;
+  double scale = best.prior_scale;
+  if (without_bias) {
+    end = remove_bias(objective, search, best);
+    scale = end.prior_scale;
+  }
   ViewFit fit{
       .family = family,
       .model = model_at(family, best.unknowns),
       .unknowns = best.unknowns,
       .unknown_names = search.unknowns.names,
-      .certainty = certainty_at(objective, search, prior_scale(objective, search, best.rounds), best.unknowns, mean),
+      .certainty = certainty_at(objective, search, scale, best.unknowns, std::move(end)),
       .rounds = best.rounds,
       .start = best.start,
       .view_weights = best.view_weights.empty() ? std::vector<double>(views.size(), 1.0) : std::move(best.view_weights),

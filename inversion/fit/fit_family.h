@@ -12,10 +12,10 @@ namespace inversion {
 
 // How Levenberg-Marquardt goes on: by its rounds, then by steps of bias_free.h.
 struct Effort {
-  int block_stride = 1;                         // ViewObjective
-  bool rounds = true;                           // false: the steps, if the options allow them, begin at the first start
-  bool robust = true;                           // false: no robust weights, whatever the options say
-  int own_steps = BiasFreeOptions{}.own_steps;  // of bias_free.h, as the next
+  int block_stride = 1;  // ViewObjective
+  bool rounds = true;    // false: the steps, if the options allow them, begin at the first start
+  bool robust = true;    // false: no robust weights, whatever the options say
+  int approach_steps = BiasFreeOptions{}.approach_steps;  // of bias_free.h, as the next
   int joint_steps = BiasFreeOptions{}.joint_steps;
   bool by_whole_hessian = false;  // mean_terms.h
 };

@@ -48,10 +48,14 @@ ViewFit fit_views(const WrappedSpool& spool, const std::vector<View>& views, con
     case ModelKind::thread:
       break;
   }
-  std::vector<VectorXd> starts{unknowns_of(options.start)};
+  const auto start_at = [&](const renderer::ThreadParameters& start) {
+    return options.tinted ? tinted_unknowns_of(start) : VectorXd(unknowns_of(start));
+  };
+  std::vector<VectorXd> starts{start_at(options.start)};
   if (options.held.empty())
-    for (const renderer::ThreadParameters& start : options.other_starts) starts.emplace_back(unknowns_of(start));
-  return fit_family(spool, views, options, ThreadFamily{options.start.exit}, starts);
+    for (const renderer::ThreadParameters& start : options.other_starts) starts.push_back(start_at(start));
+  const ThreadFamily family{options.start.exit, options.start.transmittance_powers, options.tinted};
+  return fit_family(spool, views, options, family, starts);
 }
 
 }  // namespace inversion

@@ -20,18 +20,24 @@ constexpr double kEnergyPenalty = 30;
 constexpr double kMostFiberAbsorption = 50;  // per radius: black
 constexpr double kLeastRoughness = 0.02;
 
-// Energy beyond 1 at evenly spaced c, both ends included: it is there that fits exceed it first.
+// Energy beyond 1 in the channel that R sends most of, at evenly spaced c, both ends included: it is there that fits
+// exceed it first. Of a thread with `count` unknowns.
+template <int count>
 struct EnergyTerm {
   template <class S>
   bool operator()(const S* u, S* residuals) const {
     renderer::BasicThreadParameters<S> p;
     renderer::set_energies(u + kL0, p);
     p.limit_energy = false;
+    S tint(1.0);
+    if constexpr (count == kTintedCount)
+      for (const int k : {kTintRed, kTintBlue})
+        if (exp(u[k]) > tint) tint = exp(u[k]);
     const double weight = std::sqrt(2 * kEnergyPenalty / kEnergyAngles);
     for (int i = 0; i < kEnergyAngles; ++i) {
       const double c = i / (kEnergyAngles - 1.0);
       const auto lambda = renderer::thread_lobe_energies<S>(p, c);
-      const S excess = lambda[0] + lambda[1] + lambda[2] - S(1.0);
+      const S excess = tint * lambda[0] + lambda[1] + lambda[2] - S(1.0);
       residuals[i] = excess > S(0.0) ? S(weight) * excess : S(0.0);
     }
     return true;
@@ -52,11 +58,20 @@ struct Hinge {
 };
 
 // Huber's loss is linear beyond the rounding: half of it times the scale is gamma |x|.
+template <int count>
 void add_hinge(ceres::Problem& problem, double* unknowns, Hinge hinge) {
   problem.AddResidualBlock(
-      new ceres::AutoDiffCostFunction<Hinge, 1, kThreadParameterCount>(new Hinge(std::move(hinge))),
+      new ceres::AutoDiffCostFunction<Hinge, 1, count>(new Hinge(std::move(hinge))),
       new ceres::ScaledLoss(new ceres::HuberLoss(kHingeRounding), kGamma / kHingeRounding, ceres::TAKE_OWNERSHIP),
       unknowns);
+}
+
+template <int count>
+void add_thread_penalties(ceres::Problem& problem, double* unknowns) {
+  problem.AddResidualBlock(
+      new ceres::AutoDiffCostFunction<EnergyTerm<count>, kEnergyAngles, count>(new EnergyTerm<count>), nullptr,
+      unknowns);
+  add_hinge<count>(problem, unknowns, {{{kL1, 1}, {kL0, -1}}});  // lambda_0(1) - lambda_0(0)
 }
 
 VectorXd vector_of(std::initializer_list<double> numbers) {
@@ -65,14 +80,33 @@ VectorXd vector_of(std::initializer_list<double> numbers) {
   return vector;
 }
 
-FamilyUnknowns unknowns(const ThreadFamily&) {
+FamilyUnknowns with_tint(FamilyUnknowns of) {
+  constexpr double kMostTint = 5;  // in the logarithm: one colour alone
+  const auto longer = [](const VectorXd& numbers, double two) {
+    VectorXd all(kTintedCount);
+    all << numbers, two, two;
+    return all;
+  };
+  of.names.insert(of.names.end(), {"tint_r", "tint_b"});
+  of.lower = longer(of.lower, -kMostTint);
+  of.upper = longer(of.upper, kMostTint);
+  for (VectorXd& start : of.starts) start = longer(start, 0);
+  return of;
+}
+
+FamilyUnknowns thread_unknowns() {
   std::vector<VectorXd> starts{unknowns_of(starting_thread())};
   for (const renderer::ThreadParameters& start : other_starting_threads()) starts.emplace_back(unknowns_of(start));
   return {.names = {"sigma_a_r", "sigma_a_g", "sigma_a_b", "alpha_r", "alpha_tt", "alpha_trt", "beta_r", "beta_tt",
                     "beta_trt", "l0", "l1", "kappa", "r1a", "log_r2a", "log_r2b", "n2"},
           .lower = lower_bounds(),
           .upper = upper_bounds(),
-          .starts = std::move(starts)};
+          .starts = std::move(starts),
+          .azimuthal_roughnesses = {kBeta, kBeta + 1, kBeta + 2}};
+}
+
+FamilyUnknowns unknowns(const ThreadFamily& family) {
+  return family.tinted ? with_tint(thread_unknowns()) : thread_unknowns();
 }
 
 FamilyUnknowns unknowns(const FiberFamily&) {
@@ -80,7 +114,8 @@ FamilyUnknowns unknowns(const FiberFamily&) {
           .lower = vector_of({0, 0, 0, kLeastRoughness, kLeastRoughness}),
           .upper = vector_of({kMostFiberAbsorption, kMostFiberAbsorption, kMostFiberAbsorption, 1, 1}),
           .starts = {vector_of({0.3, 0.3, 0.3, 0.3, 0.3}), vector_of({0.1, 0.1, 0.1, 0.6, 0.6}),
-                     vector_of({1, 1, 1, 0.4, 0.9})}};
+                     vector_of({1, 1, 1, 0.4, 0.9})},
+          .azimuthal_roughnesses = {4}};
 }
 
 FamilyUnknowns unknowns(const YarnFamily&) {
@@ -122,8 +157,9 @@ renderer::ThreadParameters parameters(const PaperFamily&, const VectorXd& u) {
 }
 
 renderer::ThreadParameters parameters(const ThreadFamily& family, const VectorXd& u) {
-  renderer::ThreadParameters p = parameters_of(u);
+  renderer::ThreadParameters p = family.tinted ? tinted_parameters_of(u) : parameters_of(u);
   p.exit = family.exit;
+  p.transmittance_powers = family.transmittance_powers;
   return p;
 }
 
@@ -146,12 +182,28 @@ renderer::YarnParameters parameters(const YarnFamily& family, const VectorXd& u)
           .gamma_tt = u[5]};
 }
 
-BlockShader shader(const ThreadFamily&, const VectorXd& u) {
-  return ThreadShader{block_model(parameters_of(u)), parameters_by_unknowns(u)};
+// The tint is that over green, because the largest of the three has a corner where another becomes it.
+BlockShader shader(const ThreadFamily& family, const VectorXd& u) {
+  renderer::ThreadParameters p = parameters_of(u.head<kThreadParameterCount>());
+  p.transmittance_powers = family.transmittance_powers;
+  ThreadShader shader{.model = block_model(p), .parameters_by_unknowns = {kThreadParameterCount + 3, u.size()}};
+  shader.parameters_by_unknowns.setZero();
+  shader.parameters_by_unknowns.topLeftCorner<kThreadParameterCount, kThreadParameterCount>() =
+      parameters_by_unknowns(u.head<kThreadParameterCount>());
+  if (family.tinted) {
+    p.lambda0_rgb = tint_of(u);
+    shader.model = block_model(p);
+    shader.parameters_by_unknowns(kThreadParameterCount, kTintRed) = p.lambda0_rgb[0];
+    shader.parameters_by_unknowns(kThreadParameterCount + 2, kTintBlue) = p.lambda0_rgb[2];
+  }
+  return shader;
 }
 
 BlockShader shader(const PaperFamily& family, const VectorXd& u) {
-  return ThreadShader{block_model(parameters(family, u)), ThreadJacobian::Identity()};
+  ThreadShader shader{.model = block_model(parameters(family, u)),
+                      .parameters_by_unknowns = {kThreadParameterCount + 3, u.size()}};
+  shader.parameters_by_unknowns.setIdentity();
+  return shader;
 }
 
 // Bundles are shaded fiber by fiber.
@@ -173,7 +225,7 @@ const Model& model_of(const Model& model) {
   return model;
 }
 
-// RGB x parameters: sigma_a of the three channels, then the parameters of the rows of slopes after the first.
+// RGB x parameters: sigma_a of the three channels, then the parameters of the next rows of slopes.
 template <int kSlopeCount>
 Eigen::Matrix<double, 3, kSlopeCount + 2> by_parameters(const renderer::ThreadSlopes<double>& slopes) {
   Eigen::Matrix<double, 3, kSlopeCount + 2> rows;
@@ -186,7 +238,11 @@ Eigen::Matrix<double, 3, kSlopeCount + 2> by_parameters(const renderer::ThreadSl
 }
 
 RgbByUnknowns by_unknowns_of(const ThreadShader& shader, const renderer::ThreadSlopes<double>& slopes) {
-  return by_parameters<BlockModel::kSlopeCount>(slopes) * shader.parameters_by_unknowns;
+  Eigen::Matrix<double, 3, kThreadParameterCount + 3> rows;
+  rows.setZero();
+  rows.leftCols<kThreadParameterCount>() = by_parameters<renderer::kSlopeTint>(slopes);
+  for (int c = 0; c < 3; ++c) rows(c, kThreadParameterCount + c) = slopes(renderer::kSlopeTint, c);
+  return rows * shader.parameters_by_unknowns;
 }
 
 // The unknowns are the parameters.
@@ -207,16 +263,14 @@ renderer::ScatteringModel model_at(const ScatteringFamily& family, const VectorX
 
 void add_penalties(const ScatteringFamily& family, ceres::Problem& problem, double* unknowns) {
   if (std::holds_alternative<PaperFamily>(family)) {
-    add_hinge(problem, unknowns, {{{kR0a, 1}, {kR0b, 1}}});
-    add_hinge(problem, unknowns, {{{kR2b, -1}}});
-    add_hinge(problem, unknowns, {{{kR0a, 1}}});
+    add_hinge<kThreadParameterCount>(problem, unknowns, {{{kR0a, 1}, {kR0b, 1}}});
+    add_hinge<kThreadParameterCount>(problem, unknowns, {{{kR2b, -1}}});
+    add_hinge<kThreadParameterCount>(problem, unknowns, {{{kR0a, 1}}});
     return;
   }
-  if (!std::holds_alternative<ThreadFamily>(family)) return;
-  problem.AddResidualBlock(
-      new ceres::AutoDiffCostFunction<EnergyTerm, kEnergyAngles, kThreadParameterCount>(new EnergyTerm), nullptr,
-      unknowns);
-  add_hinge(problem, unknowns, {{{kL1, 1}, {kL0, -1}}});  // lambda_0(1) - lambda_0(0)
+  if (const auto* thread = std::get_if<ThreadFamily>(&family))
+    thread->tinted ? add_thread_penalties<kTintedCount>(problem, unknowns)
+                   : add_thread_penalties<kThreadParameterCount>(problem, unknowns);
 }
 
 BlockShader shader_at(const ScatteringFamily& family, const VectorXd& u) {

@@ -4,7 +4,7 @@
 // it.
 //
 //   family | unknowns | what they are
-//   thread | 16       | thread_unknowns.h
+//   thread | 16 or 18 | thread_unknowns.h; the latter with the tint of its highlight
 //   fiber  | 5        | sigma_a (R G B, per thread radius), beta_m, beta_n; index of refraction 1.55
 //   yarn   | 6        | sigma_a (R G B, per thread radius), beta_r, beta_tt, gamma_tt; the number of fibers is given
 //   bundle | 5        | sigma_a (R G B, per fiber radius), beta_m, beta_n of a fiber; index of refraction 1.55; the
@@ -30,7 +30,10 @@ class Problem;
 namespace inversion {
 
 struct ThreadFamily {
-  renderer::ThreadExit exit = renderer::ThreadParameters{}.exit;  // no unknown: where light leaves is given
+  // Given, not unknown.
+  renderer::ThreadExit exit = renderer::ThreadParameters{}.exit;
+  std::array<double, 2> transmittance_powers = renderer::ThreadParameters{}.transmittance_powers;
+  bool tinted = false;  // whether the tint of its highlight is unknown; 1 otherwise
 };
 struct FiberFamily {};
 struct YarnFamily {
@@ -45,8 +48,9 @@ using ScatteringFamily = std::variant<ThreadFamily, FiberFamily, YarnFamily, Pap
 
 struct FamilyUnknowns {
   std::vector<std::string> names;
-  Eigen::VectorXd lower, upper;         // bounds
-  std::vector<Eigen::VectorXd> starts;  // the first is the default
+  Eigen::VectorXd lower, upper;              // bounds
+  std::vector<Eigen::VectorXd> starts;       // the first is the default
+  std::vector<int> azimuthal_roughnesses{};  // indices: step_coordinates.h
 };
 FamilyUnknowns unknowns_of(const ScatteringFamily& family);
 
@@ -60,7 +64,8 @@ void add_penalties(const ScatteringFamily& family, ceres::Problem& problem, doub
 // A family's model at some unknowns, prepared to shade blocks.
 struct ThreadShader {
   BlockModel model;
-  ThreadJacobian parameters_by_unknowns;
+  // The 16 parameters, then lambda0_rgb, by the unknowns.
+  Eigen::Matrix<double, renderer::kThreadParameterCount + 3, Eigen::Dynamic> parameters_by_unknowns;
 };
 using BlockShader = std::variant<ThreadShader, FiberBlockModel, YarnBlockModel>;
 BlockShader shader_at(const ScatteringFamily& family, const Eigen::VectorXd& unknowns);

@@ -6,10 +6,12 @@ namespace inversion {
 namespace {
 
 constexpr double kMostAbsorption = 50;  // per thread radius: black
-constexpr double kLeastRoughness = 0.02;
+constexpr double kLeastRoughness = 0.02, kLeastTint = 1e-3;
 using renderer::kLeastR2a, renderer::kLeastR2b, renderer::kMostR2, renderer::kMostEnergyTerm;
 
 }  // namespace
+
+using Eigen::VectorXd;
 
 ThreadUnknowns unknowns_of(const renderer::ThreadParameters& p) {
   ThreadUnknowns u;
@@ -27,6 +29,28 @@ renderer::ThreadParameters parameters_of(const ThreadUnknowns& u) {
     p.beta[static_cast<std::size_t>(i)] = u[kBeta + i];
   }
   renderer::set_energies(u.data() + kL0, p);
+  return p;
+}
+
+VectorXd tinted_unknowns_of(const renderer::ThreadParameters& p) {
+  const Eigen::Array3d tint = p.lambda0_rgb.array().max(kLeastTint);
+  renderer::ThreadParameters green = p;
+  green.r0a *= tint[1], green.r0b *= tint[1], green.r0c *= tint[1];
+  VectorXd u(kTintedCount);
+  u << unknowns_of(green), std::log(tint[0] / tint[1]), std::log(tint[2] / tint[1]);
+  return u;
+}
+
+Eigen::Vector3d tint_of(const VectorXd& u) {
+  return {std::exp(u[kTintRed]), 1, std::exp(u[kTintBlue])};
+}
+
+renderer::ThreadParameters tinted_parameters_of(const VectorXd& u) {
+  renderer::ThreadParameters p = parameters_of(u.head<renderer::kThreadParameterCount>());
+  const Eigen::Vector3d tint = tint_of(u);
+  const double most = tint.maxCoeff();
+  p.lambda0_rgb = tint / most;
+  p.r0a *= most, p.r0b *= most, p.r0c *= most;
   return p;
 }
 

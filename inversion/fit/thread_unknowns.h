@@ -1,5 +1,6 @@
 // The unknowns that the fit varies: the 16 thread parameters, with the energies in the positive form of
-// thread_energies.h.
+// thread_energies.h. Of a thread whose highlight has a colour of its own two more come behind them: the logarithms of
+// how much red and blue lobe R sends back over green. That is lambda0_rgb but for its scale, which lambda_0 has.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,11 +27,17 @@ enum Unknown {
 // The energies among a thread's parameters as printed (renderer::thread_parameters).
 enum PrintedEnergy { kR0a = kL0, kR0b, kR0c, kR1, kR2a, kR2b, kR2c };
 using ThreadUnknowns = Eigen::Matrix<double, renderer::kThreadParameterCount, 1>;
+inline constexpr int kTintRed = renderer::kThreadParameterCount, kTintBlue = kTintRed + 1, kTintedCount = kTintRed + 2;
 using ThreadJacobian = Eigen::Matrix<double, renderer::kThreadParameterCount, renderer::kThreadParameterCount>;
 
 // The unknowns of these parameters, or the nearest ones within the bounds; and the parameters of unknowns.
 ThreadUnknowns unknowns_of(const renderer::ThreadParameters& parameters);
 renderer::ThreadParameters parameters_of(const ThreadUnknowns& unknowns);
+// The same with the tint: kTintedCount numbers.
+Eigen::VectorXd tinted_unknowns_of(const renderer::ThreadParameters& parameters);
+renderer::ThreadParameters tinted_parameters_of(const Eigen::VectorXd& unknowns);
+// What R sends back over green, RGB; lambda_0 is then that of green.
+Eigen::Vector3d tint_of(const Eigen::VectorXd& unknowns);
 // The derivatives d parameter (order of renderer::thread_parameters) / d unknown.
 ThreadJacobian parameters_by_unknowns(const ThreadUnknowns& unknowns);
 

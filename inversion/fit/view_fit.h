@@ -18,18 +18,23 @@ enum class Solver { levenberg_marquardt, adam };
 struct FitOptions {
   ModelKind model = ModelKind::thread;
   Solver solver = Solver::levenberg_marquardt;
-  // The start of the thread model, with the rule by which light leaves threads; the baselines have starts of their own.
+  // The start of the thread model, with what a fit takes as given: the rule by which light leaves threads, and the
+  // powers of the transmittance. The baselines have starts of their own.
   renderer::ThreadParameters start = starting_thread();
   std::vector<renderer::ThreadParameters> other_starts = other_starting_threads();  // may be empty
+  // Whether the tint of the thread's highlight, lambda0_rgb, is unknown too, as metallic threads need it. The prior is
+  // one of threads without and then does not count.
+  bool tinted = false;
   // For ModelKind::paper, which heeds of the other options only the seed, adam_steps and, to say how certain it is,
   // adam_paths.
   int paths_per_pixel = 8;
   // Paths per block in each round, of which there is at least one. Every start goes through all rounds but the last,
   // which is for the one that has got farthest. Adam goes from `start` alone, with adam_paths paths a step.
-  std::vector<int> paths_per_block{256, 256, 512, 1024, 2048};
+  std::vector<int> paths_per_block{256, 256, 2048};
   int adam_steps = 100, adam_paths = 1024;
   // How strongly the thread model leans on simulated threads (renderer/scattering/thread_prior.h). At 1 their chi
-  // square counts as that of residuals as large as those of the round before; 0: not at all. Levenberg-Marquardt only.
+  // square counts as that of residuals as large as those of the round before, in the steps without bias as that of the
+  // mean of all paths; 0: not at all. It does not count in the first of several short rounds. Levenberg-Marquardt only.
   double prior_weight = 1;
   // Whether Levenberg-Marquardt ends with steps without the bias of the paths' noise (bias_free.h), which it does not
   // when the last of paths_per_block is below 512. false: eq. 6 as it stands.

@@ -121,6 +121,17 @@ Eigen::VectorXd ViewObjective::residual_variances(const Eigen::VectorXd& unknown
   return variances;
 }
 
+Eigen::VectorXd ViewObjective::photograph_variances() const {
+  Eigen::VectorXd variances(residual_count());
+  for (const ViewBlocks& v : views_)
+    for (std::size_t b = 0; b < v.blocks.size(); ++b) {
+      const double weight = residual_weight(v, b);
+      variances.segment<3>(static_cast<Eigen::Index>(3 * (v.first_block + b))) =
+          (weight * weight * v.variances[b]).matrix();
+    }
+  return variances;
+}
+
 std::vector<double> ViewObjective::weigh_robustly(const Eigen::VectorXd& unknowns) {
   const BlockShader shader = shader_at(family_, unknowns);
   std::vector<WeighedView> weighed;

@@ -41,6 +41,7 @@ class ViewObjective {
 
   // The variance of each residual: the photographs' noise (View::noise) and that of the light paths.
   Eigen::VectorXd residual_variances(const Eigen::VectorXd& unknowns) const;
+  Eigen::VectorXd photograph_variances() const;  // the photographs' part of them
   // Weighs every block anew by how far off it is at the unknowns (robust_weights.h), for all calls from now on. Returns
   // the weight of each view.
   std::vector<double> weigh_robustly(const Eigen::VectorXd& unknowns);

@@ -9,15 +9,18 @@
 //
 // Recorded paths estimate parameters that they were not traced with ever more noisily, and there L of a fixed set falls
 // below zero (measured: beta_R 0.06). So every step has paths of its own, traced at the unknowns that it starts from.
-// The steps are Newton steps whose Hessian is (J_A' J_B + J_B' J_A) / 2, made positive. The first ones go by the paths
-// of their own, with the Hessians of the steps before in a running mean. From then on all sets of paths count together:
-// the next place is the minimum of the mean of their quadratic models,
+// The next place is the minimum of the mean of the sets' quadratic models,
 //
 //   L_k + g_k' (x - x_k) + (x - x_k)' H_k (x - x_k) / 2   of the set k traced at x_k,
 //
 // so that their noise averages out in gradient and Hessian alike. (Steps of 1/2, 1/3 ... by one set each [Robbins and
-// Monro 1951] average the gradient alone: measured.md compares.) Unknowns are kept within bounds by holding those that
-// a step would take outside.
+// Monro 1951] average the gradient alone: measured.md compares.) H_k = (J_A' J_B + J_B' J_A) / 2, made positive in the
+// mean. On the approach each set counts half of the next one, as models of far places are wrong here; in the joint
+// steps behind it all sets count alike.
+//
+// No unknown moves by more than `longest` in a step, and what the others do is solved with it there; bounds are kept
+// likewise. Directions that one set tells to no better than `reach` are damped: they would wander as far as they are
+// uncertain, and lead the others astray.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,6 +33,7 @@ struct BiasFreeTerms {
   double loss = 0;
   Eigen::VectorXd gradient;
   Eigen::MatrixXd hessian;  // approximate, symmetric; need not be positive
+  double variance = 0;      // of a residual, for `reach`; 0: nothing is damped by it
 };
 // The part of the loss that paths estimate. Traces new ones at every call.
 using BiasFreeLoss = std::function<BiasFreeTerms(int step, const Eigen::VectorXd& unknowns)>;
@@ -40,14 +44,21 @@ struct BiasFreeOptions {
   // Terms that no paths estimate, such as penalties and a prior, at any unknowns; may be empty. Every step asks for
   // them where it begins.
   std::function<BiasFreeTerms(const Eigen::VectorXd& unknowns)> exact{};
-  int own_steps = 4;     // by paths of their own
-  int joint_steps = 6;   // by all paths from the last of those on
-  double longest = 0.1;  // largest change of an unknown in one step
+  int approach_steps = 14;
+  int joint_steps = 6;
+  double old = 0.5;      // on the approach, what a set counts of the next one
+  double longest = 0.1;  // change of an unknown in one step
+  double reach = 0.1;    // deviation of one set, in the unknowns' units, beyond which a direction is damped
 };
 
-// Minimises the loss, with its exact terms, from `unknowns` on; returns the losses met on the way, one a step. Throws
-// what `loss` throws.
-std::vector<double> minimise_bias_free(const BiasFreeLoss& loss, const BiasFreeOptions& options,
-                                       Eigen::VectorXd& unknowns);
+struct BiasFreeEnd {
+  std::vector<double> losses;  // met on the way, one a step
+  // Unknowns x unknowns: what damping has left of a deviation of the start. Those that are held or end at a bound have
+  // none, and leave none in others.
+  Eigen::MatrixXd left;
+};
+
+// Minimises the loss, with its exact terms, from `unknowns` on. Throws what `loss` throws.
+BiasFreeEnd minimise_bias_free(const BiasFreeLoss& loss, const BiasFreeOptions& options, Eigen::VectorXd& unknowns);
 
 }  // namespace inversion

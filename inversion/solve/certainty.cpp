@@ -54,13 +54,25 @@ MatrixXd in_chosen(const LinearisedFit& fit, const MatrixXd& matrix, const std::
   return columns(columns(scaled, chosen).transpose(), chosen);
 }
 
-// The data's Hessian in the scaled chosen unknowns. Noise may have made it indefinite; then it is J' J, which makes the
-// fit look too certain.
+// The data's Hessian in the scaled chosen unknowns. Where noise has made it negative it counts as positive, as the
+// steps take it (bias_free.h).
 MatrixXd data_hessian(const LinearisedFit& fit, const MatrixXd& jacobian, const std::vector<int>& chosen) {
-  const MatrixXd square = jacobian.transpose() * jacobian;
-  if (fit.hessian.size() == 0) return square;
-  const MatrixXd kept = in_chosen(fit, fit.hessian, chosen);
-  return Eigen::SelfAdjointEigenSolver<MatrixXd>(kept).eigenvalues().minCoeff() > 0 ? kept : square;
+  if (fit.hessian.size() == 0) return jacobian.transpose() * jacobian;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(in_chosen(fit, fit.hessian, chosen));
+  return axes.eigenvectors() * axes.eigenvalues().cwiseAbs().asDiagonal() * axes.eigenvectors().transpose();
+}
+
+// The covariance of where the steps end, by that of the minimum.
+MatrixXd of_the_end(const LinearisedFit& fit, const MatrixXd& of_minimum, const std::vector<int>& chosen) {
+  if (fit.left.size() == 0) return of_minimum;
+  const VectorXd scales = columns(fit.scales.transpose(), chosen).transpose(), inverse = scales.cwiseInverse();
+  const auto of_chosen = [&](const MatrixXd& matrix) { return columns(columns(matrix, chosen).transpose(), chosen); };
+  const MatrixXd left = inverse.asDiagonal() * of_chosen(fit.left).transpose() * scales.asDiagonal();
+  const MatrixXd gone = MatrixXd::Identity(left.rows(), left.cols()) - left;
+  MatrixXd end = gone * of_minimum * gone.transpose();
+  if (fit.start_covariance.size() > 0)
+    end += left * (inverse.asDiagonal() * of_chosen(fit.start_covariance) * inverse.asDiagonal()) * left.transpose();
+  return end;
 }
 
 // What is known of some of the unknowns while the others stay where they are, in units of the scales.
@@ -79,17 +91,19 @@ Known known_of(const LinearisedFit& fit, const std::vector<int>& chosen) {
   for (const MatrixXd* rows : {&fit.penalty_jacobian, &fit.prior_jacobian})
     if (rows->rows() > 0) hessian += scaled(*rows).transpose() * scaled(*rows);
   if (fit.prior_jacobian.rows() > 0) prior = scaled(fit.prior_jacobian).transpose() * scaled(fit.prior_jacobian);
-  const double mean_square = fit.residuals.squaredNorm() / static_cast<double>(fit.residuals.size());
+  const double variance = fit.mean_variance > 0
+                              ? fit.mean_variance
+                              : fit.residuals.squaredNorm() / static_cast<double>(fit.residuals.size());
   const double floor = 1e-12 * hessian.diagonal().maxCoeff();
   const MatrixXd noise = fit.gradient_covariance.size() > 0
                              ? in_chosen(fit, fit.gradient_covariance, chosen)
                              : MatrixXd(jacobian.transpose() * fit.variances.asDiagonal() * jacobian);
   const MatrixXd inverse = (hessian + floor * identity).ldlt().solve(identity);
   // The deviation of 1 is one more piece of information on each unknown.
-  const MatrixXd weak = (hessian + (mean_square + floor) * identity).ldlt().solve(identity);
+  const MatrixXd weak = (hessian + (variance + floor) * identity).ldlt().solve(identity);
   const MatrixXd total =
-      weak * (noise + misfit_part(fit, jacobian) + mean_square * prior + mean_square * mean_square * identity) * weak;
-  return {chosen, hessian, inverse * noise * inverse, total};
+      weak * (noise + misfit_part(fit, jacobian) + variance * prior + variance * variance * identity) * weak;
+  return {chosen, hessian, of_the_end(fit, inverse * noise * inverse, chosen), total};
 }
 
 // Moments of a distance t from the bound, over the variance without the bound.

@@ -9,6 +9,10 @@
 // colours of a block share the paths and J is as noisy as the residuals. Where the model cannot explain a block, its
 // misfit counts in G as noise.
 //
+// Steps that damp directions which the data hardly tell do not go all the way to the minimum. Where they leave L of
+// what separates it from their start, whose covariance is C_0, the spread is (1 - L) C (1 - L)' + L C_0 L'. The total
+// is that of the minimum.
+//
 // The total covariance contains besides: what the model cannot explain, which is a view's mean squared residual beyond
 // its noise, taken as common to all its blocks, because misfit is smooth over a view; the prior's own uncertainty; and
 // a deviation of 1 in the scales for directions that nothing speaks of.
@@ -44,10 +48,14 @@ struct LinearisedFit {
   Eigen::MatrixXd hessian;              // of the data, without the noise of J itself; may be empty: J' J
   Eigen::MatrixXd gradient_covariance;  // G; may be empty: J' S J
   Eigen::VectorXd residuals, variances;
-  std::vector<int> views;            // the view of each residual, from 0
-  Eigen::MatrixXd penalty_jacobian;  // penalties x unknowns; may have no rows
-  Eigen::MatrixXd prior_jacobian;    // the prior's terms, of variance as the residuals; may be empty
-  std::vector<bool> held;            // unknowns that were not varied: no variance
+  // Of a residual in the loss that was minimised, if that is the mean over more paths than `residuals` are of; 0: the
+  // mean square of `residuals`.
+  double mean_variance = 0;
+  Eigen::MatrixXd left, start_covariance;  // L and C_0; may be empty: 0
+  std::vector<int> views;                  // the view of each residual, from 0
+  Eigen::MatrixXd penalty_jacobian;        // penalties x unknowns; may have no rows
+  Eigen::MatrixXd prior_jacobian;          // the prior's terms, of variance `mean_variance`; may be empty
+  std::vector<bool> held;                  // unknowns that were not varied: no variance
   // -1: at its lower bound, 1: at its upper one, 0: neither.
   std::vector<int> bounds;
   // The gradient of the whole loss at the end of the fit. It may be empty: unknowns at a bound then count as if the

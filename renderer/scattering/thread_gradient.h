@@ -1,4 +1,5 @@
-// The thread model's f_cos together with its derivatives by all 16 parameters, in closed form.
+// The thread model's f_cos together with its derivatives by all 16 parameters, in closed form, and by
+// the tint of R.
 //
 // The formula is the renderer's: values come from the densities of lobes.h and the energies of thread.h, derivatives of
 // the densities from width_slopes.h. The energy limit of thread.h is left off, because fits penalise the excess
@@ -10,16 +11,17 @@
 
 namespace renderer {
 
-// The derivatives of one channel's f_cos in their order; the absorption is the channel's own, the others are shared by
-// all channels.
+// The derivatives of one channel's f_cos in their order; the absorption and the tint are the channel's own, the
+// others are shared by all channels.
 enum ThreadSlope {
   kSlopeSigma = 0,
   kSlopeAlpha = 1,  // 3
   kSlopeBeta = 4,   // 3
   kSlopeR0 = 7,     // 3: r0a r0b r0c
   kSlopeR1 = 10,
-  kSlopeR2 = 11,  // 3: r2a r2b r2c
-  kThreadSlopeCount = 14,
+  kSlopeR2 = 11,    // 3: r2a r2b r2c
+  kSlopeTint = 14,  // lambda0_rgb
+  kThreadSlopeCount = 15,
   kThreadSlopeLanes = 16  // padded with zeros
 };
 
@@ -130,6 +132,7 @@ class ThreadGradientModel {
       slope[kSlopeR2] += by_r2b * c;
       slope[kSlopeR2 + 1] += by_r2b;
       slope[kSlopeR2 + 2] += by_r2c;
+      slope[kSlopeTint] += weight[channel] * f.lambda[0] * f.density[0];
     }
   }
 

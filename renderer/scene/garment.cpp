@@ -1,6 +1,7 @@
 #include "renderer/scene/garment.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -77,12 +78,19 @@ UvMesh hanging_mesh(const std::vector<std::vector<Vector2d>>& rows, double step_
 constexpr int kFine = 4096;  // points of a line whose length is measured
 
 struct Maker {
+  const std::function<bool(double)>& progress;
+
+  void go_on(double finished) const {
+    if (progress && !progress(finished)) throw std::runtime_error("the draping was stopped on request; start it again");
+  }
+
   UvMesh operator()(const SkirtShape& s) const {
     constexpr int kAcross = 720, kDown = 180;
     const double sector_rad = s.flare_deg * kDegree, inner_mm = 2 * std::numbers::pi * s.waist_radius_mm / sector_rad;
     const double step_mm = s.length_mm / kDown;
     std::vector<std::vector<Vector2d>> rings;
     for (int row = 0; row <= kDown; ++row) {
+      go_on(static_cast<double>(row) / (kDown + 1));
       const double ring_mm = sector_rad * (inner_mm + row * step_mm);  // length in the pattern
       const double even_mm = ring_mm / (2 * std::numbers::pi), part = static_cast<double>(row) / kDown;
       // A ring gets wider by a third of what it could; the rest goes into folds.
@@ -113,6 +121,7 @@ struct Maker {
     const double step_mm = s.height_mm / kDown;
     std::vector<std::vector<Vector2d>> rows;
     for (int row = 0; row <= kDown; ++row) {
+      go_on(static_cast<double>(row) / (kDown + 1));
       const double part = static_cast<double>(row) / kDown;
       const double hung_mm = s.width_mm * (s.gathered + 0.5 * (0.9 - s.gathered) * part);
       rows.push_back(by_length(folded_to(s.width_mm, s.width_mm / s.pleats,
@@ -163,11 +172,12 @@ class HangingGrid {
     return fine;
   }
 
-  void settle(int steps) {
+  void settle(int steps, const std::function<void(int steps_done)>& go_on) {
     constexpr double kStep_s = 1 / 240.0, kGravity = -9810, kKept = 0.98;  // of the speed, after each step
     constexpr int kSweeps = 20;
     std::vector<Vector3d> speeds(places_.size(), Vector3d::Zero());
     for (int step = 0; step < steps; ++step) {
+      go_on(step);
       const std::vector<Vector3d> before = places_;
       for (std::size_t i = 0; i < places_.size(); ++i)
         places_[i] += kStep_s * (kKept * speeds[i] + Vector3d(0, 0, kGravity * kStep_s));
@@ -247,22 +257,29 @@ class HangingGrid {
 
 // The cloth is relaxed from coarse to fine grids: parts that are far apart settle on the coarse one.
 UvMesh Maker::operator()(const DrapeShape& s) const {
-  HangingGrid grid(s, 32);
-  grid.settle(700);
-  grid = grid.refined();
-  grid.settle(250);
-  grid = grid.refined();
-  grid.settle(80);
-  return grid.mesh();
+  struct Grid {
+    int steps, cost;  // of a step
+  };
+  constexpr std::array<Grid, 3> kGrids{Grid{700, 1}, {250, 4}, {80, 16}};
+  double all = 0, done = 0;
+  for (const Grid& grid : kGrids) all += grid.steps * grid.cost;
+  HangingGrid cloth(s, 32);
+  for (std::size_t i = 0; i < kGrids.size(); ++i) {
+    const auto& [steps, cost] = kGrids[i];
+    if (i > 0) cloth = cloth.refined();
+    cloth.settle(steps, [&](int step) { go_on((done + step * cost) / all); });
+    done += steps * cost;
+  }
+  return cloth.mesh();
 }
 
 }  // namespace
 
-UvMesh garment_mesh(const GarmentShape& shape) {
+UvMesh garment_mesh(const GarmentShape& shape, const std::function<bool(double)>& progress) {
   if (const auto* skirt = std::get_if<SkirtShape>(&shape); skirt && !(skirt->flare_deg >= 60))
     throw std::runtime_error("a skirt of " + std::to_string(skirt->flare_deg) +
                              " degrees is narrower at the hem than a leg needs; give flare_deg from 60 to 360");
-  return std::visit(Maker{}, shape);
+  return std::visit(Maker{progress}, shape);
 }
 
 }  // namespace renderer

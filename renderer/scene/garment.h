@@ -5,6 +5,7 @@
 // is less room for them.
 #pragma once
 
+#include <functional>
 #include <variant>
 
 #include "renderer/scene/uv_mesh.h"
@@ -36,8 +37,9 @@ struct DrapeShape {
 
 using GarmentShape = std::variant<SkirtShape, PleatedShape, DrapeShape>;
 
-// The mesh of a garment. Errors: std::runtime_error with one line for a skirt that is narrower than its pattern lets it
-// be.
-UvMesh garment_mesh(const GarmentShape& shape);
+// The mesh of a garment. `progress` is called now and then with the finished part; returning false stops the work.
+// Errors: std::runtime_error with one line for a skirt that is narrower than its pattern lets it be, or when stopped by
+// `progress`.
+UvMesh garment_mesh(const GarmentShape& shape, const std::function<bool(double)>& progress = {});
 
 }  // namespace renderer

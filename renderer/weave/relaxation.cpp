@@ -105,7 +105,13 @@ Eigen::Vector2d cell_force(const Cell& cell, const WeaveDerivatives& sum) {
          sum.gradient.cwiseProduct(cell.points).rowwise().sum().head<2>().cwiseQuotient(cell.model.period_mm);
 }
 
-MinimizerReport come_to_rest(Cell& cell, double gradient_goal_n, bool quasi_newton) {
+void go_on(const RelaxationOptions& options, const RelaxationReport& so_far) {
+  if (options.progress && !options.progress(so_far))
+    throw std::runtime_error("the weaving was stopped on request; start it again");
+}
+
+MinimizerReport come_to_rest(Cell& cell, double gradient_goal_n, bool quasi_newton, const RelaxationOptions& options,
+                             const RelaxationReport& so_far) {
   const Eigen::VectorXi unknowns = unknowns_of(cell.model);
   const auto as_points = [&](const Eigen::VectorXd& x) {
     Eigen::Matrix3Xd points = cell.points;
@@ -122,20 +128,22 @@ MinimizerReport come_to_rest(Cell& cell, double gradient_goal_n, bool quasi_newt
   const Objective objective{
       .value =
           [&](const Eigen::VectorXd& x, Eigen::VectorXd& gradient) {
+            go_on(options, so_far);
             const WeaveDerivatives sum = derivatives(cell, as_points(x), Curvature::none);
             gradient = as_unknowns(sum.gradient);
             return sum.energy;
           },
       .hessian =
           [&](const Eigen::VectorXd& x, bool exact) {
+            go_on(options, so_far);
             return derivatives(cell, as_points(x), exact ? Curvature::exact : Curvature::positive).hessian(unknowns);
           }};
-  const MinimizerOptions options{.largest_move = 0.2 * thinnest_radius(cell.model),
-                                 .gradient_goal = gradient_goal_n,
-                                 .newton_below = 1e-3 * force_scale(cell.model),
-                                 .most_quasi_newton = quasi_newton ? 200 : 0};
+  const MinimizerOptions search{.largest_move = 0.2 * thinnest_radius(cell.model),
+                                .gradient_goal = gradient_goal_n,
+                                .newton_below = 1e-3 * force_scale(cell.model),
+                                .most_quasi_newton = quasi_newton ? 200 : 0};
   Eigen::VectorXd x = as_unknowns(cell.points);
-  const MinimizerReport report = minimize(objective, options, x);
+  const MinimizerReport report = minimize(objective, search, x);
   cell.points = as_points(x);
   return report;
 }
@@ -161,12 +169,12 @@ void stiffen_contact(Cell& cell, const RelaxationOptions& options, RelaxationRep
   cell.model.contact_n_mm2 = 100 * report.force_scale_n / (4 * radius * radius);
   for (report.stages = 1;; ++report.stages) {
     const bool last = report.stages == options.most_stages;
-    add_steps(report, come_to_rest(cell, 1e-4 * report.force_scale_n, options.quasi_newton));
+    add_steps(report, come_to_rest(cell, 1e-4 * report.force_scale_n, options.quasi_newton, options, report));
     report.overlap = overlap(cell);
     if (report.overlap <= options.overlap_goal || last) break;
     cell.model.contact_n_mm2 *= 4;
   }
-  add_steps(report, come_to_rest(cell, options.gradient_goal * report.force_scale_n, false));
+  add_steps(report, come_to_rest(cell, options.gradient_goal * report.force_scale_n, false, options, report));
   report.overlap = overlap(cell);
 }
 
@@ -185,7 +193,7 @@ void settle_periods(Cell& cell, const RelaxationOptions& options, RelaxationRepo
   constexpr double kLargestStep = 0.02, kDifference = 1e-4;  // of the period
   const auto force_at = [&](const Eigen::Vector2d& period_mm) -> Eigen::Vector2d {
     resize(cell, period_mm);
-    add_steps(report, come_to_rest(cell, options.gradient_goal * report.force_scale_n, false));
+    add_steps(report, come_to_rest(cell, options.gradient_goal * report.force_scale_n, false, options, report));
     return cell_force(cell, derivatives(cell, cell.points, Curvature::none));
   };
   Eigen::Vector2d period = cell.model.period_mm, force = force_at(period);

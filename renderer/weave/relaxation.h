@@ -6,11 +6,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 
 #include "renderer/weave/minimizer.h"
 #include "renderer/weave/patch.h"
 
 namespace renderer {
+
+struct RelaxationReport;
 
 struct RelaxationOptions {
   int points_per_crossing = kPointsPerCrossing;  // control points; even
@@ -18,6 +21,8 @@ struct RelaxationOptions {
   double gradient_goal = 1e-8;                   // largest component wanted, as a share of force_scale_n
   int most_stages = 10;                          // of contact stiffness, each four times the one before
   bool quasi_newton = false;                     // L-BFGS before Newton
+  // Called before each look at the energy, with what is known so far; returning false stops the work.
+  std::function<bool(const RelaxationReport& so_far)> progress{};
 };
 
 struct RelaxationReport {
@@ -51,7 +56,7 @@ inline constexpr double kMostOverlap = 0.01;  // as a share of a radius; a patch
 inline constexpr double kJammedCrownGap = 0.035;
 
 // The patch of a draft at rest; how well it came to rest is in the report. Errors: std::runtime_error with the line of
-// check_draft().
+// check_draft(), or when stopped by `progress`.
 RelaxedPatch relax(const Draft& draft, const RelaxationOptions& options = {});
 // The same from another start, an initial_patch() whose yarns may differ in radius, flatness, place, and in thickness
 // along themselves. Stiffness, load and height scale are the draft's.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "station/documents/degree.h"
+#include "station/documents/migrations.h"
 #include "station/documents/reader.h"
 
 namespace station {
@@ -15,7 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kKind = "platform-place";
-constexpr int kVersion = 1;
 
 fs::path state_folder() {
   const char* state = std::getenv("XDG_STATE_HOME");
@@ -33,7 +33,7 @@ class FileMemory final : public rig::PlatformMemory {
   std::optional<rig::PlatformPlace> recall() override {
     if (!fs::exists(file_)) return std::nullopt;
     const nlohmann::json document = read_json_file(file_);
-    ObjectReader reader(document, file_.string(), kKind, kVersion);
+    ObjectReader reader(document, file_.string(), kKind);
     rig::PlatformPlace place;
     place.steps = static_cast<std::int64_t>(reader.number("steps", -1e9, 1e9));
     place.angle_rad = reader.number("angle_deg", -720, 720) * kDegree;
@@ -46,7 +46,7 @@ class FileMemory final : public rig::PlatformMemory {
   void keep(const rig::PlatformPlace& place) override {
     fs::create_directories(file_.parent_path());
     write_json_file(file_, {{"format", std::string("threadstation/") + kKind},
-                            {"version", kVersion},
+                            {"version", current_version(kKind)},
                             {"steps", place.steps},
                             {"angle_deg", place.angle_rad / kDegree},
                             {"turning", place.turning},

@@ -4,16 +4,18 @@
 #include <stdexcept>
 
 #include "renderer/picture/image_file.h"
-#include "renderer/weave/woven_patch.h"
 #include "station/cloth/cloth_colour.h"
 #include "station/cloth/draft_of_one_thread.h"
 #include "station/cloth/render/render_scene.h"
+#include "station/data/data_folder.h"
+#include "station/documents/bundle_file.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/patch_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/thread_file.h"
 #include "station/output/display.h"
 #include "station/output/interrupt.h"
+#include "station/output/watched_work.h"
 #include "station/session/results.h"
 #include "station/thread/invert/invert_session.h"
 
@@ -25,7 +27,7 @@ using nlohmann::json;
 // The stage of a picture: a ready scene in which cloth and thread are replaced.
 struct Stage {
   const char* name;
-  const char* scene;  // in fixtures/scenes
+  const char* scene;  // in station/data/scenes
   int width_px, height_px, samples_per_pixel;
 };
 constexpr std::array<Stage, 2> kStages{Stage{"swatch", "twill_swatch.json", 360, 360, 32},
@@ -34,7 +36,7 @@ constexpr int kQuickReduction = 2;   // of sizes and samples
 constexpr int kWarp = 0, kWeft = 1;  // threads of the draft
 
 json scene_of(const Stage& stage, const std::array<std::string, 2>& threads, bool quick) {
-  json scene = read_json_file(std::filesystem::path(THREADSTATION_FIXTURES) / "scenes" / stage.scene);
+  json scene = read_json_file(data_folder() / "scenes" / stage.scene);
   scene["name"] = std::string("the thread as a ") + stage.name;
   scene["threads"] = threads;
   for (json& cloth : scene["cloths"]) {
@@ -52,10 +54,16 @@ json scene_of(const Stage& stage, const std::array<std::string, 2>& threads, boo
 }
 
 // Writes the threads of systems that are coloured; returns the thread files of warp and weft as the scenes name them.
-std::array<std::string, 2> write_threads(const ClothPreviewRequest& request, const ThreadFile& thread,
-                                         const renderer::YarnPatch& patch, json& made_of) {
-  std::array<std::string, 2> files{"../thread.json", "../thread.json"};
+std::array<std::string, 2> write_threads(const ClothPreviewRequest& request, const renderer::YarnPatch& patch,
+                                         json& made_of) {
+  const std::string own =
+      model_file_of(request.session, request.model).lexically_relative(cloth_folder(request.session)).generic_string();
+  std::array<std::string, 2> files{own, own};
   if (!request.warp_colour && !request.weft_colour) return files;
+  if (request.model != "thread")
+    throw std::runtime_error("colours were given for a " + request.model +
+                             ", and only a thread's absorption can be changed; leave them out, or take --model thread");
+  const ThreadFile thread = read_thread(thread_file_of(request.session));
   constexpr int kParts = 100;
   ProgressDisplay progress("cloth", request.progress_style);
   const ClothColours colours(thread, patch, [&](double done) {
@@ -82,7 +90,7 @@ std::array<std::string, 2> write_threads(const ClothPreviewRequest& request, con
 
 json preview_cloth(const ClothPreviewRequest& request) {
   watch_interrupts();
-  const ThreadFile thread = read_thread(thread_file_of(request.session));
+  const ClothThread thread = read_cloth_thread(model_file_of(request.session, request.model));
   const std::filesystem::path folder = cloth_folder(request.session);
   std::error_code code;
   std::filesystem::create_directories(folder, code);
@@ -91,11 +99,12 @@ json preview_cloth(const ClothPreviewRequest& request) {
                              "; is the session's folder writable?");
   renderer::Draft draft = draft_of_one_thread(read_draft(request.draft), thread.diameter_mm);
   draft.warp.threads = {kWarp}, draft.weft.threads = {kWeft};
-  const renderer::YarnPatch patch = renderer::woven_patch(draft).patch;
+  ProgressDisplay progress("cloth", request.progress_style);
+  const renderer::YarnPatch patch = weave_watched(draft, progress).patch;
   write_json_file(folder / "draft.json", to_json(draft));
   write_json_file(folder / "patch.json", to_json(patch));
-  json made_of{{"draft", draft.name}, {"warp", nullptr}, {"weft", nullptr}};
-  const std::array<std::string, 2> threads = write_threads(request, thread, patch, made_of);
+  json made_of{{"draft", draft.name}, {"model", request.model}, {"warp", nullptr}, {"weft", nullptr}};
+  const std::array<std::string, 2> threads = write_threads(request, patch, made_of);
   for (const Stage& stage : kStages) {
     const std::filesystem::path scene = folder / (std::string(stage.name) + ".json");
     write_json_file(scene, scene_of(stage, threads, request.quick));

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "station/documents/srgb.h"
@@ -13,8 +14,9 @@
 namespace station {
 
 struct ClothPreviewRequest {
-  std::filesystem::path session;  // with result/thread.json
+  std::filesystem::path session;  // with the fitted model
   std::filesystem::path draft;    // scaled to the thread's diameter
+  std::string model = "thread";   // or "bundle"
   // The colours of warp and weft (cloth_colour.h); a system without one has the digitized thread's own.
   std::optional<Srgb8> warp_colour{}, weft_colour{};
   bool quick = false;  // smaller pictures
@@ -22,7 +24,8 @@ struct ClothPreviewRequest {
 };
 
 // Writes draft.json, patch.json, made_of.json and, for each picture, its scene.json, .exr and .png; a coloured system's
-// thread is written too. Ctrl-C stops it. Returns the content of made_of.json.
+// thread is written too. Ctrl-C stops it. Returns the content of made_of.json. Errors: those of the files read;
+// std::runtime_error, one line, when a bundle is to be coloured.
 nlohmann::json preview_cloth(const ClothPreviewRequest& request);
 
 }  // namespace station

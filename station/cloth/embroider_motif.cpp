@@ -130,7 +130,7 @@ struct ReadyScene {
 };
 
 // Asked before the work: that the scene can be read and built and has the cloth, and that it is not written over.
-ReadyScene ready_scene(const EmbroiderRequest& request) {
+ReadyScene ready_scene(const EmbroiderRequest& request, ProgressDisplay& progress) {
   nlohmann::json document = read_json_file(request.scene);
   const SceneFile scene = parse_scene(document, request.scene.string(), request.scene.parent_path());
   const auto count = static_cast<int>(scene.cloths.size());
@@ -141,7 +141,7 @@ ReadyScene ready_scene(const EmbroiderRequest& request) {
   if (std::filesystem::equivalent(sewn_scene_of(request.out), request.scene, none))
     throw std::runtime_error(request.out.string() + ": the scene of it would be written over " +
                              request.scene.string() + "; choose another name");
-  return {std::move(document), build_cloths(scene)};
+  return {std::move(document), build_cloths(scene, progress)};
 }
 
 // The scene with the motif on its cloth, beside the picture, and the picture of it.
@@ -214,9 +214,9 @@ Embroidery embroider(const EmbroiderRequest& request) {
   const renderer::MotifMeasures measures = renderer::measure(motif);
   const Vector2d margin = Vector2d::Constant(3 * request.diameter_mm);
   const renderer::Camera camera = camera_above(measures.low - margin, measures.high + margin, request.pixels_per_mm);
-  ReadyScene scene;
-  if (!request.scene.empty()) scene = ready_scene(request);
   ProgressDisplay progress("embroider", request.progress_style);
+  ReadyScene scene;
+  if (!request.scene.empty()) scene = ready_scene(request, progress);
   const Eigen::Matrix3d to_camera = matrix_of(digitized.linear_srgb_from_camera).inverse();
   const Array3d ground = (to_camera * linear_of(request.ground)).cwiseMax(0).cwiseMin(1).array();
   int shown = -1;

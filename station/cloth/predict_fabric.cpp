@@ -6,10 +6,12 @@
 #include "inversion/view/view.h"
 #include "renderer/picture/image_file.h"
 #include "renderer/trace/path_tracer.h"
-#include "renderer/weave/woven_patch.h"
 #include "station/bench/cloth_on_cylinder.h"
+#include "station/documents/disk/stored_file.h"
 #include "station/documents/session_file.h"
 #include "station/documents/views_file.h"
+#include "station/output/interrupt.h"
+#include "station/output/watched_work.h"
 
 namespace station {
 namespace {
@@ -34,14 +36,15 @@ nlohmann::json to_json(const PredictedView& view) {
 }
 
 std::vector<PredictedView> predict_fabric(const PredictRequest& request) {
+  watch_interrupts();
   const SessionFile asked = read_session_file(request.session);
   const Weave weave = weave_of(request, asked.spool);
   DevelopedViews developed = read_views(request.session);
   read_view_pictures(request.session, developed);
-  const renderer::YarnPatch patch = renderer::woven_patch(weave.draft).patch;
-  const std::filesystem::path folder = request.session / "result" / "fabric";
-  std::filesystem::create_directories(folder);
   ProgressDisplay progress("predict", request.progress_style);
+  const renderer::YarnPatch patch = weave_watched(weave.draft, progress).patch;
+  const std::filesystem::path folder = request.session / "result" / "fabric";
+  make_folder(folder);
   std::vector<PredictedView> predicted;
   for (const DevelopedView& photographed : developed.views) {
     const inversion::View& view = photographed.view;
@@ -50,9 +53,10 @@ std::vector<PredictedView> predict_fabric(const PredictRequest& request) {
     add_cloth_on_cylinder(scene, asked.spool.fabric->cylinder, patch, {weave.threads.begin(), weave.threads.end()});
     scene.lights.push_back(inversion::sphere_light(view.light));
     const renderer::PathTracer tracer(scene);
-    const cv::Mat3f picture = tracer.render(
-        view.camera,
-        {.samples_per_pixel = request.samples_per_pixel, .seed = request.seed + predicted.size(), .only = view.mask});
+    const cv::Mat3f picture = tracer.render(view.camera, {.samples_per_pixel = request.samples_per_pixel,
+                                                          .seed = request.seed + predicted.size(),
+                                                          .only = view.mask,
+                                                          .progress = [](double) { return !interrupted(); }});
     PredictedView next{.view = view.id,
                        .prediction = folder / (view.id + ".exr"),
                        .beside = folder / (view.id + ".png"),

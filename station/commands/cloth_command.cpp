@@ -16,8 +16,11 @@ void add_cloth_command(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   ClothPreviewRequest& request = arguments->request;
   CLI::App* command = app.add_subcommand("cloth", "what a session's thread weaves into: a swatch and a cylinder");
-  command->add_option("session", request.session, "session folder with a fitted thread")->required();
+  command->add_option("session", request.session, "session folder with a fitted thread or bundle")->required();
   command->add_option("--draft", request.draft, "draft (JSON or WIF); scaled to the thread")->required();
+  command->add_option("--model", request.model, "the fitted model that it is woven of: thread or bundle")
+      ->check(CLI::IsMember({"thread", "bundle"}))
+      ->capture_default_str();
   command->add_option("--warp-colour", arguments->warp_colour,
                       "like #c01830: only the thread's absorption changes; its own without it");
   command->add_option("--weft-colour", arguments->weft_colour, "likewise");

@@ -12,6 +12,7 @@ void add_capture_command(CLI::App& app);
 void add_check_command(CLI::App& app);
 void add_cloth_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
+void add_completion_command(CLI::App& app);
 void add_demo_command(CLI::App& app);
 void add_develop_command(CLI::App& app);
 void add_devices_command(CLI::App& app);
@@ -36,10 +37,11 @@ void add_recover_command(CLI::App& app);
 void add_embroider_command(CLI::App& app);
 void add_validate_cloth_command(CLI::App& app);
 void add_validate_command(CLI::App& app);
+void add_upgrade_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
 void add_weave_command(CLI::App& app);
 
-// Marks a command that opens a rig's turntable: --help lists those together, and a test stops each of them.
+// Marks a command that opens a rig's turntable: --help says so of it, and a test stops each of them.
 CLI::App* turns_platform(CLI::App* command);
 
 // Throws std::logic_error after a command that opened a real turntable and is not marked.

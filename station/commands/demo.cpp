@@ -4,6 +4,7 @@
 
 #include "station/bench/calibrate/calibrate_rig.h"
 #include "station/cloth/cloth_preview.h"
+#include "station/data/data_folder.h"
 #include "station/documents/reader.h"
 #include "station/session/capture_session.h"
 #include "station/session/develop/develop_session.h"
@@ -14,12 +15,11 @@
 namespace station {
 namespace {
 
-constexpr const char* kFixtures = THREADSTATION_FIXTURES;
 const std::vector<int> kQuickPaths{128, 256, 512};
 constexpr int kQuickSamples = 8;
 
 nlohmann::json demo_rig(bool quick) {
-  nlohmann::json rig = read_json_file(std::filesystem::path(kFixtures) / "rigs" / "simulated.json");
+  nlohmann::json rig = read_json_file(data_folder() / "rigs" / "simulated.json");
   if (quick) {
     rig["simulation"]["samples_per_pixel"] = 10;
     rig["simulation"]["target_samples_per_pixel"] = 3;
@@ -56,9 +56,8 @@ DemoResult run_demo(const DemoRequest& request) {
   calibrate_rig({.rig = rig, .out = request.out / "calibration", .progress_style = request.progress_style});
   CaptureRequest capture{.session = session, .progress_style = request.progress_style};
   if (!is_session(session))
-    capture.new_session = NewSession{.rig = rig,
-                                     .calibration = request.out / "calibration",
-                                     .spool = std::filesystem::path(kFixtures) / "spools" / "silk_blue.json"};
+    capture.new_session = NewSession{
+        .rig = rig, .calibration = request.out / "calibration", .spool = data_folder() / "spools" / "silk_blue.json"};
   if (capture_session(capture) != RunState::complete)
     throw std::runtime_error("the demo was interrupted; the same command goes on from here");
   develop_session(session, request.progress_style);
@@ -70,7 +69,7 @@ DemoResult run_demo(const DemoRequest& request) {
   }
   const InvertResult thread = invert_session(inversion);
   preview_cloth({.session = session,
-                 .draft = std::filesystem::path(kFixtures) / "drafts" / "twill_2_2.json",
+                 .draft = data_folder() / "drafts" / "twill_2_2.json",
                  .quick = request.quick,
                  .progress_style = request.progress_style});
   return {.session = session,

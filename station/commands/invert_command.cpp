@@ -1,5 +1,6 @@
 #include <iostream>
 #include <map>
+#include <stdexcept>
 
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
@@ -24,6 +25,9 @@ void run(Arguments& arguments) {
     for (const std::string& name : arguments.held)
       if (name == inversion::name_of(group)) request.fit.held.push_back(group);
   request.fit.solver = arguments.solver == "adam" ? inversion::Solver::adam : inversion::Solver::levenberg_marquardt;
+  if (request.fit.tinted && request.fit.model != inversion::ModelKind::thread)
+    throw std::runtime_error("--tint was given with --model " + name_of(request.fit.model) +
+                             ", and only a thread's highlight has a tint; leave out one of them");
   request.progress_style = arguments.output.progress_style();
   const InvertResult result = invert_session(request);
   if (arguments.output.json)
@@ -47,6 +51,8 @@ void add_invert_command(CLI::App& app) {
       ->check(CLI::IsMember({"lm", "adam"}));
   command->add_option("--exit", arguments->request.fit.start.exit, "where light leaves the thread")
       ->transform(CLI::CheckedTransformer(thread_exits()));
+  command->add_flag("--tint", arguments->request.fit.tinted,
+                    "find the tint of the thread's highlight too: metallic threads (without the prior)");
   std::vector<std::string> groups;
   for (inversion::ParameterGroup group : inversion::kParameterGroups) groups.push_back(inversion::name_of(group));
   command->add_option("--hold", arguments->held, "leave this group of parameters at its start")
@@ -67,7 +73,7 @@ void add_invert_command(CLI::App& app) {
   CLI::Option* paper = command->add_flag_callback(
       "--paper", [arguments] { arguments->request.fit.model = inversion::ModelKind::paper; },
       "the paper's own recipe: single pixels, eq. 6 as printed, light leaves where it came in, Adam");
-  for (const char* other : {"--model", "--solver", "--exit", "--hold", "--paths", "--eq6", "--prior"})
+  for (const char* other : {"--model", "--solver", "--exit", "--hold", "--paths", "--eq6", "--prior", "--tint"})
     paper->excludes(command->get_option(other));
   command
       ->add_option("--pixel-paths", arguments->request.fit.paths_per_pixel,

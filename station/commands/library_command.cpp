@@ -66,6 +66,17 @@ void add_library_command(CLI::App& app) {
     sub->add_option("--library", arguments->folder, "the library's folder")->capture_default_str();
     return sub;
   };
+  CLI::App* added = add("add", "take in a session's thread, or a thread file");
+  added->add_option("what", arguments->what, "session folder or thread file")->required();
+  added->add_flag("--json", arguments->json, "as JSON, for machines");
+  added->callback([arguments] {
+    rig::SystemClock clock;
+    const LibraryThread thread = Library(arguments->folder, true).add(arguments->what, clock.utc());
+    if (arguments->json)
+      std::cout << to_json(thread).dump() << "\n";
+    else
+      print_line(thread);
+  });
   CLI::App* listed = add("list", "one line for each thread");
   listed->add_option("words", arguments->words, "only threads with this text in name, barcode, lot, material, ...");
   listed->add_flag("--json", arguments->json, "as JSON, for machines");
@@ -79,17 +90,6 @@ void add_library_command(CLI::App& app) {
       std::cout << to_json(thread).dump() << "\n";
     else
       print_all(thread);
-  });
-  CLI::App* added = add("add", "take in a session's thread, or a thread file");
-  added->add_option("what", arguments->what, "session folder or thread file")->required();
-  added->add_flag("--json", arguments->json, "as JSON, for machines");
-  added->callback([arguments] {
-    rig::SystemClock clock;
-    const LibraryThread thread = Library(arguments->folder, true).add(arguments->what, clock.utc());
-    if (arguments->json)
-      std::cout << to_json(thread).dump() << "\n";
-    else
-      print_line(thread);
   });
   CLI::App* exported = add("export", "one thread with its sample and hashes, in a folder of its own");
   exported->add_option("number", arguments->number, "of the thread in the list")->required();

@@ -7,17 +7,17 @@
 namespace station {
 namespace {
 
-constexpr const char* kTurningCommands = "Commands that turn the platform";
+constexpr const char* kTurns = " (turns the platform)";
 
 bool is_declared(const CLI::App& command) {
-  return command.get_group() == kTurningCommands ||
+  return command.get_description().ends_with(kTurns) ||
          std::ranges::any_of(command.get_subcommands(), [](const CLI::App* part) { return is_declared(*part); });
 }
 
 }  // namespace
 
 CLI::App* turns_platform(CLI::App* command) {
-  return command->group(kTurningCommands);
+  return command->description(command->get_description() + kTurns);
 }
 
 void require_declared_turning(const CLI::App& app) {

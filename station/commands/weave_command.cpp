@@ -8,14 +8,16 @@
 #include <vector>
 
 #include "renderer/picture/image_file.h"
-#include "renderer/weave/woven_patch.h"
 #include "station/cloth/patch_picture.h"
 #include "station/commands/commands.h"
+#include "station/commands/output_options.h"
 #include "station/documents/draft_drawing.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/number_text.h"
 #include "station/documents/patch_file.h"
 #include "station/documents/reader.h"
+#include "station/output/interrupt.h"
+#include "station/output/watched_work.h"
 
 namespace station {
 namespace {
@@ -117,7 +119,7 @@ void add_weave_command(CLI::App& app) {
   struct Arguments {
     std::string draft, out, drawing, view;
     std::vector<std::function<void(Draft&)>> changes;
-    bool json = false;
+    OutputOptions output;
   };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("weave", "a weave draft to a periodic patch of yarns");
@@ -135,18 +137,20 @@ void add_weave_command(CLI::App& app) {
           option.help);
   };
   add_keys(kNumbers), add_keys(kCounts), add_keys(kSeeds);
-  command->add_flag("--json", arguments->json, "what was measured as JSON, for machines");
+  arguments->output.add_to(*command);
   command->callback([arguments] {
     Draft draft = read_draft(arguments->draft);
     for (const auto& change_key : arguments->changes) change_key(draft);
     if (const auto problem = check_draft(draft)) throw std::runtime_error(arguments->draft + ": " + *problem);
     if (!arguments->drawing.empty()) write_drawing(arguments->drawing, draft);
-    const RelaxedPatch relaxed = renderer::woven_patch(draft);
+    ProgressDisplay progress("weave", arguments->output.progress_style());
+    watch_interrupts();
+    const RelaxedPatch relaxed = weave_watched(draft, progress);
     const YarnPatch& patch = relaxed.patch;
     const json document = to_json(patch);
     write_json_file(arguments->out, document);
     if (!arguments->view.empty()) write_patch_picture(arguments->view, patch);
-    if (arguments->json)
+    if (arguments->output.json)
       std::cout << json{{"patch", arguments->out},
                         {"name", patch.name},
                         {"measured", document.at("measured")},

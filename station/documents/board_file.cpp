@@ -19,7 +19,7 @@ TagBoardGrid parse_tag_board(ObjectReader& board) {
 }
 
 BoardFile parse_board(const nlohmann::json& document, const std::string& source) {
-  ObjectReader reader(document, source, "board", 1);
+  ObjectReader reader(document, source, "board");
   BoardFile board;
   board.name = reader.text("name");
   const bool tags = reader.choice("pattern", {"tags", "chessboard"}) == "tags";

@@ -1,5 +1,5 @@
 // A bundle file (kind "bundle", bundle.json): a digitized thread that is described by its fibers
-// (renderer/scattering/bundle.h), and where that comes from; keys in fixtures/bundles/README.md. Cloths take it
+// (renderer/scattering/bundle.h), and where that comes from; keys in station/data/bundles/README.md. Cloths take it
 // wherever they take a thread file.
 //
 // Errors: those of reader.h; also refused are fibers that fill more than a thread can hold.

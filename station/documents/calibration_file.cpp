@@ -231,7 +231,7 @@ json to_json(const RigCalibration& calibration) {
 }
 
 RigCalibration parse_calibration(const json& document, const std::string& source) {
-  ObjectReader reader(document, source, "calibration", 1);
+  ObjectReader reader(document, source, "calibration");
   RigCalibration calibration;
   calibration.rig_name = reader.text("rig");
   calibration.utc = reader.text("utc");

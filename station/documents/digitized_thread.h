@@ -28,7 +28,7 @@ template <class Parameters, class Parse>
 DigitizedThread<Parameters> parse_digitized(const std::string& kind, const nlohmann::json& document,
                                             const std::string& source, const nlohmann::json& units,
                                             const Parse& parse) {
-  ObjectReader reader(document, source, kind, 1);
+  ObjectReader reader(document, source, kind);
   DigitizedThread<Parameters> thread;
   thread.name = reader.text("name");
   thread.diameter_mm = reader.number("diameter_mm", 0.005, 20);

@@ -93,7 +93,7 @@ json system_json(const renderer::YarnSystem& system) {
 }  // namespace
 
 renderer::Draft parse_draft(const json& document, const std::string& source) {
-  ObjectReader reader(document, source, "draft", 1);
+  ObjectReader reader(document, source, "draft");
   renderer::Draft draft;
   draft.name = reader.text("name");
   draft.warp_over = parse_structure(reader);

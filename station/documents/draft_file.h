@@ -1,5 +1,5 @@
 // A draft file (kind "draft"): the structure, sett, yarn sizes and thread order of a cloth; keys in
-// fixtures/drafts/README.md.
+// station/data/drafts/README.md.
 //
 // Errors: those of reader.h, and the line of renderer::check_draft with the file's name in front.
 #pragma once

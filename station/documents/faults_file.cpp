@@ -64,7 +64,7 @@ std::vector<Planned> parse_plan(ObjectReader& faults, const std::string& key, co
 }  // namespace
 
 Faults parse_faults(const nlohmann::json& document, const std::string& source) {
-  ObjectReader reader(document, source, "faults", 1);
+  ObjectReader reader(document, source, "faults");
   Faults faults{.turntable = parse_plan<rig::PlannedLineFault>(reader, "turntable", kLineFaults),
                 .camera = parse_plan<rig::PlannedCameraFault>(reader, "camera", kCameraFaults)};
   reader.finish();

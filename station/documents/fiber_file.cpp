@@ -7,7 +7,7 @@
 namespace station {
 
 renderer::FiberParameters parse_fiber(const nlohmann::json& document, const std::string& source) {
-  ObjectReader reader(document, source, "fiber", 1);
+  ObjectReader reader(document, source, "fiber");
   renderer::FiberParameters fiber;
   fiber.eta = reader.number("eta", kRefractiveIndex);
   fiber.sigma_a = reader.vector3("sigma_a", kAbsorption);

@@ -1,4 +1,4 @@
-// A fiber file (kind "fiber"): the scattering parameters of a single fiber; keys in fixtures/fibers/README.md.
+// A fiber file (kind "fiber"): the scattering parameters of a single fiber; keys in station/data/fibers/README.md.
 //
 // Errors: those of reader.h.
 #pragma once

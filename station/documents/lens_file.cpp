@@ -184,7 +184,7 @@ json to_json(const LensFile& lens) {
 }
 
 LensFile parse_lens_file(const json& document, const std::string& source) {
-  ObjectReader reader(document, source, "lens", 1);
+  ObjectReader reader(document, source, "lens");
   LensFile lens;
   lens.board = reader.text("board");
   lens.utc = reader.text("utc");

@@ -26,7 +26,7 @@ Hashes hashes_of(const fs::path& folder) {
 
 Hashes read_manifest(const fs::path& file) {
   const json document = read_json_file(file);
-  ObjectReader reader(document, file.string(), "manifest", 1);
+  ObjectReader reader(document, file.string(), "manifest");
   const json& files = reader.raw("files");
   reader.finish();
   try {

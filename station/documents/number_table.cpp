@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "station/documents/disk/shown_text.h"
 #include "station/documents/number_text.h"
 
 namespace station {
@@ -30,7 +31,7 @@ NumberTable::NumberTable(const std::filesystem::path& file, const std::vector<st
   for (const TextTable::Row& row : table_.rows)
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
       const std::optional<double> value = finite_number(row.cells[i]);
-      if (!value) refuse(row.line, i, "found \"" + row.cells[i].substr(0, 40) + "\", expected a finite number");
+      if (!value) refuse(row.line, i, "found \"" + shown_text(row.cells[i]) + "\", expected a finite number");
       values_.push_back(*value);
     }
 }
@@ -48,7 +49,7 @@ double NumberTable::note(const std::string& name, Range range) const {
   if (at == table_.notes.end()) refuse("no line \"# " + name + " ...\"; expected " + shown(range));
   const std::optional<double> value = finite_number(at->second);
   if (!value || !(*value >= range.low && *value <= range.high))
-    refuse("\"# " + name + "\": found \"" + at->second.substr(0, 40) + "\", expected " + shown(range));
+    refuse("\"# " + name + "\": found \"" + shown_text(at->second) + "\", expected " + shown(range));
   return *value;
 }
 

@@ -76,7 +76,7 @@ json yarn_json(const renderer::Yarn& yarn) {
 }  // namespace
 
 renderer::YarnPatch parse_patch(const json& document, const std::string& source) {
-  ObjectReader reader(document, source, "patch", 1);
+  ObjectReader reader(document, source, "patch");
   renderer::YarnPatch patch;
   patch.name = reader.text("name");
   patch.period_x_mm = reader.number("period_x_mm", 1e-6, kMostLength);

@@ -1,6 +1,6 @@
 // A patch file (kind "patch"): one period of a cloth as spline yarns, with its measures (crimp, thickness, cover,
 // mass). Numbers are written with all their digits, so that a patch that is written and read is the same patch. Keys in
-// fixtures/drafts/README.md.
+// station/data/drafts/README.md.
 //
 // Errors: those of reader.h.
 #pragma once

@@ -70,7 +70,7 @@ json plan_to_json(const Plan& plan) {
 }
 
 Plan plan_from_json(const json& document, const std::string& source) {
-  ObjectReader reader(document, source, "plan", 1);
+  ObjectReader reader(document, source, "plan");
   Plan plan;
   for (ObjectReader& step : reader.objects("steps")) plan.steps.push_back(read_step(step));
   reader.finish();

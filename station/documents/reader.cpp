@@ -5,8 +5,10 @@
 #include <span>
 #include <stdexcept>
 
+#include "station/documents/disk/shown_text.h"
 #include "station/documents/disk/stored_file.h"
 #include "station/documents/disk/whole_file.h"
+#include "station/documents/migrations.h"
 
 namespace station {
 namespace {
@@ -14,9 +16,7 @@ namespace {
 using nlohmann::json;
 
 std::string shown(const json& value) {
-  std::string text = value.dump();
-  if (text.size() > 60) text = text.substr(0, 57) + "...";
-  return text;
+  return shown_text(value.dump(), 60);
 }
 
 std::string joined(std::initializer_list<const char*> words) {
@@ -54,7 +54,7 @@ void write_json_file(const std::filesystem::path& file, const json& document) {
   write_text_file(file, document.dump(2) + "\n");
 }
 
-ObjectReader::ObjectReader(const json& document, const std::string& source, const std::string& kind, int version)
+ObjectReader::ObjectReader(const json& document, const std::string& source, const std::string& kind)
     : object_(&document), source_(source) {
   if (!document.is_object())
     throw std::runtime_error(source + ": found " + shown(document) + ", expected a JSON object");
@@ -63,14 +63,16 @@ ObjectReader::ObjectReader(const json& document, const std::string& source, cons
   if (format != wanted)
     throw std::runtime_error(source + ": expected a \"" + wanted + "\" document, found " + format + "; give a " + kind +
                              " file here");
-  const int found = integer("version", 0, 1 << 30);
-  if (found != version)
-    throw std::runtime_error(source + ": " + kind + " version " + std::to_string(found) +
-                             " found, this program reads version " + std::to_string(version));
+  const int version = integer("version", 1, 1 << 30);
+  if (version > current_version(kind)) throw std::runtime_error(later_version_problem(source, kind, version));
+  if (version == current_version(kind)) return;
+  migrated_ = std::make_shared<const json>(migrated(document, kind, version));
+  object_ = migrated_.get();
 }
 
-ObjectReader::ObjectReader(const json& object, std::string source, std::string path)
-    : object_(&object), source_(std::move(source)), path_(std::move(path)) {}
+ObjectReader::ObjectReader(std::shared_ptr<const json> document, const json& object, std::string source,
+                           std::string path)
+    : migrated_(std::move(document)), object_(&object), source_(std::move(source)), path_(std::move(path)) {}
 
 std::string ObjectReader::full_name(const std::string& key) const {
   return path_.empty() ? key : path_ + "." + key;
@@ -93,7 +95,7 @@ const json& ObjectReader::value(const std::string& key) {
 ObjectReader ObjectReader::object(const std::string& key) {
   const json& found = value(key);
   if (!found.is_object()) refuse(key, "found " + shown(found) + ", expected an object");
-  return ObjectReader(found, source_, full_name(key));
+  return ObjectReader(migrated_, found, source_, full_name(key));
 }
 
 std::vector<ObjectReader> ObjectReader::objects(const std::string& key) {
@@ -103,7 +105,7 @@ std::vector<ObjectReader> ObjectReader::objects(const std::string& key) {
   for (std::size_t i = 0; i < found.size(); ++i) {
     const std::string name = key + "[" + std::to_string(i) + "]";
     if (!found[i].is_object()) refuse(name, "found " + shown(found[i]) + ", expected an object");
-    list.push_back(ObjectReader(found[i], source_, full_name(name)));
+    list.push_back(ObjectReader(migrated_, found[i], source_, full_name(name)));
   }
   return list;
 }

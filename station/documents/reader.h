@@ -10,6 +10,7 @@
 #include <array>
 #include <filesystem>
 #include <initializer_list>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -28,8 +29,9 @@ void write_text_file(const std::filesystem::path& file, const std::string& text)
 // One object of a document. Callers ask for its keys, then call finish(), which refuses keys that nobody asked for.
 class ObjectReader {
  public:
-  // Begins with a whole document, of which "format" must be "threadstation/<kind>" and "version" `version`.
-  ObjectReader(const nlohmann::json& document, const std::string& source, const std::string& kind, int version);
+  // Begins with a whole document, of which "format" must be "threadstation/<kind>". One of an earlier version is read
+  // as the current one would be (migrations.h); one of a later version is refused.
+  ObjectReader(const nlohmann::json& document, const std::string& source, const std::string& kind);
 
   bool has(const std::string& key) const;
   ObjectReader object(const std::string& key);
@@ -47,17 +49,19 @@ class ObjectReader {
   Eigen::Vector3d vector3(const std::string& key);
   Eigen::Vector3d vector3(const std::string& key, Range range);
   Eigen::Isometry3d transform(const std::string& key);  // 4 x 4 row-major, rotation checked
-  const nlohmann::json& raw(const std::string& key);    // the value as it is
+  const nlohmann::json& raw(const std::string& key);    // the value as it is; lives as long as reader and document
 
   void finish() const;
   [[noreturn]] void refuse(const std::string& key, const std::string& found_and_expected) const;
   const std::string& source() const { return source_; }
 
  private:
-  ObjectReader(const nlohmann::json& object, std::string source, std::string path);
+  ObjectReader(std::shared_ptr<const nlohmann::json> document, const nlohmann::json& object, std::string source,
+               std::string path);
   const nlohmann::json& value(const std::string& key);
   std::string full_name(const std::string& key) const;
 
+  std::shared_ptr<const nlohmann::json> migrated_;  // the document, where it was of an earlier version
   const nlohmann::json* object_;
   std::string source_, path_;
   std::vector<std::string> asked_;

@@ -5,6 +5,7 @@
 #include "calibration/geometry/targets.h"
 #include "station/documents/board_file.h"
 #include "station/documents/degree.h"
+#include "station/documents/holder.h"
 #include "station/documents/reader.h"
 
 namespace station {
@@ -307,6 +308,10 @@ void parse_targets(ObjectReader& reader, RigFile& rig) {
   rig.lamp_tags = corner_tags(reader.object("lamp_tags"), "lamp", Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
   rig.holder_tags =
       corner_tags(reader.object("holder_tags"), "holder", Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
+  if (reader.has("holder")) {
+    inversion::WrappedSpool checked;
+    read_holder(reader.object("holder"), checked);  // what takes it reads the document (serve/spool_form.cpp)
+  }
   if (reader.has("reference_patch")) {
     ObjectReader chip = reader.object("reference_patch");
     rig.reference_chip =
@@ -344,7 +349,7 @@ Eigen::Vector3d chart_square_centre(const ColourChart& chart, std::size_t square
 }
 
 RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
-  ObjectReader reader(document, source, "rig", 1);
+  ObjectReader reader(document, source, "rig");
   RigFile rig;
   rig.name = reader.text("name");
   rig.camera_driver = reader.choice("camera", {"simulated", "gphoto2"});

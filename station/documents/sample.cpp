@@ -20,7 +20,7 @@ Sample read_sample(ObjectReader& reader) {
 
 Sample read_sample_file(const std::filesystem::path& file) {
   const nlohmann::json document = read_json_file(file);
-  ObjectReader reader(document, file.string(), "sample", 1);
+  ObjectReader reader(document, file.string(), "sample");
   return read_sample(reader);
 }
 

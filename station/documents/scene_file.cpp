@@ -352,7 +352,7 @@ std::optional<std::string> missing_thread(const std::string& cloth, const std::v
 }
 
 SceneFile parse_scene(const json& document, const std::string& source, const std::filesystem::path& folder) {
-  ObjectReader reader(document, source, "scene", 1);
+  ObjectReader reader(document, source, "scene");
   SceneFile scene{.source = source};
   scene.name = reader.text("name");
   read_threads(reader, folder, scene);

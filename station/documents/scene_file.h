@@ -1,5 +1,5 @@
 // Scene files (kind "scene"): cloths of digitized threads, bodies under them, lights and a camera; keys in
-// fixtures/scenes/README.md. The files that a scene names (threads, drafts, patches, motifs, meshes, pictures) are
+// station/data/scenes/README.md. The files that a scene names (threads, drafts, patches, motifs, meshes, pictures) are
 // named relative to it and read with it. Nothing is woven or draped here: that is cloth/render/build_scene.h.
 //
 // Errors: those of reader.h and of the files that the scene names.

@@ -21,7 +21,7 @@ SessionFile read_session_file(const std::filesystem::path& session) {
     throw std::runtime_error(session.string() +
                              " is not a session folder (no session.json); give the folder that capture made");
   const nlohmann::json document = read_json_file(file);
-  ObjectReader reader(document, file.string(), "session", 1);
+  ObjectReader reader(document, file.string(), "session");
   SessionFile result;
   result.utc = reader.text("utc");
   result.software = reader.text("software");

@@ -1,22 +1,18 @@
 #include "station/documents/spool.h"
 
 #include "station/documents/draft_file.h"
+#include "station/documents/holder.h"
 #include "station/documents/parameter_ranges.h"
 #include "station/documents/reader.h"
 #include "station/documents/thread_file.h"
 
 namespace station {
+
 namespace {
 
 inversion::WrappedSpool parse_wrapping(ObjectReader& spool) {
   inversion::WrappedSpool wrapping;
-  ObjectReader holder = spool.object("holder");
-  wrapping.frame_width_mm = holder.number("frame_width_mm", 1, 1000);
-  wrapping.frame_height_mm = holder.number("frame_height_mm", 1, 1000);
-  wrapping.frame_depth_mm = holder.number("frame_depth_mm", 0.1, 500);
-  wrapping.window_width_mm = holder.number("window_width_mm", 0.5, wrapping.frame_width_mm);
-  wrapping.window_height_mm = holder.number("window_height_mm", 0.5, wrapping.frame_height_mm);
-  holder.finish();
+  read_holder(spool.object("holder"), wrapping);
   wrapping.turns = spool.integer("turns", 1, 10000);
   wrapping.thread_diameter_mm = spool.number("thread_diameter_mm", 0.005, 20);
   wrapping.front_and_back = spool.choice("sheets", {"front", "front_and_back"}) == "front_and_back";
@@ -60,7 +56,7 @@ Weave parse_weave(ObjectReader reader) {
 }
 
 Spool parse_fabric(const nlohmann::json& document, const std::string& source) {
-  ObjectReader reader(document, source, "fabric", 1);
+  ObjectReader reader(document, source, "fabric");
   Spool spool;
   spool.name = reader.text("name");
   spool.material = reader.text("material");
@@ -94,7 +90,7 @@ nlohmann::json read_spool_document(const std::filesystem::path& file) {
 
 Spool parse_spool(const nlohmann::json& document, const std::string& source) {
   if (is_fabric(document)) return parse_fabric(document, source);
-  ObjectReader reader(document, source, "spool", 1);
+  ObjectReader reader(document, source, "spool");
   Spool spool;
   spool.name = reader.text("name");
   spool.material = reader.text("material");

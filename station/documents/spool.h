@@ -1,6 +1,6 @@
 // A spool file (kind "spool"): the wrapped thread, its holder and, for the simulated bench, the fibers that the thread
-// is made of. A fabric file (kind "fabric"; keys in fixtures/fabrics/README.md) describes a woven sample on the black
-// cylinder in the same way, and may stand wherever a spool file may.
+// is made of. A fabric file (kind "fabric"; keys in station/data/fabrics/README.md) describes a woven sample on the
+// black cylinder in the same way, and may stand wherever a spool file may.
 #pragma once
 
 #include <filesystem>

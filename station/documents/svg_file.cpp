@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "station/documents/degree.h"
+#include "station/documents/disk/shown_text.h"
 #include "station/documents/number_text.h"
 #include "station/documents/srgb.h"
 #include "station/documents/text_pieces.h"
@@ -67,7 +68,7 @@ class Drawing {
 
   [[noreturn]] void fail_at(const pugi::xml_node& node, const std::string& what) const {
     const std::string id = node.attribute("id").value();
-    fail("<" + std::string(node.name()) + (id.empty() ? "" : " id=\"" + id.substr(0, 40) + "\"") + ">: " + what);
+    fail("<" + std::string(node.name()) + (id.empty() ? "" : " id=\"" + shown_text(id) + "\"") + ">: " + what);
   }
 
   // The millimetres of a length with its unit; percentages have none.
@@ -87,7 +88,7 @@ class Drawing {
     const auto box = numbers(root.attribute("viewBox").value());
     if (!root.attribute("viewBox")) return kPixel_mm;
     if (!box || box->size() != 4 || !((*box)[2] > 0) || !((*box)[3] > 0))
-      fail("found the viewBox \"" + std::string(root.attribute("viewBox").value()).substr(0, 60) +
+      fail("found the viewBox \"" + shown_text(root.attribute("viewBox").value(), 60) +
            "\", expected left, top, width and height");
     std::optional<double> unit;
     for (const auto& [name, size] : {std::pair("width", (*box)[2]), std::pair("height", (*box)[3])})
@@ -151,7 +152,7 @@ class Drawing {
     std::string_view text = node.attribute("transform").value();
     Geom::Affine whole = Geom::identity();
     const auto refuse = [&] {
-      fail_at(node, "found the transform \"" + std::string(node.attribute("transform").value()).substr(0, 60) +
+      fail_at(node, "found the transform \"" + shown_text(node.attribute("transform").value(), 60) +
                         "\", expected matrix, translate, scale, rotate, skewX or skewY");
     };
     for (;;) {
@@ -209,7 +210,7 @@ class Drawing {
           colour[c] = static_cast<unsigned char>(std::lround(std::clamp((*v)[c], 0.0, 255.0)));
         return colour;
       }
-    fail_at(node, "found the " + key + " \"" + text.substr(0, 40) +
+    fail_at(node, "found the " + key + " \"" + shown_text(text) +
                       "\", which is no colour of one thread; write it like #c01830");
   }
 
@@ -218,8 +219,7 @@ class Drawing {
     if (!attribute) return 0;
     const auto found = length_mm(attribute.value());
     if (!found)
-      fail_at(node, "found " + std::string(name) + "=\"" + std::string(attribute.value()).substr(0, 40) +
-                        "\", expected a number");
+      fail_at(node, "found " + std::string(name) + "=\"" + shown_text(attribute.value()) + "\", expected a number");
     return *found / kPixel_mm;
   }
 

@@ -1,5 +1,5 @@
 // A thread file (kind "thread", thread.json): a digitized thread, its scattering parameters and where they come from;
-// keys in fixtures/threads/README.md.
+// keys in station/data/threads/README.md.
 //
 // Errors: those of reader.h; also refused is a lambda that is negative at some angle.
 #pragma once

@@ -20,7 +20,7 @@ nlohmann::json to_json(const TurntableSettings& settings) {
 }
 
 TurntableSettings parse_turntable_settings(const nlohmann::json& document, const std::string& source) {
-  ObjectReader reader(document, source, "turntable-settings", 1);
+  ObjectReader reader(document, source, "turntable-settings");
   TurntableSettings settings{.firmware = reader.text("firmware"), .settings = {}};
   for (ObjectReader entry : reader.objects("settings")) {
     const int number = entry.integer("number", 0, kLargestNumber);

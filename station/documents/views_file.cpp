@@ -102,7 +102,7 @@ json to_json(const DevelopedViews& views) {
 DevelopedViews read_views(const std::filesystem::path& session) {
   const std::filesystem::path file = session / "linear" / "views.json";
   const json document = read_json_file(file);
-  ObjectReader reader(document, file.string(), "views", 1);
+  ObjectReader reader(document, file.string(), "views");
   DevelopedViews result;
   const auto colour = reader.numbers("linear_srgb_from_camera", 9);
   std::copy(colour.begin(), colour.end(), result.linear_srgb_from_camera.begin());

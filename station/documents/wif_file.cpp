@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "station/documents/disk/shown_text.h"
 #include "station/documents/disk/whole_file.h"
 #include "station/documents/text_pieces.h"
 
@@ -27,12 +28,8 @@ std::string without_comment(const std::string& text) {
   return trimmed(text.substr(0, text.find(';')));
 }
 
-// A text as error messages quote it: short, and nothing that would break the line.
 std::string quoted(const std::string& text) {
-  constexpr std::size_t kMost = 40;
-  std::string shown;
-  for (const char c : text.substr(0, kMost)) shown += c >= ' ' && c < 127 ? c : '?';
-  return "\"" + shown + (text.size() > kMost ? "...\"" : "\"");
+  return "\"" + shown_text(text) + "\"";
 }
 
 std::optional<double> number_in(const std::string& text) {

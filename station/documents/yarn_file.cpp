@@ -6,7 +6,7 @@
 namespace station {
 
 renderer::YarnParameters parse_yarn(const nlohmann::json& document, const std::string& source) {
-  ObjectReader reader(document, source, "yarn", 1);
+  ObjectReader reader(document, source, "yarn");
   renderer::YarnParameters yarn;
   yarn.fiber_count = reader.integer("fiber_count", 1, 10000);
   yarn.radius_ratio = reader.number("radius_ratio", 0.001, 1);

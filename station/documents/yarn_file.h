@@ -1,5 +1,5 @@
 // A yarn file (kind "yarn"): the parameters of the yarn baseline (renderer/scattering/yarn.h); keys in
-// fixtures/yarns/README.md.
+// station/data/yarns/README.md.
 //
 // Errors: those of reader.h; also refused are fibers that fill more than the yarn.
 #pragma once

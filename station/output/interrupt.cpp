@@ -19,6 +19,7 @@ constexpr int kStopAgainMs = 50;
 
 std::atomic<int> interrupts_seen{0};  // a signal handler can reach nothing else
 std::atomic<int> interrupts_watched{1};
+std::atomic<bool> watching{false};
 
 // Becomes readable with the first signal, for threads that wait for it.
 std::atomic<int> interrupt_event{-1};
@@ -41,6 +42,7 @@ void on_signal(int signal) {
 void watch_interrupts(int watched) {
   interrupts_seen = 0;
   interrupts_watched = watched;
+  watching = true;
   if (interrupt_event < 0) interrupt_event = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   std::uint64_t count = 0;
   [[maybe_unused]] const ssize_t drained = read(interrupt_event, &count, sizeof count);  // of a run before
@@ -56,8 +58,17 @@ void watch_interrupts(int watched) {
 }
 
 void watch_more_interrupts(int watched) {
-  if (interrupt_event < 0) watch_interrupts(watched);
+  if (!watching) watch_interrupts(watched);
   interrupts_watched = std::max(interrupts_watched.load(), watched);
+}
+
+void let_interrupts_end() {
+  watching = false;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction now {};
+    sigaction(signal, nullptr, &now);
+    if (now.sa_handler == on_signal) std::signal(signal, SIG_DFL);
+  }
 }
 
 int interrupts() {

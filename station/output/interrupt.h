@@ -11,6 +11,9 @@ namespace station {
 void watch_interrupts(int watched = 1);
 // At least the first `watched` ctrl-C are only counted; those that came before still count.
 void watch_more_interrupts(int watched);
+// From now on ctrl-C ends the program at once, until one of the two above is called again: for long work that loses
+// nothing by it and does not ask.
+void let_interrupts_end();
 int interrupts();  // how many came since then
 bool interrupted();
 

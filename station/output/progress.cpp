@@ -16,7 +16,7 @@ std::string duration(double seconds) {
 
 std::string bar(int done, int total) {
   constexpr int kWidth = 24;
-  const int filled = total > 0 ? kWidth * done / total : kWidth;
+  const int filled = kWidth * done / total;
   return "[" + std::string(static_cast<std::size_t>(filled), '#') +
          std::string(static_cast<std::size_t>(kWidth - filled), '.') + "]";
 }
@@ -27,11 +27,12 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-ProgressDisplay::ProgressDisplay(std::string task, ProgressStyle style)
+ProgressDisplay::ProgressDisplay(std::string task, ProgressStyle style, Clock clock)
     : task_(std::move(task)),
       style_(style),
       terminal_(::isatty(STDERR_FILENO) == 1),
-      start_(std::chrono::steady_clock::now()) {}
+      clock_(std::move(clock)),
+      start_(clock_()) {}
 
 ProgressDisplay::~ProgressDisplay() {
   if (open_line_) std::fputc('\n', stderr);
@@ -40,7 +41,7 @@ ProgressDisplay::~ProgressDisplay() {
 void ProgressDisplay::show(int done, int total, const std::string& label, double seconds_left) {
   if (style_ == ProgressStyle::quiet) return;
   const std::lock_guard lock(mutex_);
-  const double elapsed = seconds_since(start_);
+  const double elapsed = seconds();
   if (!first_) first_ = done;
   if (seconds_left < 0 && done > *first_) seconds_left = elapsed / (done - *first_) * (total - done);
   if (style_ == ProgressStyle::json) {
@@ -50,15 +51,20 @@ void ProgressDisplay::show(int done, int total, const std::string& label, double
     return;
   }
   const std::string left = seconds_left >= 0 ? ", " + duration(seconds_left) + " left" : "";
-  const std::string count = std::to_string(done) + "/" + std::to_string(total);
+  const std::string count = total > 0 ? std::to_string(done) + "/" + std::to_string(total) + " " : "";
   if (terminal_) {
-    std::fprintf(stderr, "\r\033[K%s %s %s %s%s", task_.c_str(), bar(done, total).c_str(), count.c_str(), label.c_str(),
+    const std::string drawn = total > 0 ? bar(done, total) + " " : "";
+    std::fprintf(stderr, "\r\033[K%s %s%s%s%s", task_.c_str(), drawn.c_str(), count.c_str(), label.c_str(),
                  left.c_str());
     open_line_ = true;
   } else {
-    std::fprintf(stderr, "%s %s %s%s\n", task_.c_str(), count.c_str(), label.c_str(), left.c_str());
+    std::fprintf(stderr, "%s %s%s%s\n", task_.c_str(), count.c_str(), label.c_str(), left.c_str());
   }
   std::fflush(stderr);
+}
+
+double ProgressDisplay::seconds() const {
+  return std::chrono::duration<double>(clock_() - start_).count();
 }
 
 void ProgressDisplay::note(const std::string& text) {

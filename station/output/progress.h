@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -14,22 +15,27 @@ enum class ProgressStyle { automatic, quiet, json };  // automatic: bar on a ter
 
 class ProgressDisplay {
  public:
-  explicit ProgressDisplay(std::string task, ProgressStyle style = ProgressStyle::automatic);
+  using Clock = std::function<std::chrono::steady_clock::time_point()>;
+  explicit ProgressDisplay(std::string task, ProgressStyle style = ProgressStyle::automatic,
+                           Clock clock = std::chrono::steady_clock::now);
   ~ProgressDisplay();
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
-  // `done` of `total` units are finished; `label` says what comes now. The time left is guessed from the pace since the
-  // first call (what goes on from an earlier run does not begin at 0) unless it is given.
+  // `done` of `total` units are finished (a total of 0: nobody knows); `label` says what comes now. The time left is
+  // guessed from the pace since the first call (what goes on from an earlier run does not begin at 0) unless it is
+  // given.
   void show(int done, int total, const std::string& label, double seconds_left = -1);
   // A line that stays, from any thread.
   void note(const std::string& text);
   void finish(const std::string& summary);
+  double seconds() const;  // since it was made
 
  private:
   std::string task_;
   ProgressStyle style_;
   bool terminal_;
+  Clock clock_;
   std::mutex mutex_;
   bool open_line_ = false;
   std::optional<int> first_;  // units that were done when this run began

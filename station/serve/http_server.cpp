@@ -12,6 +12,7 @@
 #include <list>
 #include <stdexcept>
 
+#include "station/documents/disk/stored_file.h"
 #include "station/documents/text_pieces.h"
 
 namespace station {
@@ -112,7 +113,7 @@ struct HttpServer::Impl {
   std::list<std::shared_ptr<Connection>> connections;  // the one that has waited longest first
   std::atomic<std::size_t> waiting{0};
   double budget = 0;
-  Clock::time_point budget_at = Clock::now();
+  Clock::time_point budget_at = limits.now();
 };
 
 // One socket: request, answer, request ... or one stream of events.
@@ -173,7 +174,7 @@ class HttpServer::Impl::Connection : public std::enable_shared_from_this<Connect
       try {
         response = self->server_.handle(request);
       } catch (const std::exception& problem) {
-        response = text(500, problem.what());
+        response = text(500, problem_line(problem));
       }
       --self->server_.waiting;
       asio::post(self->server_.io,
@@ -302,7 +303,7 @@ void HttpServer::Impl::drop(const std::shared_ptr<Connection>& connection) {
 }
 
 bool HttpServer::Impl::too_many_requests() {
-  const Clock::time_point now = Clock::now();
+  const Clock::time_point now = limits.now();
   budget = std::min(limits.requests_per_s,
                     budget + limits.requests_per_s * std::chrono::duration<double>(now - budget_at).count());
   budget_at = now;

@@ -26,6 +26,8 @@ struct HttpLimits {
   std::size_t connections = 256, streams = 32, waiting_requests = 64;
   double requests_per_s = 200;           // of all clients together, on average; more are refused (429)
   std::size_t stream_bytes = 256 << 10;  // that a watcher may lag behind before it is dropped
+  // The clock by which requests per second are counted.
+  std::function<std::chrono::steady_clock::time_point()> now = std::chrono::steady_clock::now;
 };
 
 class HttpServer {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 
+#include "station/data/data_folder.h"
 #include "station/serve/page_answers.h"
 
 namespace station {
@@ -201,13 +202,13 @@ std::vector<std::string> export_formats() {
 }
 
 fs::path ready_draft(const std::string& name) {
-  const fs::path file = fs::path(THREADSTATION_FIXTURES) / "drafts" / (checked_name(name) + ".json");
+  const fs::path file = data_folder() / "drafts" / (checked_name(name) + ".json");
   if (!fs::exists(file)) throw Refused(404, "there is no draft " + name);
   return file;
 }
 
 std::vector<std::string> ready_drafts() {
-  return files_in(fs::path(THREADSTATION_FIXTURES) / "drafts", ".json");
+  return files_in(data_folder() / "drafts", ".json");
 }
 
 }  // namespace station

@@ -66,9 +66,10 @@ json thread_document(const ThreadFile& thread) {
   std::vector<double> cosines;
   for (int i = 0; i <= kCosines; ++i) cosines.push_back(static_cast<double>(i) / kCosines);
   const auto covariance = covariance_of(thread);
-  constexpr Eigen::Index kSize = renderer::kThreadParameterCount;
-  const auto bands = inversion::energy_bands(inversion::unknowns_of(thread.parameters),
-                                             covariance.value_or(Eigen::MatrixXd::Zero(kSize, kSize)), cosines);
+  Eigen::VectorXd unknowns = inversion::tinted_unknowns_of(thread.parameters);
+  if (!covariance || covariance->rows() != unknowns.size()) unknowns = inversion::unknowns_of(thread.parameters);
+  const auto bands = inversion::energy_bands(
+      unknowns, covariance.value_or(Eigen::MatrixXd::Zero(unknowns.size(), unknowns.size())), cosines);
   json curves = json::array();
   for (const inversion::EnergyBand& band : bands) {
     curves.push_back({{"cosine", band.cosine}, {"lambda", band.lambda}});

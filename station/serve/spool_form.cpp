@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "station/bench/bench_picture.h"
+#include "station/data/data_folder.h"
 #include "station/documents/reader.h"
 #include "station/documents/sample.h"
 #include "station/documents/spool.h"
@@ -18,7 +19,7 @@ using nlohmann::json;
 constexpr std::size_t kLongestText = 200;
 
 fs::path ready_spools() {
-  return fs::path(THREADSTATION_FIXTURES) / "spools";
+  return data_folder() / "spools";
 }
 
 Sample sample_of(const json& form) {
@@ -36,13 +37,17 @@ Sample sample_of(const json& form) {
   return sample;
 }
 
-json spool_of(const json& form, const Sample& sample) {
-  const json ready = read_json_file(ready_spools() / "silk_blue.json");
+json spool_of(const json& form, const Sample& sample, const fs::path& rig) {
+  const json bench = read_json_file(rig);
+  if (!bench.contains("holder"))
+    throw Refused(400, rig.string() +
+                           " does not say which holder spools are wound on here; measure its frame and window and "
+                           "write them there, as \"holder\" with the keys that spool files have");
   json spool{{"format", "threadstation/spool"},
              {"version", 1},
              {"name", sample.name},
              {"material", sample.material},
-             {"holder", ready.at("holder")},
+             {"holder", bench.at("holder")},
              {"turns", form.value("turns", json())},
              {"thread_diameter_mm", form.value("diameter_mm", json())},
              {"sheets", form.value("sheets", json("front"))}};
@@ -56,9 +61,9 @@ json spool_of(const json& form, const Sample& sample) {
 
 }  // namespace
 
-std::string write_spool(const json& form, const Workspace& workspace) {
+std::string write_spool(const json& form, const Workspace& workspace, const fs::path& rig) {
   const Sample sample = sample_of(form);
-  const json document = spool_of(form, sample);
+  const json document = spool_of(form, sample, rig);
   try {
     const Spool spool = parse_spool(document, "the spool");
     if (spool.simulation) fiber_centres(spool, spool.simulation->seed);

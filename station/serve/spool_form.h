@@ -1,6 +1,7 @@
 // The spool form of the technician's page: what a person (or a barcode scanner) fills in, as a spool file and a sample.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -11,9 +12,10 @@ namespace station {
 
 // {"barcode", "name" (one of the two filled in), "lot", "material", "colour", "note": texts; "turns", "diameter_mm":
 // numbers; "sheets"; "simulated": on a simulated rig the ready spool whose fibers stand on the bench}. The holder is
-// the ready one. Writes both files under one name, which it returns; a spool of the same barcode (or name) and lot is
-// written anew. Throws Refused (400) with the line of the code that reads spool files when they would be refused.
-std::string write_spool(const nlohmann::json& form, const Workspace& workspace);
+// that of the rig file. Writes both files under one name, which it returns; a spool of the same barcode (or name) and
+// lot is written anew. Throws Refused (400) when the rig file has no holder, and with the line of the code that reads
+// spool files when they would be refused.
+std::string write_spool(const nlohmann::json& form, const Workspace& workspace, const std::filesystem::path& rig);
 
 // Ready spools that a simulated bench can draw.
 std::vector<std::string> simulated_spools();

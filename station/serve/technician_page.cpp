@@ -131,7 +131,7 @@ HttpResponse TechnicianPage::post(const HttpRequest& request) {
   if (path == "/api/job") return start(asked);
   if (path == "/api/answer") return answer(asked);
   if (path == "/api/spool") {
-    const std::string name = write_spool(asked, workspace_);
+    const std::string name = write_spool(asked, workspace_, rig_file_);
     changed_();
     HttpResponse response = answered({{"message", "written: spool " + name}, {"name", name}});
     return response;

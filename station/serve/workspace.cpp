@@ -6,6 +6,7 @@
 
 #include "station/documents/disk/file_name.h"
 #include "station/documents/disk/folder_lock.h"
+#include "station/documents/disk/stored_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
 #include "station/serve/page_answers.h"
@@ -56,7 +57,7 @@ json spool_line(const fs::path& spool, const fs::path& sample) {
     line["diameter_mm"] = wrapping.thread_diameter_mm;
     if (fs::exists(sample)) line["sample"] = to_json(read_sample_file(sample));
   } catch (const std::exception& problem) {
-    line["problem"] = problem.what();
+    line["problem"] = problem_line(problem);
   }
   return line;
 }
@@ -109,7 +110,7 @@ json Workspace::session_line(const fs::path& folder) {
       now.line["spool"] = session.sample && !session.sample->name.empty() ? session.sample->name : session.spool.name;
       now.line["utc"] = session.utc;
     } catch (const std::exception& problem) {
-      now.line["problem"] = problem.what();
+      now.line["problem"] = problem_line(problem);
     }
     known = std::move(now);
   }
@@ -130,7 +131,7 @@ json Workspace::queue_line(const std::string& name) {
       line["spools"].push_back(spool);
     }
   } catch (const std::exception& problem) {
-    line["problem"] = problem.what();
+    line["problem"] = problem_line(problem);
   }
   return line;
 }

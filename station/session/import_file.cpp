@@ -30,7 +30,7 @@ ImportedPicture read_picture(ObjectReader& reader, const std::filesystem::path& 
 
 ImportFile read_import_file(const std::filesystem::path& file) {
   const nlohmann::json document = read_json_file(file);
-  ObjectReader reader(document, file.string(), "import", 1);
+  ObjectReader reader(document, file.string(), "import");
   const std::filesystem::path folder = file.parent_path();
   ImportFile import;
   import.rig = folder / reader.text("rig");

@@ -19,8 +19,12 @@ std::filesystem::path baseline_fit_of(const std::filesystem::path& session, cons
   return results_of(session, model) / "fit.json";
 }
 
+std::filesystem::path model_file_of(const std::filesystem::path& session, const std::string& model) {
+  return results_of(session, model) / (model + ".json");
+}
+
 std::filesystem::path thread_file_of(const std::filesystem::path& session) {
-  return results_of(session, "thread") / "thread.json";
+  return model_file_of(session, "thread");
 }
 
 std::filesystem::path fitted_file_of(const std::filesystem::path& session, const std::string& view,

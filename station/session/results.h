@@ -8,12 +8,13 @@
 
 namespace station {
 
-// The folder of what a fit of `model` ("thread", "fiber", "yarn", "paper") found. Neither it nor any file that these
-// functions name needs to be there.
+// The folder of what a fit of `model` ("thread", "bundle", "fiber", "yarn", "paper") found. Neither it nor any file
+// that these functions name needs to be there.
 std::filesystem::path results_of(const std::filesystem::path& session, const std::string& model);
 // The report of the fit of a baseline; that of a thread is part of its thread file.
 std::filesystem::path baseline_fit_of(const std::filesystem::path& session, const std::string& model);
-// The fitted thread.
+// The fitted model, and the thread among them.
+std::filesystem::path model_file_of(const std::filesystem::path& session, const std::string& model);
 std::filesystem::path thread_file_of(const std::filesystem::path& session);
 // One view (EXR) as the fitted model gives it.
 std::filesystem::path fitted_file_of(const std::filesystem::path& session, const std::string& view,
@@ -23,8 +24,8 @@ std::filesystem::path fitted_file_of(const std::filesystem::path& session, const
 std::filesystem::path cloth_folder(const std::filesystem::path& session);
 std::filesystem::path cloth_made_of_file(const std::filesystem::path& session);
 
-// {"draft", "warp", "weft": {"srgb": [r, g, b], "delta_e_2000": how far the thread's gamut is from it}, or null for the
-// digitized thread's own colour}; null when there is no preview.
+// {"draft", "model", "warp", "weft"}, the last two {"srgb": [r, g, b], "delta_e_2000": how far the thread's gamut is
+// from it}, or null for the digitized thread's own colour; null when there is no preview.
 nlohmann::json cloth_made_of(const std::filesystem::path& session);
 
 // The EXR pictures that are there, swatch first.

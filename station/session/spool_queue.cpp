@@ -8,6 +8,7 @@
 
 #include "station/bench/bench_fault.h"
 #include "station/documents/disk/file_name.h"
+#include "station/documents/disk/stored_file.h"
 #include "station/documents/text_table.h"
 #include "station/output/interrupt.h"
 #include "station/session/record/session_folder.h"
@@ -141,7 +142,7 @@ std::vector<QueueResult> capture_queue(const std::filesystem::path& table, const
       sound = false;
     } catch (const std::exception& error) {
       result.outcome = QueueOutcome::failed;
-      result.problem = error.what();
+      result.problem = problem_line(error);
     }
     results.push_back(result);
   }

@@ -46,8 +46,9 @@ class Library::Index {
     int version = 0;
     run("PRAGMA user_version", {}, [&](sqlite3_stmt* row) { version = sqlite3_column_int(row, 0); });
     if (version > kVersion)
-      throw std::runtime_error("'" + file.string() + "' is of version " + std::to_string(version) +
-                               ", this program knows version " + std::to_string(kVersion) + "; use the newer program");
+      throw std::runtime_error("'" + file.string() + "': made by a later threadstation: library version " +
+                               std::to_string(version) + ", this one reads up to version " + std::to_string(kVersion) +
+                               "; install the later one");
     run("PRAGMA foreign_keys = ON", {});
     run("PRAGMA synchronous = FULL", {});
     execute(kTables);

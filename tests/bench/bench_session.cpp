@@ -53,7 +53,7 @@ double enlarged(double at_px) {
 }
 
 RigFile drawn_rig() {
-  nlohmann::json document = read_json_file(std::string(FIXTURES_DIR) + "/rigs/simulated_wire_grbl.json");
+  nlohmann::json document = read_json_file(std::string(DATA_DIR) + "/rigs/simulated_wire_grbl.json");
   document["simulation"]["samples_per_pixel"] = 4;
   document["simulation"]["target_samples_per_pixel"] = 16;  // a corner's noise is enlarged too
   document["capture"]["bracket_stops"] = nlohmann::json::array();
@@ -71,7 +71,7 @@ RigFile large_rig() {
 }
 
 RigCalibration large_calibration() {
-  RigCalibration calibration = read_calibration(std::string(FIXTURES_DIR) + "/calibrations/simulated.json");
+  RigCalibration calibration = read_calibration(std::string(DATA_DIR) + "/calibrations/simulated.json");
   calibration::Lens& lens = calibration.lens.lens;
   lens.width_px *= kEnlarge, lens.height_px *= kEnlarge;
   lens.fx_px *= kEnlarge, lens.fy_px *= kEnlarge;
@@ -90,7 +90,7 @@ class LargeCamera final : public rig::Camera {
       : bench_(bench),
         clock_(clock),
         small_rig_(drawn_rig()),
-        draw_(make_bench_picture(small_rig_, read_spool(std::string(FIXTURES_DIR) + "/spools/silk_red.json"))) {}
+        draw_(make_bench_picture(small_rig_, read_spool(std::string(DATA_DIR) + "/spools/silk_red.json"))) {}
 
   rig::CameraIdentity identity() override {
     const rig::TrueLens& lens = bench_.truth().lens;
@@ -220,7 +220,7 @@ double megabytes(long kilobytes) {
 
 void capture(const fs::path& folder, bool real_clock) {
   const RigFile rig = large_rig();
-  const std::string spool_file = std::string(FIXTURES_DIR) + "/spools/silk_red.json";
+  const std::string spool_file = std::string(DATA_DIR) + "/spools/silk_red.json";
   std::unique_ptr<rig::Clock> clock;
   if (real_clock)
     clock = std::make_unique<rig::SystemClock>();
@@ -245,7 +245,7 @@ void capture(const fs::path& folder, bool real_clock) {
   double exposed_s = 0;
   TimedCamera timed_camera(*camera, pictures, settings, exposed_s);
   TimedTurntable timed_turntable(*turntable, moves);
-  const nlohmann::json rig_document = read_json_file(std::string(FIXTURES_DIR) + "/rigs/simulated_wire_grbl.json"),
+  const nlohmann::json rig_document = read_json_file(std::string(DATA_DIR) + "/rigs/simulated_wire_grbl.json"),
                        spool_document = read_json_file(spool_file);
   const RigCalibration calibration = large_calibration();
   const Plan plan = plan_of(rig, read_spool(spool_file));

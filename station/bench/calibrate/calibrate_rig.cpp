@@ -1,5 +1,8 @@
 #include "station/bench/calibrate/calibrate_rig.h"
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "station/bench/calibrate/calibration_report.h"
 #include "station/bench/drawing_operator.h"
 #include "station/bench/platform_memory.h"
@@ -31,6 +34,13 @@ bool belongs_to(CalibrationRole role, const std::string& part) {
   return false;
 }
 
+// When the last of the pictures was taken: to solve old pictures again makes no new calibration.
+std::string last_utc(const std::vector<CalibrationPicture>& pictures) {
+  std::string last;
+  for (const CalibrationPicture& picture : pictures) last = std::max(last, picture.utc);
+  return last;
+}
+
 }  // namespace
 
 RigCalibration calibrate_rig(const CalibrateRequest& request) {
@@ -56,8 +66,11 @@ RigCalibration calibrate_rig(const CalibrateRequest& request) {
     leave_at_zero(rig, *devices.turntable);
     utc = devices.clock->utc();
   }
-  RigCalibration calibration = solve_calibration(rig, request.out, read_calibration_pictures(request.out), show);
-  calibration.utc = utc.empty() ? rig::SystemClock().utc() : utc;
+  if (interrupted()) throw std::runtime_error("calibration interrupted; the same command goes on from here");
+  let_interrupts_end();  // all pictures are kept, and to solve them takes long
+  const std::vector<CalibrationPicture> pictures = read_calibration_pictures(request.out);
+  RigCalibration calibration = solve_calibration(rig, request.out, pictures, show);
+  calibration.utc = utc.empty() ? last_utc(pictures) : utc;
   calibration.software = software_version();
   if (calibration.sensor) write_sensor_maps(request.out, *calibration.sensor);
   write_json_file(request.out / "calibration.json", to_json(calibration));

@@ -37,7 +37,7 @@ void write_list(const std::filesystem::path& folder, const std::vector<Calibrati
 std::vector<CalibrationPicture> read_list(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "pictures.json";
   const nlohmann::json document = read_json_file(file);
-  ObjectReader reader(document, file.string(), "calibration_pictures", 1);
+  ObjectReader reader(document, file.string(), "calibration_pictures");
   std::vector<CalibrationPicture> pictures;
   for (ObjectReader& entry : reader.objects("pictures")) {
     CalibrationPicture p;

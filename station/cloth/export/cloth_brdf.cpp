@@ -3,12 +3,12 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "renderer/weave/woven_patch.h"
 #include "station/cloth/draft_of_one_thread.h"
 #include "station/cloth/export/fiber_export.h"
 #include "station/cloth/export/merl_file.h"
 #include "station/documents/draft_file.h"
 #include "station/output/interrupt.h"
+#include "station/output/watched_work.h"
 
 namespace station {
 namespace {
@@ -28,7 +28,7 @@ void refuse_anisotropic(const ClothBrdfRequest& request, double anisotropy) {
 ClothBrdf cloth_brdf(const ThreadFile& thread, const ClothBrdfRequest& request, ProgressDisplay& progress) {
   const Eigen::Matrix3d colours = srgb_scattering_from_camera(thread);
   const renderer::YarnPatch patch =
-      renderer::woven_patch(draft_of_one_thread(read_draft(request.draft), thread.diameter_mm)).patch;
+      weave_watched(draft_of_one_thread(read_draft(request.draft), thread.diameter_mm), progress).patch;
   const renderer::ClothReflectance cloth(patch, {thread.parameters});
   ClothBrdf brdf{.draft = patch.name, .anisotropy = renderer::anisotropy(cloth, request.seed), .cover = patch.cover};
   if (brdf.anisotropy > kMostAnisotropy && !request.allow_anisotropic) refuse_anisotropic(request, brdf.anisotropy);

@@ -8,11 +8,11 @@
 
 #include "renderer/scene/cloth_shape.h"
 #include "renderer/scene/patch_curves.h"
-#include "renderer/weave/woven_patch.h"
 #include "station/cloth/render/build_scene.h"
 #include "station/documents/bundle_file.h"
 #include "station/documents/degree.h"
 #include "station/documents/draft_file.h"
+#include "station/output/watched_work.h"
 
 namespace station {
 namespace {
@@ -36,7 +36,7 @@ void check_diameter(const renderer::YarnSystem& system, const ClothThread& threa
 
 }  // namespace
 
-ClothSample cloth_of_scene(const std::filesystem::path& file) {
+ClothSample cloth_of_scene(const std::filesystem::path& file, ProgressDisplay& progress) {
   const SceneFile scene = read_scene(file);
   const auto refuse = [&](const std::string& found) {
     throw std::runtime_error(file.string() + ": " + found +
@@ -48,13 +48,13 @@ ClothSample cloth_of_scene(const std::filesystem::path& file) {
   if (!std::holds_alternative<renderer::SwatchShape>(cloth.shape)) refuse("its cloth lies on a mesh or garment");
   if (!cloth.two_scale) refuse("its cloth is drawn by brute force");
   return {.name = scene.name,
-          .patch = woven_cloth(scene, 0),
+          .patch = woven_cloth(scene, 0, progress),
           .threads = scene.threads,
           .linear_srgb_from_camera = scene.linear_srgb_from_camera};
 }
 
 ClothSample cloth_of_draft(const std::filesystem::path& file, const std::filesystem::path& warp,
-                           const std::filesystem::path& weft) {
+                           const std::filesystem::path& weft, ProgressDisplay& progress) {
   renderer::Draft draft = read_draft(file);
   const ClothThread warp_thread = read_cloth_thread(warp), weft_thread = read_cloth_thread(weft);
   check_diameter(draft.warp, warp_thread, file, warp, "warp");
@@ -64,7 +64,7 @@ ClothSample cloth_of_draft(const std::filesystem::path& file, const std::filesys
   draft.unevenness.shades = 1;
   draft.slubs.shade_mm = 0;
   return {.name = draft.name,
-          .patch = renderer::woven_patch(draft).patch,
+          .patch = weave_watched(draft, progress).patch,
           .threads = {warp_thread.scattering, weft_thread.scattering},
           .linear_srgb_from_camera = warp_thread.linear_srgb_from_camera};
 }

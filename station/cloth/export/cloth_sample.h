@@ -11,6 +11,7 @@
 
 #include "renderer/scene/scene.h"
 #include "renderer/trace/path_tracer.h"
+#include "station/output/progress.h"
 
 namespace station {
 
@@ -23,12 +24,12 @@ struct ClothSample {
 
 // The cloth of a scene file. Errors: those of scene_file.h and of woven_cloth; std::runtime_error, one line, when it
 // has not exactly one cloth, or one on anything but a flat swatch in two scales.
-ClothSample cloth_of_scene(const std::filesystem::path& scene);
+ClothSample cloth_of_scene(const std::filesystem::path& scene, ProgressDisplay& progress);
 // The cloth of a draft with all its ends in one thread and all its picks in the other, whatever threads the draft
-// names. Errors: those of draft_file.h and bundle_file.h; std::runtime_error, one line, when yarns and threads differ
-// in diameter by more than a tenth.
+// names. Errors: those of draft_file.h, bundle_file.h and weave_watched; std::runtime_error, one line, when yarns and
+// threads differ in diameter by more than a tenth.
 ClothSample cloth_of_draft(const std::filesystem::path& draft, const std::filesystem::path& warp,
-                           const std::filesystem::path& weft);
+                           const std::filesystem::path& weft, ProgressDisplay& progress);
 
 // A swatch about the origin, so large that its border is not seen; without lights.
 renderer::Scene endless_cloth(const ClothSample& cloth);

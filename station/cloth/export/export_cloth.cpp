@@ -52,9 +52,9 @@ class NewFolder {
   fs::path final_, temporary_;
 };
 
-ClothSample read_cloth(const ExportClothRequest& request) {
-  return request.scene.empty() ? cloth_of_draft(request.draft, request.warp, request.weft)
-                               : cloth_of_scene(request.scene);
+ClothSample read_cloth(const ExportClothRequest& request, ProgressDisplay& progress) {
+  return request.scene.empty() ? cloth_of_draft(request.draft, request.warp, request.weft, progress)
+                               : cloth_of_scene(request.scene, progress);
 }
 
 void check_memory(const ExportClothRequest& request, const cv::Size& size) {
@@ -92,6 +92,7 @@ class Stages {
       return !interrupted();
     };
   }
+  ProgressDisplay& display() { return progress_.display(); }
   void finish(const std::string& text) { progress_.display().finish(text); }
 
  private:
@@ -183,7 +184,8 @@ void write_formats(const NewFolder& folder, const ExportClothRequest& request, c
 
 ExportClothReport export_cloth(const ExportClothRequest& request) {
   watch_interrupts();
-  const ClothSample cloth = read_cloth(request);
+  Stages stages(request.progress);
+  const ClothSample cloth = read_cloth(request, stages.display());
   const cv::Size size = bake_size(cloth, request.size_px);
   check_memory(request, size);
   NewFolder folder(request.out);
@@ -194,7 +196,6 @@ ExportClothReport export_cloth(const ExportClothRequest& request) {
                sheet_samples =
                    paths_of_sheet(cloth, {.samples_per_pixel = quality.sheet, .samples_per_pair = quality.per_pair}),
                all_samples = bake_samples + far_samples + sheet_samples;
-  Stages stages(request.progress);
   const BakedCloth baked = bake_cloth(cloth, {.size_px = size,
                                               .samples_per_texel = request.samples_per_texel,
                                               .seed = request.seed,

@@ -90,7 +90,7 @@ std::vector<renderer::ThreadParameters> threads_of(const SceneFile& scene, const
   return threads;
 }
 
-inversion::TexturedCloth cloth_of(const SceneFile& scene, const PatternRequest& request) {
+inversion::TexturedCloth cloth_of(const SceneFile& scene, const PatternRequest& request, ProgressDisplay& progress) {
   const auto count = static_cast<int>(scene.cloths.size());
   if (request.cloth < 0 || request.cloth >= count)
     throw std::runtime_error(request.scene.string() + ": cloth " + std::to_string(request.cloth) +
@@ -99,7 +99,7 @@ inversion::TexturedCloth cloth_of(const SceneFile& scene, const PatternRequest& 
   if (!scene.cloths[place].two_scale)
     throw std::runtime_error(request.scene.string() +
                              ": the cloth is rendered by brute force, which shows no pictures; leave its method out");
-  return {woven_cloth(scene, place), crossings_of(scene.cloths[place]), threads_of(scene, request)};
+  return {woven_cloth(scene, place, progress), crossings_of(scene.cloths[place]), threads_of(scene, request)};
 }
 
 // A sheet of panels beside each other: pictures, a map of errors (white: a CIEDE2000 of 20), a mask.
@@ -127,10 +127,10 @@ Pattern weave_pattern(const PatternRequest& request) {
   watch_interrupts();
   Base base = base_of(request);
   const SceneFile scene = parse_scene(base.document, base.source, base.folder);
-  const inversion::TexturedCloth woven = cloth_of(scene, request);
+  ProgressDisplay progress("pattern", request.progress_style);
+  const inversion::TexturedCloth woven = cloth_of(scene, request, progress);
   const cv::Mat3f picture = picture_of_crossings(request.image, request.ends, request.brightness, woven.crossing_mm());
   make_folder(request.out);
-  ProgressDisplay progress("pattern", request.progress_style);
   const Eigen::Matrix3d to_srgb = matrix_of(scene.linear_srgb_from_camera);
   int shown = -1;
   const auto show = [&](double share) {

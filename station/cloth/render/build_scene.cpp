@@ -7,16 +7,16 @@
 #include "renderer/embroidery/stitch_curves.h"
 #include "renderer/scene/patch_curves.h"
 #include "renderer/weave/patch_measures.h"
-#include "renderer/weave/woven_patch.h"
+#include "station/output/watched_work.h"
 
 namespace station {
 namespace {
 
-renderer::ClothShape built(const SceneShape& shape) {
+renderer::ClothShape built(const SceneShape& shape, ProgressDisplay& progress) {
   const auto* garment = std::get_if<SceneGarment>(&shape);
   if (garment) {
     constexpr std::array<const char*, 3> kNames{"the ready skirt", "the ready pleats", "the ready drape"};
-    return renderer::MeshShape{.mesh = std::make_shared<renderer::UvMesh>(renderer::garment_mesh(garment->shape)),
+    return renderer::MeshShape{.mesh = std::make_shared<renderer::UvMesh>(garment_watched(garment->shape, progress)),
                                .placement = {.uv_mm = 1, .turn_rad = garment->turn_rad},
                                .name = kNames.at(garment->shape.index())};
   }
@@ -44,20 +44,20 @@ std::vector<renderer::CurveSet> sewn(const SceneEmbroidery& embroidery, const re
 
 }  // namespace
 
-renderer::YarnPatch woven_cloth(const SceneFile& file, std::size_t cloth) {
+renderer::YarnPatch woven_cloth(const SceneFile& file, std::size_t cloth, ProgressDisplay& progress) {
   const auto& weave = file.cloths.at(cloth).weave;
   const auto* draft = std::get_if<renderer::Draft>(&weave);
   if (!draft) return std::get<renderer::YarnPatch>(weave);
-  renderer::YarnPatch patch = renderer::woven_patch(*draft).patch;
+  renderer::YarnPatch patch = weave_watched(*draft, progress).patch;
   if (const auto problem = missing_thread(patch.name, renderer::threads_of(patch), file.threads.size()))
     throw std::runtime_error(file.source + ": key \"cloths[" + std::to_string(cloth) + "].draft\": " + *problem);
   return patch;
 }
 
-std::vector<BuiltCloth> build_cloths(const SceneFile& file) {
+std::vector<BuiltCloth> build_cloths(const SceneFile& file, ProgressDisplay& progress) {
   std::vector<BuiltCloth> cloths;
   for (std::size_t i = 0; i < file.cloths.size(); ++i)
-    cloths.push_back({woven_cloth(file, i), built(file.cloths[i].shape)});
+    cloths.push_back({woven_cloth(file, i, progress), built(file.cloths[i].shape, progress)});
   return cloths;
 }
 
@@ -82,8 +82,9 @@ renderer::Scene build_scene(const SceneFile& file, const std::vector<BuiltCloth>
          sewn(embroidery, patch, renderer::surface_of(shape, patch, file.cloths[i].world_from_cloth)))
       scene.curves.push_back(std::move(set));
   }
+  ProgressDisplay quiet("bodies", ProgressStyle::quiet);
   for (const SceneBody& body : file.objects)
-    scene.meshes.push_back(renderer::body_of(built(body.shape), body.world_from_object, body.albedo));
+    scene.meshes.push_back(renderer::body_of(built(body.shape, quiet), body.world_from_object, body.albedo));
   scene.lights = file.lights;
   scene.rectangles = file.rectangles;
   scene.surroundings = file.surroundings;

@@ -9,6 +9,7 @@
 #include "station/documents/disk/sha256.h"
 #include "station/documents/disk/stored_file.h"
 #include "station/documents/disk/whole_file.h"
+#include "station/documents/migrations.h"
 
 namespace station {
 namespace {
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* kFormat = "threadstation/checkpoint";
-constexpr int kVersion = 1;  // of the film's numbers and what they mean
+constexpr const char* kKind = "checkpoint";  // the version is that of the film's numbers and what they mean
 constexpr std::size_t kHashDigits = 64;
 
 // The film's numbers, one plane after the other.
@@ -42,7 +43,7 @@ fs::path checkpoint_of(const fs::path& picture) {
 void store_checkpoint(const fs::path& file, const RenderIdentity& identity, const renderer::Film& film) {
   json head = to_json(identity);
   head["format"] = kFormat;
-  head["version"] = kVersion;
+  head["version"] = current_version(kKind);
   head["width_px"] = film.counts.cols;
   head["height_px"] = film.counts.rows;
   const std::string line = head.dump() + "\n";
@@ -71,8 +72,10 @@ std::optional<renderer::Film> read_checkpoint(const fs::path& file, const Render
   const auto start = static_cast<std::size_t>(static_cast<const char*>(end_of_line) - text) + 1;
   const json head = json::parse(text, text + start, nullptr, false);
   if (!head.is_object() || head.value("format", json()) != kFormat) refuse(file, "it is not a checkpoint, or damaged");
-  if (head.value("version", json()) != kVersion)
-    refuse(file, "it is of version " + head.value("version", json()).dump() + ", not " + std::to_string(kVersion));
+  const json& version = head.value("version", json());
+  if (version.is_number_integer() && version > current_version(kKind))
+    throw std::runtime_error(later_version_problem(file.string(), kKind, version.get<int>()));
+  if (version != current_version(kKind)) refuse(file, "it is of version " + version.dump());
   if (const auto other = difference(head, identity)) refuse(file, "it is of a rendering with " + *other);
   renderer::Film film = renderer::empty_film(picture.width, picture.height);
   std::size_t size = start + kHashDigits;

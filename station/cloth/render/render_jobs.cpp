@@ -37,7 +37,10 @@ RenderJob prepared(RenderRequest request) {
   RenderJob job;
   if (fs::exists(request.scene)) job.scene_sha256 = sha256_of_scene(request.scene);  // read_scene refuses it otherwise
   const SceneFile scene = read_scene(request.scene);
-  if (!is_kept(request, scene)) job.cloths = build_cloths(scene);
+  if (!is_kept(request, scene)) {
+    ProgressDisplay progress(request.task, request.progress);
+    job.cloths = build_cloths(scene, progress);
+  }
   job.request = std::move(request);
   job.build_s = seconds_since(start);
   return job;
@@ -50,6 +53,7 @@ std::vector<RenderReport> render_scenes(const std::vector<fs::path>& scenes, con
     throw std::runtime_error("cannot write " + std::to_string(scenes.size()) + " pictures to " + common.out.string() +
                              "; give --out the name of a folder");
   check_names(scenes);
+  watch_interrupts();
   std::vector<RenderJob> jobs;
   for (const fs::path& scene : scenes) {
     RenderRequest request = common;

@@ -6,7 +6,7 @@ void RenderProgress::show(double fraction) {
   constexpr int kSteps = 20;
   constexpr std::chrono::seconds kLeastEvery{30};
   const Clock::time_point now = Clock::now();
-  if (first_ < 0) first_ = fraction;
+  if (first_ < 0) first_ = fraction, start_ = now;
   const int step = static_cast<int>(kSteps * fraction);
   if (step == step_ && now - shown_ < kLeastEvery) return;
   const double gained = fraction - first_, elapsed_s = std::chrono::duration<double>(now - start_).count();

@@ -19,8 +19,8 @@ class RenderProgress {
  private:
   using Clock = std::chrono::steady_clock;
   ProgressDisplay display_;
-  Clock::time_point start_ = Clock::now(), shown_ = start_;
-  double first_ = -1;  // fraction that was there already
+  Clock::time_point start_{}, shown_{};  // start_: of the first call
+  double first_ = -1;                    // fraction that was there already
   int step_ = -1;
 };
 

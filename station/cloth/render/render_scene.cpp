@@ -10,6 +10,7 @@
 #include "station/cloth/render/checkpoint.h"
 #include "station/cloth/render/render_channels.h"
 #include "station/cloth/render/render_progress.h"
+#include "station/documents/disk/reserved_space.h"
 #include "station/documents/number_text.h"
 #include "station/documents/session_file.h"
 #include "station/output/display.h"
@@ -97,13 +98,56 @@ void write_picture(const Rendering& rendering, const renderer::PathTracer& trace
   if (is_exr) write_exr(rendering, tracer, image);
 }
 
-// A checkpoint to go on from, and a picture of it to look at.
-void leave_behind(const Rendering& rendering, const renderer::Film& film) {
-  const cv::Mat3f image = renderer::mean_radiance(film);
-  const double brightness = brightness_of(rendering.request, rendering.scene, image);
+// Room on the picture's disk for its checkpoint, held until the end: then the picture, which mostly takes less, is
+// written into it, or the checkpoint where that fails.
+class Room {
+ public:
+  Room(const RenderRequest& request, const renderer::Film& film)
+      : held_(reserve_space(request.out.parent_path(), renderer::bytes_of(film) + kHead)) {}
+  void release() { held_ = OpenFile(); }
+
+ private:
+  static constexpr std::size_t kHead = std::size_t{64} << 10U;  // of a checkpoint, at most
+  OpenFile held_;
+};
+
+// A checkpoint to go on from.
+void keep(const Rendering& rendering, const renderer::Film& film) {
   store_checkpoint(checkpoint_of(rendering.request.out), rendering.identity, film);
-  renderer::write_png(preview_of(rendering.request.out),
-                      display(image, brightness, rendering.scene.linear_srgb_from_camera));
+}
+
+// A checkpoint to go on from, and a picture of it to look at. Where the disk is full the rendering goes on without one
+// as long as nobody stops it.
+void leave_behind(const Rendering& rendering, Room& room, const renderer::Film& film, ProgressDisplay& progress) {
+  try {
+    keep(rendering, film);
+    const cv::Mat3f image = renderer::mean_radiance(film);
+    const double brightness = brightness_of(rendering.request, rendering.scene, image);
+    renderer::write_png(preview_of(rendering.request.out),
+                        display(image, brightness, rendering.scene.linear_srgb_from_camera));
+  } catch (const std::runtime_error& problem) {
+    if (!interrupted()) {
+      progress.note(std::string(problem.what()) + " (the rendering goes on)");
+      return;
+    }
+    room.release();
+    keep(rendering, film);
+  }
+}
+
+// Writes the picture into the room that was held for it; where that fails its film stays as a checkpoint, and the
+// message says so.
+void finish(const Rendering& rendering, const renderer::PathTracer& tracer, Room& room, const renderer::Film& film,
+            RenderReport& report) {
+  room.release();
+  try {
+    write_picture(rendering, tracer, renderer::mean_radiance(film), report);
+  } catch (const std::runtime_error& problem) {
+    keep(rendering, film);
+    throw std::runtime_error(std::string(problem.what()) +
+                             "; nothing is lost: " + checkpoint_of(rendering.request.out).string() +
+                             " has the whole rendering, and the same command then writes the picture");
+  }
 }
 
 void remove_what_was_left(const std::filesystem::path& out) {
@@ -119,7 +163,7 @@ renderer::Film film_to_begin_with(const RenderRequest& request, const RenderIden
 }
 
 // Goes on with the film until it is finished. Errors: as render_scene.
-renderer::RenderStatistics gather(const Rendering& rendering, const renderer::PathTracer& tracer,
+renderer::RenderStatistics gather(const Rendering& rendering, const renderer::PathTracer& tracer, Room& room,
                                   RenderProgress& progress, renderer::Film& film) {
   Clock::time_point stored = Clock::now();
   double finished = 0;
@@ -139,7 +183,7 @@ renderer::RenderStatistics gather(const Rendering& rendering, const renderer::Pa
     all = tracer.refine(rendering.scene.camera, options, film);
     sum.samples += part.samples, sum.rays += part.rays;
     if (all) break;
-    leave_behind(rendering, film);
+    leave_behind(rendering, room, film, progress.display());
     if (interrupted())
       throw std::runtime_error("rendering was stopped on request at " +
                                std::to_string(static_cast<int>(100 * finished)) +
@@ -202,7 +246,9 @@ RenderReport render_scene(const RenderRequest& request, std::vector<BuiltCloth> 
   const RenderIdentity identity = identity_of(request, scene);
   if (request.keep_finished && is_finished(request, identity)) return {.image = request.out.string(), .kept = true};
   renderer::Film film = film_to_begin_with(request, identity, {scene.camera.width, scene.camera.height});
-  if (cloths.empty()) cloths = build_cloths(scene);
+  Room room(request, film);
+  RenderProgress progress(request.task, request.progress);
+  if (cloths.empty()) cloths = build_cloths(scene, progress.display());
   const renderer::PathTracer tracer(build_scene(scene, cloths));
   RenderReport report{.image = request.out.string(),
                       .width = scene.camera.width,
@@ -210,15 +256,14 @@ RenderReport render_scene(const RenderRequest& request, std::vector<BuiltCloth> 
                       .samples_per_pixel = identity.samples_per_pixel,
                       .build_s = seconds_since(start),
                       .samples_before = renderer::samples_in(film)};
-  RenderProgress progress(request.task, request.progress);
   const Rendering rendering{request, scene, cloths, identity};
   const Clock::time_point render_start = Clock::now();
-  const renderer::RenderStatistics statistics = gather(rendering, tracer, progress, film);
+  const renderer::RenderStatistics statistics = gather(rendering, tracer, room, progress, film);
   report.render_s = seconds_since(render_start);
   report.samples = statistics.samples;
   report.rays = statistics.rays;
   report_noise(film, request.noise, report);
-  write_picture(rendering, tracer, renderer::mean_radiance(film), report);
+  finish(rendering, tracer, room, film, report);
   report.memory = memory_of(scene, cloths, tracer.memory(), film);
   remove_what_was_left(request.out);
   progress.display().finish("wrote " + report.image);

@@ -4,6 +4,8 @@
 #include <array>
 #include <cctype>
 
+#include "station/documents/disk/shown_text.h"
+
 namespace station {
 namespace {
 
@@ -23,11 +25,8 @@ bool is_device_of_windows(std::string_view name) {
   return numbered || std::find(kDevices.begin(), kDevices.end(), stem) != kDevices.end();
 }
 
-// Names come from files and may hold anything; an error line shows only what a terminal can bear.
 std::string shown(std::string_view name) {
-  std::string text;
-  for (const char c : name.substr(0, 40)) text += std::isprint(static_cast<unsigned char>(c)) != 0 ? c : '?';
-  return "'" + text + (name.size() > 40 ? "...'" : "'");
+  return "'" + shown_text(name) + "'";
 }
 
 }  // namespace

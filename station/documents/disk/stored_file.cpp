@@ -54,10 +54,26 @@ bool holds(const fs::path& file, std::span<const std::byte> bytes) {
   return in.eof() && read == bytes.size();
 }
 
+std::string place_problem(const fs::filesystem_error& error) {
+  const std::error_code& code = error.code();
+  const bool refused = code == std::errc::permission_denied || code == std::errc::operation_not_permitted;
+  return "could not use '" + error.path1().string() + "': " + code.message() + "; " +
+         (refused                                        ? "give this user the right to use it or name another place"
+          : code == std::errc::no_such_file_or_directory ? "check the name"
+          : code == std::errc::filename_too_long         ? "give a shorter name"
+          : code == std::errc::too_many_symbolic_link_levels ? "the link leads back to itself: name another place"
+                                                             : advice(code));
+}
+
 }  // namespace
 
 std::string write_problem(const fs::path& file, const std::error_code& code) {
   return "could not write '" + file.string() + "': " + code.message() + "; " + advice(code);
+}
+
+std::string problem_line(const std::exception& error) {
+  const auto* place = dynamic_cast<const fs::filesystem_error*>(&error);
+  return place ? place_problem(*place) : error.what();
 }
 
 std::string store_file(FileSystem& file_system, const fs::path& file, std::span<const std::byte> bytes) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -30,6 +31,10 @@ void make_folder(const std::filesystem::path& folder);
 std::vector<std::string> remove_left_overs(const std::filesystem::path& folder);
 
 bool is_left_over(const std::filesystem::path& file);  // whether the name is that of such a temporary file
+
+// What a person is told of an error: its words, and for those of std::filesystem such a line as "could not use
+// 'sessions': Permission denied; give this user the right to use it or name another place".
+std::string problem_line(const std::exception& error);
 
 // The error line for a failed write, such as "could not write 'raw/x.arw': No space left on device; free space ...,
 // then go on".

@@ -92,7 +92,7 @@ void require_whole(const fs::path& folder) {
 }
 
 Plan plan_of(const json& session, const fs::path& file) {
-  ObjectReader reader(session, file.string(), "session", 1);
+  ObjectReader reader(session, file.string(), "session");
   return plan_from_json(reader.raw("plan"), file.string());
 }
 

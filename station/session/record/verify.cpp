@@ -9,6 +9,7 @@
 
 #include "station/documents/disk/folder_lock.h"
 #include "station/documents/disk/sha256.h"
+#include "station/documents/disk/stored_file.h"
 #include "station/documents/manifest.h"
 #include "station/documents/plan_file.h"
 #include "station/documents/reader.h"
@@ -66,7 +67,7 @@ class Verification {
     try {
       check();
     } catch (const std::exception& error) {
-      problem(error.what());
+      problem(problem_line(error));
     }
   }
 
@@ -75,7 +76,7 @@ class Verification {
   Plan read_plan() const {
     const fs::path file = folder_ / "session.json";
     const json session = read_json_file(file);
-    ObjectReader reader(session, file.string(), "session", 1);
+    ObjectReader reader(session, file.string(), "session");
     return plan_from_json(reader.raw("plan"), file.string());
   }
 
@@ -112,7 +113,7 @@ class Verification {
       problem("journal.jsonl has no start; resume the session");
       return;
     }
-    const auto fixed = start->data.at("files").get<std::map<std::string, std::string>>();
+    const std::map<std::string, std::string> fixed = fixed_files(records_);
     for (const auto& [name, sha256] : fixed) check_file(name, sha256);
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "calibration")) {
       const std::string name = "calibration/" + entry.path().filename().string();
@@ -166,8 +167,11 @@ class Verification {
     report_.complete = good_steps_.size() == needed && !records_.empty() && ends_complete();
   }
 
+  // An upgrade of its files comes after the end of a session.
   bool ends_complete() const {
-    return records_.back().event == "stop" && records_.back().data.value("outcome", std::string()) == "complete";
+    const auto last = std::find_if(records_.rbegin(), records_.rend(),
+                                   [](const JournalRecord& record) { return record.event != "upgraded"; });
+    return last != records_.rend() && last->event == "stop" && last->data.value("outcome", std::string()) == "complete";
   }
 
   void check_end() {
@@ -193,6 +197,14 @@ class Verification {
 };
 
 }  // namespace
+
+std::map<std::string, std::string> fixed_files(const std::vector<JournalRecord>& records) {
+  std::map<std::string, std::string> files;
+  for (const JournalRecord& record : records)
+    if (record.event == "start" || record.event == "upgraded")
+      for (const auto& [name, sha256] : record.data.at("files").items()) files[name] = sha256;
+  return files;
+}
 
 VerifyReport verify_session(const fs::path& folder) {
   if (!is_session(folder))

@@ -4,9 +4,11 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "station/session/record/journal.h"
 #include "station/session/record/run_state.h"
 
 namespace station {
@@ -29,5 +31,9 @@ struct VerifyReport {
 // refused/ is checked against the journal's records of refused pictures. Errors: std::runtime_error when `folder` is no
 // session at all.
 VerifyReport verify_session(const std::filesystem::path& folder);
+
+// The files that the session began with, and their hashes: those of the journal's start, or of a later "upgraded";
+// empty without a start.
+std::map<std::string, std::string> fixed_files(const std::vector<JournalRecord>& records);
 
 }  // namespace station

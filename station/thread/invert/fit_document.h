@@ -1,5 +1,5 @@
 // The report of a fit as JSON: solver, rounds, agreement view by view, unknowns with their covariance, bands of the
-// thread's energies. Keys in fixtures/threads/README.md.
+// thread's energies. Keys in station/data/threads/README.md.
 #pragma once
 
 #include <map>

@@ -43,7 +43,7 @@ std::filesystem::path folder_of(const InvertRequest& request) {
 }
 
 std::filesystem::path model_file(const InvertRequest& request) {
-  return folder_of(request) / (name_of(request.fit.model) + ".json");
+  return model_file_of(request.session, name_of(request.fit.model));
 }
 
 // The document of a fitted model; a thread's and a bundle's say what they were fitted to as well.

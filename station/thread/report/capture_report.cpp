@@ -17,6 +17,7 @@
 #include "station/session/record/journal.h"
 #include "station/session/record/picture_record.h"
 #include "station/session/record/run_state.h"
+#include "station/session/record/verify.h"
 
 namespace station {
 namespace {
@@ -173,9 +174,7 @@ std::string verdict_section(const std::filesystem::path& session, const SessionF
 
 std::string checksum_section(const std::filesystem::path& session) {
   const Records records = records_of(session);
-  std::map<std::string, std::string> hashes;
-  for (const JournalRecord& record : records)
-    if (record.event == "start") hashes = record.data.at("files").get<std::map<std::string, std::string>>();
+  std::map<std::string, std::string> hashes = fixed_files(records);
   for (const auto& [step, picture] : taken_pictures(records)) hashes[picture.file] = picture.sha256;
   std::string rows;
   for (const auto& [file, sha256] : hashes)

@@ -45,10 +45,14 @@ Reading reading_of(const inversion::ViewFit& fit, const Eigen::MatrixXd& covaria
         reading.values.push_back(band.lambda[p]);
         reading.sigmas.push_back(band.sigma[p]);
       }
+  for (Eigen::Index k = inversion::kTintRed; k < fit.unknowns.size(); ++k) {
+    reading.values.push_back(fit.unknowns[k]);
+    reading.sigmas.push_back(std::sqrt(covariance(k, k)));
+  }
   return reading;
 }
 
-std::vector<std::string> quantity_names() {
+std::vector<std::string> quantity_names(bool tinted) {
   std::vector<std::string> names;
   for (const char* group : {"sigma_a", "alpha", "beta"})
     for (int i = 0; i < 3; ++i) names.push_back(std::string(group) + "[" + std::to_string(i) + "]");
@@ -59,6 +63,7 @@ std::vector<std::string> quantity_names() {
         std::snprintf(name, sizeof name, "lambda_%d(%.1f)", p, tenth / 10.0);
         names.emplace_back(name);
       }
+  if (tinted) names.insert(names.end(), {"log tint r/g", "log tint b/g"});
   return names;
 }
 
@@ -82,11 +87,7 @@ void require_reachable(const std::filesystem::path& file, const renderer::Thread
     return std::runtime_error(file.string() + ": " + what +
                               "; give a thread that a fit can find, or change the thread's parameters");
   };
-  if (truth.lambda0_rgb != Eigen::Vector3d::Ones())
-    throw refused("it has lambda0_rgb, the tint of its highlight, which is not among the unknowns of a fit");
-  if (truth.transmittance_powers != renderer::ThreadParameters{}.transmittance_powers)
-    throw refused("it has transmittance_powers, which are not among the unknowns of a fit");
-  const renderer::ThreadParameters found = inversion::parameters_of(inversion::unknowns_of(truth));
+  const renderer::ThreadParameters found = inversion::tinted_parameters_of(inversion::tinted_unknowns_of(truth));
   if (const double most = found.sigma_a.maxCoeff(); most < truth.sigma_a.maxCoeff())
     throw refused("its sigma_a is " + number_text(truth.sigma_a.maxCoeff(), 4) + ", and the most of a fit is " +
                   number_text(most, 4));
@@ -134,7 +135,7 @@ void add_spreads(const std::vector<Reading>& draws, std::vector<RecoveredQuantit
 
 // Each quantity of the fit beside the true one.
 std::vector<RecoveredQuantity> recovered_quantities(const inversion::ViewFit& truth, const inversion::ViewFit& fit) {
-  const std::vector<std::string> names = quantity_names();
+  const std::vector<std::string> names = quantity_names(fit.unknowns.size() == inversion::kTintedCount);
   const Reading true_values = reading_of(truth, fit.certainty.covariance),
                 found = reading_of(fit, fit.certainty.covariance);
   std::vector<RecoveredQuantity> quantities;
@@ -182,6 +183,8 @@ RecoveredThread recover_thread(const RecoverRequest& request) {
   const std::vector<View> first_views = draw_of(request.fit.seed);
   inversion::FitOptions cold = request.fit;
   cold.start.exit = thread.parameters.exit;
+  cold.start.transmittance_powers = thread.parameters.transmittance_powers;
+  cold.tinted = thread.parameters.lambda0_rgb != Eigen::Vector3d::Ones();
   const inversion::ViewFit first = fit_draw(0, cold, first_views);
   RecoveredThread result{.thread = thread.name,
                          .seconds = seconds_since(started),
@@ -190,7 +193,8 @@ RecoveredThread recover_thread(const RecoverRequest& request) {
                          .draws = request.draws,
                          .quantities = {}};
   inversion::ViewFit truth = first;
-  truth.unknowns = inversion::unknowns_of(thread.parameters);
+  truth.unknowns = cold.tinted ? inversion::tinted_unknowns_of(thread.parameters)
+                               : Eigen::VectorXd(inversion::unknowns_of(thread.parameters));
   const auto loss_of = [&](const inversion::ViewFit& fit) {
     return inversion::independent_loss(spool.wrapping, first_views, fit, kLossPaths, kLossRepetitions,
                                        request.fit.seed + kIndependentLossSeeds);

@@ -10,7 +10,6 @@
 
 #include "renderer/picture/image_file.h"
 #include "renderer/trace/path_tracer.h"
-#include "renderer/weave/woven_patch.h"
 #include "station/bench/bench_picture.h"
 #include "station/bench/cloth_on_cylinder.h"
 #include "station/documents/draft_file.h"
@@ -19,6 +18,7 @@
 #include "station/documents/session_file.h"
 #include "station/output/display.h"
 #include "station/output/interrupt.h"
+#include "station/output/watched_work.h"
 #include "station/thread/invert/fit_document.h"
 #include "station/thread/validate/photographed_spool.h"
 #include "station/thread/validate/seeds.h"
@@ -104,7 +104,7 @@ class Study {
     std::vector<PredictedSample> samples;
     std::vector<cv::Mat3b> rows;
     for (const auto& [name, draft] : drafts_) {
-      const renderer::YarnPatch patch = renderer::woven_patch(draft).patch;
+      const renderer::YarnPatch patch = weave_watched(draft, progress_).patch;
       for (const SpoolToFit& warp : warps_)
         for (const View& view : views_) {
           std::vector<cv::Mat3f> shown;

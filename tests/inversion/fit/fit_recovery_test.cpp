@@ -83,6 +83,21 @@ TEST(FitRecoveryTest, HoldingAnyGroupAtItsStartMakesTheLossClearlyWorse) {
   }
 }
 
+TEST(FitRecoveryTest, TheTintOfAMetallicThreadsHighlightIsFound) {
+  const WrappedSpool spool;
+  renderer::ThreadParameters metal = known_thread();
+  metal.sigma_a = {0.3, 0.7, 2.5};
+  metal.lambda0_rgb = {1, 0.76, 0.34};
+  FitOptions options{.paths_per_block = {256, 256, 1024}};
+  options.tinted = true;
+  const ViewFit fit = fit_views(spool, photographs(spool, metal, kWidth_px, kSamples), options);
+  const renderer::Vec3<double> found = fit.thread().lambda0_rgb;
+  std::printf("tint %.3f %.3f %.3f\n", found[0], found[1], found[2]);
+  EXPECT_EQ(found[0], 1);
+  EXPECT_NEAR(found[1], metal.lambda0_rgb[1], 0.05);
+  EXPECT_NEAR(found[2], metal.lambda0_rgb[2], 0.05);
+}
+
 TEST(FitRecoveryTest, AWhiteThreadThatKeepsNearlyAllLightIsFittedWithoutEnergyBeyondOne) {
   const WrappedSpool spool;
   const ViewFit fit = fit_views(spool, photographs(spool, white_thread(), kWidth_px, kSamples), {});

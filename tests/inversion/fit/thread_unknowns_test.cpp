@@ -96,6 +96,17 @@ TEST(ThreadUnknownsTest, ParametersOutsideTheBoundsAreBroughtToThem) {
   EXPECT_NEAR(energies_at(near, 0)[0], p.r0c, 1e-14);
 }
 
+TEST(ThreadUnknownsTest, ATintComesBackAndLambda0IsThatOfTheStrongestChannel) {
+  ThreadParameters p = known_thread();
+  p.lambda0_rgb = {0.4, 0.7, 1};
+  const Eigen::VectorXd u = tinted_unknowns_of(p);
+  ASSERT_EQ(u.size(), kTintedCount);
+  EXPECT_NEAR(u[kL0], 0.7 * p.r0c, 1e-14);
+  const ThreadParameters back = tinted_parameters_of(u);
+  EXPECT_TRUE(back.lambda0_rgb.isApprox(p.lambda0_rgb, 1e-14)) << back.lambda0_rgb.transpose();
+  EXPECT_LT((values_of(back) - values_of(p)).cwiseAbs().maxCoeff(), 1e-13);
+}
+
 TEST(ThreadUnknownsTest, TheJacobianIsThatOfFiniteDifferences) {
   std::mt19937 random(4);
   for (int i = 0; i < 20; ++i) {

@@ -92,8 +92,9 @@ TEST_P(ViewObjectiveTest, APhotographsVarianceAddsToItsResiduals) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, ViewObjectiveTest,
-                         testing::Values(Case{"thread", ThreadFamily{}}, Case{"fiber", FiberFamily{}},
-                                         Case{"yarn", YarnFamily{20}}, Case{"paper", PaperFamily{}}),
+                         testing::Values(Case{"thread", ThreadFamily{}}, Case{"tinted", ThreadFamily{.tinted = true}},
+                                         Case{"fiber", FiberFamily{}}, Case{"yarn", YarnFamily{20}},
+                                         Case{"paper", PaperFamily{}}),
                          [](const auto& test) { return test.param.name; });
 
 }  // namespace

@@ -99,19 +99,36 @@ TEST(BiasFreeTest, TermsThatAreExactCountWhereTheStepBegins) {
   EXPECT_NEAR(x[1], kWall, 0.06);
 }
 
+TEST(BiasFreeTest, WhatIsLeftOfTheStartIsWhatAnotherStartChanges) {
+  const Vector3d curvatures{1, 0.05, 2}, truth{0.3, 0.5, -1.4};  // the second is hardly told, the third ends at a bound
+  const auto terms_at = [&](int, const VectorXd& at) {
+    return BiasFreeTerms{
+        .gradient = curvatures.cwiseProduct(at - truth), .hessian = curvatures.asDiagonal(), .variance = 0.01};
+  };
+  BiasFreeOptions options{.lower = Vector3d::Constant(-1), .upper = Vector3d::Constant(1), .joint_steps = 2};
+  options.approach_steps = 2;
+  VectorXd one = Vector3d{0.25, 0.45, -0.95}, other = Vector3d{0.28, 0.51, -0.97};
+  const VectorXd apart = other - one;
+  const BiasFreeEnd end = minimise_bias_free(terms_at, options, one);
+  minimise_bias_free(terms_at, options, other);
+  EXPECT_TRUE((other - one).isApprox(end.left * apart, 1e-6)) << other - one << "\n" << end.left * apart;
+  EXPECT_GT(end.left(1, 1), 0.5);
+  EXPECT_EQ(end.left.row(2), Eigen::RowVector3d::Zero());
+}
+
 TEST(BiasFreeTest, NoStepIsLongerThanAllowed) {
   NoisyProblem problem(9);
   const BiasFreeOptions options = wide();
   VectorXd x = NoisyProblem::truth() + Vector3d(1.5, 0, 0), last = x;
-  const auto losses = minimise_bias_free(
+  const BiasFreeEnd end = minimise_bias_free(
       [&](int step, const VectorXd& at) {
         EXPECT_LE((at - last).cwiseAbs().maxCoeff(), options.longest + 1e-12) << step;
         last = at;
         return problem.terms_at(at);
       },
       options, x);
-  EXPECT_EQ(losses.size(), static_cast<std::size_t>(options.own_steps + options.joint_steps));
-  EXPECT_LT(losses.back(), losses.front());
+  EXPECT_EQ(end.losses.size(), static_cast<std::size_t>(options.approach_steps + options.joint_steps));
+  EXPECT_LT(end.losses.back(), end.losses.front());
 }
 
 }  // namespace

@@ -62,6 +62,35 @@ TEST(CertaintyTest, NoiseThatColoursShareIsCountedOnce) {
   EXPECT_TRUE(certainty_of(fit).noise_covariance.isApprox(3 * apart, 1e-9));
 }
 
+// Damped steps from random starts towards the minima of many draws of the noise.
+TEST(CertaintyTest, StepsThatDoNotReachTheMinimumSpreadByWhatTheyLeaveOfTheirStart) {
+  constexpr int kDraws = 20000, kSteps = 3;
+  constexpr double kStartDeviation = 0.05;
+  const MatrixXd damping = Eigen::Vector3d(20, 5, 40).asDiagonal();
+  LinearisedFit fit = random_fit(3, 0.1);
+  fit.jacobian.col(2) *= 0.1;  // hardly told
+  const MatrixXd hessian = fit.jacobian.transpose() * fit.jacobian, identity = MatrixXd::Identity(3, 3);
+  const Certainty minimum = certainty_of(fit);
+  const auto solver = MatrixXd(hessian + damping).ldlt();
+  fit.left = identity;
+  for (int step = 0; step < kSteps; ++step) fit.left = solver.solve(MatrixXd(damping * fit.left));
+  fit.start_covariance = kStartDeviation * kStartDeviation * identity;
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal(0, 0.1), start(0, kStartDeviation);
+  MatrixXd spread = MatrixXd::Zero(3, 3);
+  for (int draw = 0; draw < kDraws; ++draw) {
+    const VectorXd pull =
+        fit.jacobian.transpose() * VectorXd::NullaryExpr(fit.jacobian.rows(), [&] { return normal(random); });
+    VectorXd at = VectorXd::NullaryExpr(3, [&] { return start(random); });
+    for (int step = 0; step < kSteps; ++step) at -= solver.solve(VectorXd(hessian * at - pull));
+    spread += at * at.transpose() / kDraws;
+  }
+  const Certainty certainty = certainty_of(fit);
+  EXPECT_TRUE(certainty.noise_covariance.isApprox(spread, 0.05)) << certainty.noise_covariance << "\n" << spread;
+  EXPECT_LT(certainty.noise_covariance(2, 2), 0.8 * minimum.noise_covariance(2, 2));
+  EXPECT_TRUE(certainty.covariance.isApprox(minimum.covariance)) << "of the minimum itself";
+}
+
 TEST(CertaintyTest, MisfitCommonToAViewAddsToTheTotalOnly) {
   LinearisedFit fit = random_fit(3, 0.1);
   const Certainty before = certainty_of(fit);

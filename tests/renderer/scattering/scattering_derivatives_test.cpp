@@ -162,7 +162,7 @@ using Values = UnlimitedThreads::Values;
 Values slopes_of(const ThreadGradient<double>& gradient, int channel) {
   Values slopes{};
   slopes[static_cast<std::size_t>(channel)] = gradient.slopes(kSlopeSigma, channel);
-  for (int k = 1; k < kThreadSlopeCount; ++k) slopes[static_cast<std::size_t>(k + 2)] = gradient.slopes(k, channel);
+  for (int k = 1; k < kSlopeTint; ++k) slopes[static_cast<std::size_t>(k + 2)] = gradient.slopes(k, channel);
   return slopes;
 }
 
@@ -199,6 +199,20 @@ TYPED_TEST(ThreadGradientTest, ClosedFormDerivativesAreThoseOfDualNumbers) {
         EXPECT_NEAR(slopes[k], slope, 1e-10 * (jet.a + std::abs(slope)) + 1e-290) << "parameter " << k;
       }
     }
+  });
+}
+
+TEST(ThreadGradientTest, TheSlopeByTheTintIsThatOfFiniteDifferences) {
+  everywhere<MetallicThreads>([](const Values& values, const Place& at) {
+    constexpr double kStep = 0.01;  // f_cos is linear in the tint
+    ThreadParameters parameters = MetallicThreads::parameters(values);
+    const auto point = point_of<double>(at);
+    const auto angles = angles_at(values, at);
+    const auto found = ThreadGradientModel<double>(parameters).evaluate(point, angles);
+    parameters.lambda0_rgb.array() += kStep;
+    const Rgb<double> beside = ThreadGradientModel<double>(parameters).f_cos(point, angles);
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(found.slopes(kSlopeTint, c), (beside[c] - found.f_cos[c]) / kStep, 1e-10 * beside[c] + 1e-290);
   });
 }
 

@@ -80,6 +80,22 @@ TEST(GarmentTest, TheDrapeLiesOnTheBallAndHangsBelowIt) {
   EXPECT_GT(top, 1.5 * shape.ball_radius_mm);
 }
 
+TEST(GarmentTest, TheWorkTellsHowFarItIsAndStopsWhenAsked) {
+  for (const GarmentShape& shape : kReady) {
+    double last = -1;
+    int calls = 0;
+    const auto until_half = [&](double finished) {
+      EXPECT_GE(finished, last);
+      EXPECT_LT(finished, 1);
+      ++calls;
+      return (last = finished) < 0.5;
+    };
+    EXPECT_THROW(garment_mesh(shape, until_half), std::runtime_error) << shape.index();
+    EXPECT_NEAR(last, 0.5, 0.02) << shape.index();
+    EXPECT_GT(calls, 75) << shape.index();  // often enough for a person who waits
+  }
+}
+
 TEST(GarmentTest, TheSameShapeGivesTheSameMesh) {
   for (const GarmentShape& shape : kReady) EXPECT_EQ(garment_mesh(shape).vertices, ready_mesh(shape).vertices);
 }

@@ -259,5 +259,21 @@ TEST(RelaxationTest, EveryReadyWeaveComesToRestAsDraftedWithLittleOverlap) {
   for (const Draft& draft : ready_weaves(6)) expect_woven(draft);
 }
 
+TEST(RelaxationTest, TheWorkIsAskedAtEachLookAtTheEnergyAndStopsWhenToldTo) {
+  const Draft draft = plain_cloth(1.25, 1.25, 0.5);
+  int calls = 0;
+  const RelaxedPatch whole = relax(draft, {.progress = [&](const RelaxationReport& so_far) {
+                                     EXPECT_LE(so_far.newton_steps, ++calls);
+                                     return true;
+                                   }});
+  EXPECT_GE(calls, whole.report.newton_steps + whole.report.factorizations);
+  const int until_stop = calls / 2;
+  int asked = 0;
+  EXPECT_THROW(relax(draft, {.progress = [&](const RelaxationReport&) { return ++asked < until_stop; }}),
+               std::runtime_error);
+  EXPECT_EQ(asked, until_stop);
+  EXPECT_EQ(relax(draft).report.newton_steps, whole.report.newton_steps);
+}
+
 }  // namespace
 }  // namespace renderer

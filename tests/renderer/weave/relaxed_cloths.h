@@ -13,7 +13,7 @@ Draft plain_cloth(double warp_pitch_mm, double weft_pitch_mm, double tension_n);
 // A twill and a satin whose systems differ.
 std::vector<Draft> uneven_drafts();
 
-// The ready weaves at the setts of fixtures/drafts, with `yarns` yarns or a little more each way.
+// The ready weaves at the setts of station/data/drafts, with `yarns` yarns or a little more each way.
 std::vector<Draft> ready_weaves(std::size_t yarns);
 
 // The cloth turned by 90 degrees about z: weft becomes warp; what is on top stays on top.

@@ -86,12 +86,12 @@ TEST(BenchFaults, AreNotWhatThePersonDeclinesWhoTurnsThePlatform) {
 
 // One that is not there when it is opened, and one that refuses what it is asked.
 TEST(BenchFaults, AreThoseOfTheDevicesThatARigFileNames) {
-  RigFile wired = read_rig(std::string(FIXTURES_DIR) + "/rigs/grbl_sony_usb.json");
+  RigFile wired = read_rig(std::string(DATA_DIR) + "/rigs/grbl_sony_usb.json");
   wired.operator_driver = "simulated";
   wired.turntable_wire->line = TurntableWire::Line::pty;
   wired.turntable_wire->port.port = "/dev/pts/none";
   EXPECT_THROW(open_turntable(wired, nullptr), BenchFault);
-  const RigFile simulated = read_rig(std::string(FIXTURES_DIR) + "/rigs/simulated.json");
+  const RigFile simulated = read_rig(std::string(DATA_DIR) + "/rigs/simulated.json");
   EXPECT_THROW(open_turntable(simulated, nullptr).turntable->move_to(1), BenchFault) << "before it was homed";
 }
 

@@ -70,8 +70,8 @@ Bench bench_at(const RigFile& rig, const Spool& spool, const Eigen::Isometry3d& 
 }
 
 TEST(BenchTags, ThreeRingTagsAndFourTableTagsAreSeenBesideTheHolderAtEveryAngle) {
-  const RigFile rig = read_rig(std::string(FIXTURES_DIR) + "/rigs/simulated.json");
-  const Spool spool = read_spool(std::string(FIXTURES_DIR) + "/spools/silk_gold.json");
+  const RigFile rig = read_rig(std::string(DATA_DIR) + "/rigs/simulated.json");
+  const Spool spool = read_spool(std::string(DATA_DIR) + "/spools/silk_gold.json");
   for (int angle_deg = -60; angle_deg <= 60; angle_deg += 3) {
     const Eigen::Isometry3d turned(Eigen::AngleAxisd(angle_deg * kDegree, Eigen::Vector3d::UnitZ()));
     const Bench bench = bench_at(rig, spool, turned);
@@ -87,8 +87,8 @@ TEST(BenchTags, ThreeRingTagsAndFourTableTagsAreSeenBesideTheHolderAtEveryAngle)
 }
 
 TEST(BenchTags, RingTagsStayOnThePlatformAndOutsideOfTheHolder) {
-  const RigFile rig = read_rig(std::string(FIXTURES_DIR) + "/rigs/simulated.json");
-  const Spool spool = read_spool(std::string(FIXTURES_DIR) + "/spools/silk_gold.json");
+  const RigFile rig = read_rig(std::string(DATA_DIR) + "/rigs/simulated.json");
+  const Spool spool = read_spool(std::string(DATA_DIR) + "/spools/silk_gold.json");
   for (const calibration::Tag& tag : rig.platform_ring.tags) {
     calibration::Tag bordered = tag;
     bordered.size_mm *= 1.25;

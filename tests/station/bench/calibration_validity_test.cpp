@@ -119,8 +119,8 @@ TEST(CalibrationValidity, AFailedGateIsRefusedWithItsReasonUnlessItIsAccepted) {
 
 // The simulated bench does not age.
 TEST(CalibrationValidity, TheReadyCalibrationIsOfTheReadyRigForYears) {
-  EXPECT_NO_THROW(require_valid(read_calibration(std::string(FIXTURES_DIR) + "/calibrations/simulated.json"),
-                                read_rig(std::string(FIXTURES_DIR) + "/rigs/simulated.json"), "2036-01-01T00:00:00Z",
+  EXPECT_NO_THROW(require_valid(read_calibration(std::string(DATA_DIR) + "/calibrations/simulated.json"),
+                                read_rig(std::string(DATA_DIR) + "/rigs/simulated.json"), "2036-01-01T00:00:00Z",
                                 false));
 }
 

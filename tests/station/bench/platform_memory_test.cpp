@@ -45,7 +45,7 @@ TEST(PlatformMemory, IsOneWhateverNameOfItsPortTheRigFileHas) {
 TEST(PlatformMemory, IsNotForgottenWhenTheTurntableIsNotThere) {
   const station_test::TemporaryFolder folder;
   ::setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
-  nlohmann::json rig = read_json_file(std::string(FIXTURES_DIR) + "/rigs/grbl_sony_network.json");
+  nlohmann::json rig = read_json_file(std::string(DATA_DIR) + "/rigs/grbl_sony_network.json");
   rig["turntable_setup"].erase("baud");
   rig["turntable_setup"].update({{"line", "pty"}, {"port", "/dev/pts/nowhere"}});
   write_json_file(folder / "rig.json", rig);

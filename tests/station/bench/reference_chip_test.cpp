@@ -87,8 +87,8 @@ TEST(ReferenceChip, AChipThatDroopsAsThePanelReadsOne) {
 
 // The bench draws the chip as it draws the panel.
 TEST(ReferenceChip, OnTheBenchAChipOfADroopingPanelsKindReadsTheCalibratedLamp) {
-  RigFile rig = read_rig(std::string(FIXTURES_DIR) + "/rigs/simulated.json");
-  const Spool spool = read_spool(std::string(FIXTURES_DIR) + "/spools/silk_red.json");
+  RigFile rig = read_rig(std::string(DATA_DIR) + "/rigs/simulated.json");
+  const Spool spool = read_spool(std::string(DATA_DIR) + "/spools/silk_red.json");
   SimulatedRig& simulation = *rig.simulation;
   simulation.spectralon_droop = 0.14;
   simulation.samples_per_pixel = 1;

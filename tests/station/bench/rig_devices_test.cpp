@@ -18,7 +18,7 @@ using station_test::refusal;
 using testing::HasSubstr;
 
 json rig_document(const std::string& name) {
-  return read_json_file(std::string(FIXTURES_DIR) + "/rigs/" + name + ".json");
+  return read_json_file(std::string(DATA_DIR) + "/rigs/" + name + ".json");
 }
 
 TEST(OpenRig, OnASimulatedBenchAPersonMayPractise) {

@@ -16,7 +16,7 @@ namespace {
 using nlohmann::json;
 
 std::string fixture_rig() {
-  return std::string(FIXTURES_DIR) + "/rigs/simulated.json";
+  return std::string(DATA_DIR) + "/rigs/simulated.json";
 }
 
 // Every tag of the page is found where the sheet says, at 300 dots per inch.
@@ -46,7 +46,8 @@ void expect_to_scale(const station::TargetSheet& sheet, station::Paper paper, co
 TEST(Target, EveryTagIsDrawnToScaleOnBothPapers) {
   const TemporaryFolder folder;
   for (const auto& [paper, name] : {std::pair{station::Paper::a4, "a4"}, {station::Paper::letter, "letter"}}) {
-    const ProgramResult result = run_threadstation({"target", "--out", folder / name, "--paper", name});
+    const ProgramResult result =
+        run_threadstation({"target", "--rig", fixture_rig(), "--out", folder / name, "--paper", name});
     ASSERT_EQ(result.status, 0) << result.error;
     const std::vector<station::TargetSheet> sheets = station::target_sheets(station::read_rig(fixture_rig()));
     EXPECT_EQ(sheets.size(), 6U);
@@ -71,6 +72,17 @@ TEST(Target, TheGeometryFileIsTheBoardFileOfTheRigsBoard) {
     EXPECT_EQ(tags[i].id, expected[i].id);
     EXPECT_TRUE(tags[i].object_from_tag.isApprox(expected[i].object_from_tag));
   }
+}
+
+// Sizes of another bench would be believed.
+TEST(Target, WithoutARigOneIsAskedForAndNothingIsWritten) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run_threadstation({"target", "--out", folder / "targets"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(result.error_lines(), 1) << result.error;
+  EXPECT_NE(result.error.find("--rig"), std::string::npos) << result.error;
+  EXPECT_NE(result.error.find("/rigs"), std::string::npos) << result.error;  // where some are to begin with
+  EXPECT_FALSE(std::filesystem::exists(folder / "targets"));
 }
 
 // A rig whose prints came out two percent large is drawn as it was, not two percent larger once more.

@@ -16,9 +16,8 @@ namespace {
 using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 struct ClothColour : testing::Test {
-  ThreadFile thread = read_thread(std::string(FIXTURES_DIR) + "/threads/silk_red.json");
-  renderer::YarnPatch patch =
-      renderer::woven_patch(read_draft(std::string(FIXTURES_DIR) + "/drafts/twill_2_2.json")).patch;
+  ThreadFile thread = read_thread(std::string(DATA_DIR) + "/threads/silk_red.json");
+  renderer::YarnPatch patch = renderer::woven_patch(read_draft(std::string(DATA_DIR) + "/drafts/twill_2_2.json")).patch;
 };
 
 TEST_F(ClothColour, ItIsReachedByAbsorptionAlone) {

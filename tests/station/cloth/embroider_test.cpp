@@ -32,7 +32,7 @@ class Embroider : public ::testing::Test {
   ProgramResult embroider(const std::string& motif, const std::vector<std::string>& more = {},
                           const std::string& pixels_per_mm = "8") {
     std::vector<std::string> arguments{"embroider",   motif,
-                                       "--thread",    std::string(FIXTURES_DIR) + "/threads/silk_blue.json",
+                                       "--thread",    std::string(DATA_DIR) + "/threads/silk_blue.json",
                                        "--out",       folder_ / "motif.exr",
                                        "--px-per-mm", pixels_per_mm,
                                        "--spp",       "32",
@@ -48,8 +48,7 @@ class Embroider : public ::testing::Test {
                           static_cast<int>((high_y + kMargin_mm - place.y - place.height) * kPixelsPerMm),
                           static_cast<int>(place.width * kPixelsPerMm), static_cast<int>(place.height * kPixelsPerMm));
     const cv::Scalar mean = cv::mean(image(pixels));
-    const auto matrix =
-        station::read_thread(std::string(FIXTURES_DIR) + "/threads/silk_blue.json").linear_srgb_from_camera;
+    const auto matrix = station::read_thread(std::string(DATA_DIR) + "/threads/silk_blue.json").linear_srgb_from_camera;
     Eigen::Vector3d seen, asked;
     for (int c = 0; c < 3; ++c) {
       const auto row = static_cast<std::size_t>(3 * c);
@@ -85,10 +84,10 @@ TEST_F(Embroider, SatinInGamutHasTheFilesColoursWithinTwoAndElseIsOffAsSaid) {
 }
 
 TEST_F(Embroider, OnASceneItIsSewnWhereAskedAndTheSceneIsWritten) {
-  const std::string hoop = std::string(FIXTURES_DIR) + "/scenes/hoop.json";
+  const std::string hoop = std::string(DATA_DIR) + "/scenes/hoop.json";
   const auto sew = [&](const std::vector<std::string>& more, const std::string& out) {
     std::vector<std::string> arguments{"embroider", three_blocks(),
-                                       "--thread",  std::string(FIXTURES_DIR) + "/threads/silk_blue.json",
+                                       "--thread",  std::string(DATA_DIR) + "/threads/silk_blue.json",
                                        "--out",     out,
                                        "--spp",     "2",
                                        "--scene",   hoop,
@@ -101,7 +100,8 @@ TEST_F(Embroider, OnASceneItIsSewnWhereAskedAndTheSceneIsWritten) {
   const station::SceneFile scene = station::read_scene(folder_ / "hoop.json");
   ASSERT_EQ(scene.embroideries.size(), 1U);
   EXPECT_EQ(scene.embroideries[0].threads.size(), 3U);
-  const renderer::Scene made = station::build_scene(scene, station::build_cloths(scene));
+  station::ProgressDisplay quiet("test", station::ProgressStyle::quiet);
+  const renderer::Scene made = station::build_scene(scene, station::build_cloths(scene, quiet));
   EXPECT_EQ(made.cloths.size(), 1U) << "the ground is cloth in two scales";
   ASSERT_EQ(made.curves.size(), 3U);
   Eigen::AlignedBox3f bounds;
@@ -119,7 +119,7 @@ TEST_F(Embroider, OnASceneItIsSewnWhereAskedAndTheSceneIsWritten) {
   };
   refused(sew({"--at", "1", "1"}, folder_ / "beside.exr"), "beside it");
   refused(sew({"--cloth", "1"}, folder_ / "none.exr"), "counted from 0");
-  refused(sew({}, std::string(FIXTURES_DIR) + "/scenes/hoop.png"), "written over");
+  refused(sew({}, std::string(DATA_DIR) + "/scenes/hoop.png"), "written over");
 }
 
 TEST_F(Embroider, WhatCannotBeEmbroideredIsOneLine) {

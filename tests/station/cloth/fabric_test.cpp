@@ -21,7 +21,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 std::filesystem::path fabric_file() {
-  return std::filesystem::path(FIXTURES_DIR) / "fabrics" / "satin_blue_gold.json";
+  return std::filesystem::path(DATA_DIR) / "fabrics" / "satin_blue_gold.json";
 }
 
 struct FabricSession : testing::Test {

@@ -85,7 +85,8 @@ class ReadyScene : public testing::TestWithParam<fs::path> {};
 
 TEST_P(ReadyScene, HasNoFirefliesAt256Samples) {
   const station::SceneFile scene = station::read_scene(GetParam());
-  const PathTracer tracer(station::build_scene(scene, station::build_cloths(scene)));
+  station::ProgressDisplay quiet("test", station::ProgressStyle::quiet);
+  const PathTracer tracer(station::build_scene(scene, station::build_cloths(scene, quiet)));
   const Camera camera = small(scene.camera, 24);
   const cv::Mat3f a = tracer.render(camera, {.samples_per_pixel = 256, .seed = 1}),
                   b = tracer.render(camera, {.samples_per_pixel = 256, .seed = 2});
@@ -111,7 +112,7 @@ TEST_P(ReadyScene, HasNoFirefliesAt256Samples) {
 
 std::vector<fs::path> json_files(const char* folder) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(fs::path(FIXTURES_DIR) / folder))
+  for (const auto& entry : fs::directory_iterator(fs::path(DATA_DIR) / folder))
     if (entry.path().extension() == ".json") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;

@@ -14,13 +14,13 @@ using nlohmann::json;
 
 struct HomeHere : testing::TestWithParam<Board> {
   HomeHere() {
-    json calibration = station::read_json_file(std::string(FIXTURES_DIR) + "/calibrations/simulated.json");
+    json calibration = station::read_json_file(std::string(DATA_DIR) + "/calibrations/simulated.json");
     calibration["utc"] = rig::SystemClock().utc();  // it must not be too old
     calibration.erase("sensor");                    // of a bench that grows dark
     station::write_json_file(lab.in("calibration.json"), calibration);
   }
   std::vector<std::string> capture() const {
-    const std::string spool = std::string(FIXTURES_DIR) + "/spools/silk_red.json";
+    const std::string spool = std::string(DATA_DIR) + "/spools/silk_red.json";
     return {"capture", "--rig", lab.rig_file(), "--calibration", lab.in("calibration.json"),
             "--spool", spool,   "--out",        lab.in("out"),   "--accept-calibration"};
   }

@@ -26,6 +26,8 @@ TEST(StopOnInterrupt, StopsAgainWhatWasBegunAtTheSameMoment) {
   });
   std::raise(SIGINT);
   stopped_again.get_future().wait();
+  EXPECT_GE(stops, 3);
+  EXPECT_EQ(station::interrupts(), 1) << "one ctrl-C, however often it stops";
   station::watch_interrupts();
 }
 
@@ -43,13 +45,16 @@ TEST(StopOnInterrupt, DoesNothingWithoutASignalAndForgetsTheOneOfARunBefore) {
 
 TEST(StopOnInterrupt, AStopThatFailsDoesNotEndTheProgram) {
   station::watch_interrupts();
-  std::promise<void> asked;
+  std::atomic<int> asked = 0;
+  std::promise<void> asked_again;
   const station::StopOnInterrupt watch([&] {
-    asked.set_value();
+    if (++asked == 2) asked_again.set_value();
     throw std::runtime_error("the cable is out");
   });
   std::raise(SIGINT);
-  asked.get_future().wait();
+  asked_again.get_future().wait();
+  EXPECT_GE(asked, 2) << "it is asked again though it failed";
+  EXPECT_TRUE(station::interrupted());
   station::watch_interrupts();
 }
 
@@ -65,5 +70,16 @@ TEST(StopOnInterrupt, TheSecondSignalCallsTheOtherStopWhileTheFirstIsDone) {
     stopped.get_future().wait();
     EXPECT_EQ(station::interrupts(), 2);
   }
+  station::watch_interrupts();
+}
+
+TEST(Interrupts, EndTheProgramAgainWhereNothingIsLostByIt) {
+  station::watch_interrupts();
+  station::let_interrupts_end();
+  EXPECT_EXIT(std::raise(SIGINT), testing::KilledBySignal(SIGINT), "");
+  station::watch_more_interrupts(2);  // as the next part of a command does
+  std::raise(SIGINT);
+  std::raise(SIGINT);
+  EXPECT_EQ(station::interrupts(), 2);
   station::watch_interrupts();
 }

@@ -131,9 +131,9 @@ class AttendedPort final : public rig::SimulatedPort {
 class Lab {
  public:
   explicit Lab(Board board, double left_at_deg = kLeftFarDeg) {
-    const std::string fixtures = FIXTURES_DIR;
+    const std::string data = DATA_DIR;
     document_ = station::read_json_file(
-        fixtures + (board == Board::zaber ? "/rigs/simulated_wire_zaber.json" : "/rigs/simulated_wire_grbl.json"));
+        data + (board == Board::zaber ? "/rigs/simulated_wire_zaber.json" : "/rigs/simulated_wire_grbl.json"));
     document_["simulation"]["turntable"]["scale"] = 1;
     if (is_here(board)) document_["turntable_setup"]["home"] = "here";
     const station::RigFile served = station::parse_rig(document_, "the bench");
@@ -161,7 +161,8 @@ class Lab {
     document_["camera_connection"]["height_px"] = document_["simulation"]["sensor"]["height_px"];
     document_.erase("simulation");
     document_["operator"] = "console";
-    document_["name"] = station::read_json_file(fixtures + "/rigs/simulated.json")["name"];  // of the calibration's rig
+    document_["name"] =
+        station::read_json_file(std::string(DATA_DIR) + "/rigs/simulated.json")["name"];  // of the calibration's rig
     station::write_json_file(rig_file(), document_);
     std::ofstream(folder_ / "answers") << std::string(10000, '\n');
     if (is_here(board))

@@ -18,7 +18,7 @@ using station_test::ProgramResult;
 using station_test::run_shell;
 using station_test::TemporaryFolder;
 
-const std::string kFixtures = FIXTURES_DIR;
+const std::string kFixtures = FIXTURES_DIR, kData = DATA_DIR;
 
 // German is not set up on every computer: made here from its source, with the package `locales`.
 struct Locale : testing::Test {
@@ -71,13 +71,13 @@ TEST_F(Locale, OfThisTestWritesNumbersWithAComma) {
 }
 
 TEST_F(Locale, ChangesNothingThatIsWritten) {
-  run("plan --rig '" + kFixtures + "/rigs/simulated.json' --out %/plan.json");
-  run("weave --draft '" + kFixtures + "/drafts/plain.json' --out %/patch.json --drawing %/draft.svg");
+  run("plan --rig '" + kData + "/rigs/simulated.json' --out %/plan.json");
+  run("weave --draft '" + kData + "/drafts/plain.json' --out %/patch.json --drawing %/draft.svg");
   run("scatter simulate --fiber-radius 0.05 --thread-radius 1 --gap 0.01 --attempts 2000 --rays 2000 "
       "--configurations 2 --bins 88 --seed 3 --quiet --out %/simulated.csv");
   const std::string queries = *folder / "queries.csv";
   std::ofstream(queries) << "h,theta_i_rad,phi_i_rad,theta_o_rad,phi_o_rad\n0.25,0.1,0.5,-0.2,2.75\n";
-  run("scatter eval --model fiber --parameters '" + kFixtures + "/fibers/clear.json' --in '" + queries +
+  run("scatter eval --model fiber --parameters '" + kData + "/fibers/clear.json' --in '" + queries +
       "' --out %/values.csv");
   run("replay '" + kFixtures + "/sessions/silk_red' --out %/session --quiet");
   run("develop %/session --quiet");

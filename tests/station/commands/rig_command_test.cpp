@@ -15,7 +15,7 @@ using station_test::run_threadstation;
 using testing::HasSubstr;
 
 std::string fixture(const std::string& name) {
-  return std::string(FIXTURES_DIR) + "/rigs/" + name + ".json";
+  return std::string(DATA_DIR) + "/rigs/" + name + ".json";
 }
 
 void expect_refused(const ProgramResult& result, const std::string& words) {
@@ -58,7 +58,7 @@ TEST_F(RigCommands, CheckPassesForACameraOfEveryMakeAndForALensWithoutAnElectron
 TEST_F(RigCommands, CheckWithACalibrationLooksAtATestPicture) {
   json rig = station::read_json_file(fixture("simulated"));
   rig["simulation"]["target_samples_per_pixel"] = 4;
-  const std::string calibration = std::string(FIXTURES_DIR) + "/calibrations/simulated.json";
+  const std::string calibration = std::string(DATA_DIR) + "/calibrations/simulated.json";
   const ProgramResult sound = run_threadstation({"check", "--rig", rig_file(rig), "--calibration", calibration});
   EXPECT_EQ(sound.status, 0) << sound.error << sound.out;
   for (const char* row : {"an exposure is found", "the picture is in focus", "tags on the platform are seen",
@@ -88,7 +88,7 @@ TEST_F(RigCommands, CheckAsJsonIsForMachines) {
 }
 
 TEST_F(RigCommands, AFaultThatThereIsNotIsNamedWithThoseThatThereAre) {
-  json faults = station::read_json_file(std::string(FIXTURES_DIR) + "/faults/example.json");
+  json faults = station::read_json_file(std::string(DATA_DIR) + "/faults/example.json");
   faults["camera"][0]["fault"] = "hiccup";
   station::write_json_file(folder / "faults.json", faults);
   expect_refused(run_threadstation({"simulate-hardware", "--rig", fixture("simulated_wire_grbl"), "--faults",
@@ -150,7 +150,7 @@ TEST_F(RigCommands, TurntableSetUpWritesWhatDiffersAndPutsItBack) {
 TEST_F(RigCommands, SimulatedHardwareServesAnotherProgramAndEndsWithCtrlC) {
   json wire = station::read_json_file(fixture("simulated_wire_grbl"));
   wire["simulation"]["turntable"]["speed_deg_s"] = 300;  // in real time
-  const std::string faults = std::string(FIXTURES_DIR) + "/faults/example.json";
+  const std::string faults = std::string(DATA_DIR) + "/faults/example.json";
   const station_test::SimulatedHardware hardware(wire, faults);
   json rig = station::read_json_file(fixture("grbl_sony_network"));
   rig["turntable_setup"]["line"] = "pty";

@@ -55,16 +55,14 @@ const char* name_of(Ending ending) {
   return "";
 }
 
-// The names under the heading of --help, down to the next one.
+// The names of which --help says so.
 std::vector<std::string> turning_commands() {
   std::istringstream help(run_threadstation({"--help"}).out);
   std::vector<std::string> names;
-  bool listed = false;
-  for (std::string line; std::getline(help, line);) {
-    if (!line.empty() && line.front() != ' ') listed = line.starts_with("Commands that turn the platform");
-    std::smatch found;
-    if (listed && std::regex_search(line, found, std::regex("^  ([a-z-]+) "))) names.push_back(found[1]);
-  }
+  std::smatch found;
+  for (std::string line; std::getline(help, line);)
+    if (std::regex_search(line, found, std::regex("^  ([a-z-]+) .*\\(turns the platform\\)$")))
+      names.push_back(found[1]);
   return names;
 }
 
@@ -83,7 +81,7 @@ struct Way {
 // The arguments, by the names of the options that the command's help lists.
 std::vector<std::string> arguments_for(const Way& way, const Lab& lab) {
   const std::string help = run_threadstation({way.command, "--help"}).out;
-  const std::string fixtures = FIXTURES_DIR;
+  const std::string data = DATA_DIR;
   std::vector<std::string> arguments{way.command};
   for (const std::string& word : way.besides)
     arguments.push_back(word.ends_with(".csv") ? lab.in(word).string() : word);
@@ -93,8 +91,8 @@ std::vector<std::string> arguments_for(const Way& way, const Lab& lab) {
   add("--out", lab.in("out"));
   if (way.goes_on()) return arguments;
   add("--rig", lab.rig_file());
-  add("--calibration", fixtures + "/calibrations/simulated.json");
-  if (way.besides.empty()) add("--spool", fixtures + "/spools/silk_red.json");
+  add("--calibration", data + "/calibrations/simulated.json");
+  if (way.besides.empty()) add("--spool", data + "/spools/silk_red.json");
   if (help.find("--accept-calibration") != std::string::npos) arguments.emplace_back("--accept-calibration");
   return arguments;
 }
@@ -143,7 +141,7 @@ Stopped stop(const Way& way, Board board, Ending ending, int times, double delay
   Stopped result{.what = way.name() + ", " + name_of(board) + ", " + name_of(ending) + ", motion " +
                          std::to_string(times) + ", after " + std::to_string(delay_s) + " s"};
   const Lab lab(board, times == 1 ? kLeftFarDeg : kLeftNearDeg);
-  std::ofstream(lab.in("spools.csv")) << "barcode,spool\n1," << FIXTURES_DIR << "/spools/silk_red.json\n2,\n";
+  std::ofstream(lab.in("spools.csv")) << "barcode,spool\n1," << DATA_DIR << "/spools/silk_red.json\n2,\n";
   if (way.goes_on()) {
     const Way first{way.command};
     const pid_t process = lab.start(arguments_for(first, lab));

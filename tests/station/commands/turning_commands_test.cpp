@@ -16,7 +16,7 @@ TEST(TurningCommands, OneThatIsNotListedFailsWhenItHasOpenedATurntable) {
     station::require_declared_turning(app);
   };
   EXPECT_NO_THROW(checked("quiet"));
-  station::open_turntable(station::read_rig(std::string(FIXTURES_DIR) + "/rigs/simulated_wire_grbl.json"), nullptr);
+  station::open_turntable(station::read_rig(std::string(DATA_DIR) + "/rigs/simulated_wire_grbl.json"), nullptr);
   EXPECT_THROW(checked("quiet"), std::logic_error);
   EXPECT_NO_THROW(checked("loud"));
 }

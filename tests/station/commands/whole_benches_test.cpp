@@ -20,7 +20,7 @@ using nlohmann::json;
 using station::CalibrationRole;
 
 json documented_rig() {
-  return station::read_json_file(std::string(FIXTURES_DIR) + "/rigs/simulated.json");
+  return station::read_json_file(std::string(DATA_DIR) + "/rigs/simulated.json");
 }
 
 // Everything that calibration has to find is another; what is known by tape and by the lens's engraving stays.

@@ -28,7 +28,7 @@ void expect_one_line(const ProgramResult& result, const std::string& must_name) 
 
 void Workflow::SetUpTestSuite() {
   folder = std::make_unique<TemporaryFolder>();
-  json rig = station::read_json_file(std::string(FIXTURES_DIR) + "/rigs/simulated.json");
+  json rig = station::read_json_file(std::string(DATA_DIR) + "/rigs/simulated.json");
   rig["simulation"]["samples_per_pixel"] = 1;
   rig["simulation"]["target_samples_per_pixel"] = 4;
   station::write_json_file(path("rig.json"), rig);
@@ -58,7 +58,7 @@ std::vector<std::string> Workflow::capture_arguments(const std::string& session,
           "--calibration",
           path(calibration),
           "--spool",
-          std::string(FIXTURES_DIR) + "/spools/" + spool + ".json",
+          std::string(DATA_DIR) + "/spools/" + spool + ".json",
           "--out",
           session,
           "--unattended",

@@ -93,13 +93,21 @@ TEST_F(Workflow, CalibrationFindsTheSensorAsItIs) {
   for (const calibration::Gate& gate : found.sensor->gates) EXPECT_TRUE(gate.passed) << gate.name;
 }
 
-TEST_F(Workflow, CalibrationIsSolvedAgainFromItsPicturesAlone) {
+TEST_F(Workflow, CalibrationIsSolvedAgainFromItsPicturesAloneAndKeepsTheirDate) {
   const json before = station::read_json_file(path("calibration/calibration.json")).flatten();
-  expect_success(
-      run_threadstation({"calibrate", "--rig", path("rig.json"), "--out", path("calibration"), "--solve", "--quiet"}));
-  const json after = station::read_json_file(path("calibration/calibration.json")).flatten();
+  const fs::path old = path("calibration-of-2024");
+  fs::copy(path("calibration"), old, fs::copy_options::recursive);
+  json list = station::read_json_file(old / "pictures.json");
+  for (json& picture : list["pictures"]) picture["utc"] = "2024-02-29T" + picture["utc"].get<std::string>().substr(11);
+  list["pictures"][3]["utc"] = "2024-03-01T00:00:00.000Z";
+  station::write_json_file(old / "pictures.json", list);
+  expect_success(run_threadstation({"calibrate", "--rig", path("rig.json"), "--out", old, "--solve", "--quiet"}));
+  const json after = station::read_json_file(old / "calibration.json").flatten();
   for (const auto& [key, value] : before.items()) {
-    if (key == "/utc") continue;
+    if (key == "/utc") {
+      EXPECT_EQ(after.at(key), "2024-03-01T00:00:00.000Z") << "that of the last picture";
+      continue;
+    }
     if (!value.is_number()) {
       EXPECT_EQ(after.at(key), value) << key;
       continue;
@@ -343,7 +351,7 @@ TEST_F(Workflow, AFullDiskAndAReadOnlyFolderGetOneLine) {
   const std::string mount = path("mount");
   fs::create_directory(mount);
   const std::string capture = std::string("'") + THREADSTATION_PROGRAM + "' capture --rig '" + path("rig.json") +
-                              "' --calibration '" + path("calibration") + "' --spool '" + FIXTURES_DIR +
+                              "' --calibration '" + path("calibration") + "' --spool '" + DATA_DIR +
                               "/spools/silk_red.json' --unattended --quiet --out '" + mount + "/session'";
   const auto on_file_system = [&](const std::string& options) {
     const std::string unshare =
@@ -379,7 +387,7 @@ TEST_F(Workflow, WrongFilesGetOneLineThatNamesThem) {
     return run_threadstation({"calibrate", "--rig", rig, "--out", out});
   };
   expect_one_line(with_rig(path("no_such.json")), "no_such.json");
-  expect_one_line(with_rig(std::string(FIXTURES_DIR) + "/spools/silk_red.json"), "threadstation/spool");
+  expect_one_line(with_rig(std::string(DATA_DIR) + "/spools/silk_red.json"), "threadstation/spool");
   json rig = station::read_json_file(path("rig.json"));
   rig["colour"] = "red";
   station::write_json_file(path("unknown_key.json"), rig);
@@ -395,32 +403,6 @@ TEST_F(Workflow, WrongFilesGetOneLineThatNamesThem) {
   station::write_json_file(path("other_sensor.json"), rig);
   expect_one_line(run_threadstation(capture_arguments(out, "other_sensor.json")), "300 x 400");
   EXPECT_FALSE(fs::exists(out)) << "a refused command leaves nothing behind";
-}
-
-TEST_F(Workflow, TheDemoDoesItAllAndRunAgainKeepsItsPictures) {
-  const std::string out = path("demo");
-  const ProgramResult first = run_threadstation({"demo", "--quick", "--out", out, "--json"});
-  expect_success(first);
-  const json said = json::parse(first.out);
-  EXPECT_TRUE(fs::exists(said["report"].get<std::string>()));
-  EXPECT_EQ(station::read_thread(said["thread"].get<std::string>()).name, "silk, blue");
-  EXPECT_LT(said["relative_rmse"].get<double>(), 0.25);  // noisy pictures; FittedThreads has the real ones
-  ASSERT_EQ(said["cloth"].size(), 2U);
-  for (const json& picture : said["cloth"]) EXPECT_TRUE(fs::exists(picture.get<std::string>()));
-  EXPECT_TRUE(fs::exists(out + "/session/result/contact_sheet.png"));
-  expect_success(run_threadstation({"verify", out + "/session"}));
-  const auto pictures = [&] {
-    return run_shell("cd '" + out + "' && sha256sum calibration/pictures/* session/raw/*").out;
-  };
-  const std::string before = pictures();
-  const ProgramResult again = run_threadstation({"demo", "--quick", "--out", out, "--quiet"});
-  expect_success(again);
-  EXPECT_NE(again.out.find("kept"), std::string::npos) << again.out;
-  EXPECT_EQ(pictures(), before);
-  fs::create_directory(path("somebody"));
-  std::ofstream(path("somebody/letter.txt")) << "not ours";
-  expect_one_line(run_threadstation({"demo", "--out", path("somebody")}), "not an earlier demo");
-  EXPECT_TRUE(fs::exists(path("somebody/letter.txt")));
 }
 
 TEST_F(Workflow, ADamagedSessionIsNamedByVerifyAndRefusedByDevelop) {

@@ -162,7 +162,7 @@ TEST(Plan, SaysWhatEachPictureMustBeVerifiedForAndOthersAreRefusedWithoutHardwar
 }
 
 TEST(Plan, TheDocumentedPlanIsReadAndWrittenAlike) {
-  const std::string file = std::string(FIXTURES_DIR) + "/plans/seventeen_views.json";
+  const std::string file = std::string(DATA_DIR) + "/plans/seventeen_views.json";
   const nlohmann::json document = nlohmann::json::parse(text_of(file));
   const Plan plan = plan_from_json(document, file);
   EXPECT_EQ(view_count(plan), 17U);

@@ -21,17 +21,17 @@ using nlohmann::json;
 using station_test::refusal;
 
 json good_rig() {
-  return read_json_file(std::string(FIXTURES_DIR) + "/rigs/simulated.json");
+  return read_json_file(std::string(DATA_DIR) + "/rigs/simulated.json");
 }
 
 TEST(Documents, EveryRigAndSpoolInFixturesIsRead) {
   int read = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(FIXTURES_DIR) + "/rigs")) {
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(DATA_DIR) + "/rigs")) {
     if (entry.path().extension() != ".json") continue;
     EXPECT_NO_THROW(read_rig(entry.path())) << entry.path();
     ++read;
   }
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(FIXTURES_DIR) + "/spools")) {
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(DATA_DIR) + "/spools")) {
     if (entry.path().extension() != ".json") continue;
     const Spool spool = read_spool(entry.path());
     EXPECT_EQ(spool.wrapping.turns, 50) << entry.path();
@@ -43,7 +43,7 @@ TEST(Documents, EveryRigAndSpoolInFixturesIsRead) {
 }
 
 TEST(Documents, ACalibrationIsReadAndWrittenWithoutLoss) {
-  const std::string file = std::string(FIXTURES_DIR) + "/calibrations/simulated.json";
+  const std::string file = std::string(DATA_DIR) + "/calibrations/simulated.json";
   const json document = read_json_file(file).flatten(), written = to_json(read_calibration(file)).flatten();
   EXPECT_EQ(written.size(), document.size());
   for (const auto& [key, value] : document.items()) {
@@ -59,7 +59,7 @@ TEST(Documents, ACalibrationIsReadAndWrittenWithoutLoss) {
 
 TEST(Documents, EveryBoardInFixturesIsRead) {
   int read = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(FIXTURES_DIR) + "/boards")) {
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(DATA_DIR) + "/boards")) {
     if (entry.path().extension() != ".json") continue;
     EXPECT_NO_THROW(read_board(entry.path())) << entry.path();
     ++read;
@@ -98,11 +98,14 @@ TEST(Documents, AMissingKeyAWrongTypeAndAValueOutOfRangeAreNamed) {
 }
 
 TEST(Documents, AnotherKindOfDocumentAndAnotherVersionAreRefused) {
-  EXPECT_NE(refusal([] { read_spool(std::string(FIXTURES_DIR) + "/rigs/simulated.json"); }).find("threadstation/rig"),
+  EXPECT_NE(refusal([] { read_spool(std::string(DATA_DIR) + "/rigs/simulated.json"); }).find("threadstation/rig"),
             std::string::npos);
   json rig = good_rig();
-  rig["version"] = 2;
-  EXPECT_NE(refusal([&] { parse_rig(rig, "r"); }).find("version 2"), std::string::npos);
+  rig["version"] = 3;
+  EXPECT_NE(refusal([&] {
+              parse_rig(rig, "r");
+            }).find("made by a later threadstation: rig version 3, this one reads up to version 2"),
+            std::string::npos);
 }
 
 TEST(Documents, AFileCutShortMissingOrAFolderGetsOneLine) {
@@ -119,13 +122,12 @@ TEST(Documents, AFileCutShortMissingOrAFolderGetsOneLine) {
 TEST(Documents, TransformsKeepEveryDigitAndMirroredOnesAreRefused) {
   Eigen::Isometry3d pose =
       Eigen::Translation3d(1.0 / 3, -2e5 / 7, 1e-9) * Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized());
-  json document{{"format", "threadstation/test"}, {"version", 1}, {"pose", to_json(pose)}};
+  json document{{"format", "threadstation/draft"}, {"version", 1}, {"pose", to_json(pose)}};
   const json parsed = json::parse(document.dump());
-  EXPECT_EQ(ObjectReader(parsed, "t", "test", 1).transform("pose").matrix(), pose.matrix());
+  EXPECT_EQ(ObjectReader(parsed, "t", "draft").transform("pose").matrix(), pose.matrix());
   pose.linear().col(0) *= -1;
   document["pose"] = to_json(pose);
-  EXPECT_NE(refusal([&] { ObjectReader(document, "t", "test", 1).transform("pose"); }).find("rigid"),
-            std::string::npos);
+  EXPECT_NE(refusal([&] { ObjectReader(document, "t", "draft").transform("pose"); }).find("rigid"), std::string::npos);
 }
 
 }  // namespace

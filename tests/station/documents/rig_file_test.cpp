@@ -17,7 +17,7 @@ using station_test::refusal;
 using testing::HasSubstr;
 
 json rig_document(const std::string& name) {
-  return read_json_file(std::string(FIXTURES_DIR) + "/rigs/" + name + ".json");
+  return read_json_file(std::string(DATA_DIR) + "/rigs/" + name + ".json");
 }
 
 std::string said(json document, const std::string& pointer, const json& value) {
@@ -31,6 +31,14 @@ std::string said_without(json document, const std::string& object, const std::st
 }
 
 }  // namespace
+
+TEST(RigFile, MayNameTheHolderOfItsSpoolsWhichIsChecked) {
+  json rig = rig_document("simulated");
+  EXPECT_THAT(said(rig, "/holder/window_width_mm", 69), HasSubstr("holder.window_width_mm"));  // wider than the frame
+  EXPECT_THAT(said(rig, "/holder/colour", "black"), HasSubstr("holder.colour"));
+  rig.erase("holder");
+  EXPECT_NO_THROW(parse_rig(rig, "rig.json"));
+}
 
 TEST(RigFileDevices, AreReadWithTheirUnits) {
   const RigFile rig = parse_rig(rig_document("grbl_sony_usb"), "rig.json");

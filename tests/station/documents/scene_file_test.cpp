@@ -22,8 +22,8 @@ using nlohmann::json;
 using station_test::refusal;
 namespace fs = std::filesystem;
 
-const fs::path kScenes = fs::path(FIXTURES_DIR) / "scenes";
-const fs::path kThreads = fs::path(FIXTURES_DIR) / "threads";
+const fs::path kScenes = fs::path(DATA_DIR) / "scenes";
+const fs::path kThreads = fs::path(DATA_DIR) / "threads";
 
 json plain_scene() {
   return read_json_file(kScenes / "plain_swatch.json");
@@ -31,7 +31,7 @@ json plain_scene() {
 
 TEST(SceneFile, ADraftIsReadAndNotWoven) {
   const station_test::TemporaryFolder folder;
-  json draft = read_json_file(fs::path(FIXTURES_DIR) / "drafts" / "plain.json");
+  json draft = read_json_file(fs::path(DATA_DIR) / "drafts" / "plain.json");
   draft["plies"] = {{"count", 2}, {"radius_mm", 5}};
   write_json_file(folder / "draft.json", draft);
   json document = plain_scene();
@@ -144,8 +144,7 @@ TEST(SceneFile, ALensIsFocusedOnTheTargetUnlessItSaysWhere) {
 
 TEST(SceneFile, APatchServesAsWellAsItsDraft) {
   const station_test::TemporaryFolder folder;
-  const renderer::YarnPatch patch =
-      renderer::initial_patch(read_draft(fs::path(FIXTURES_DIR) / "drafts" / "plain.json"));
+  const renderer::YarnPatch patch = renderer::initial_patch(read_draft(fs::path(DATA_DIR) / "drafts" / "plain.json"));
   write_json_file(folder / "patch.json", to_json(patch));
   json document = plain_scene();
   document["threads"] = {(kThreads / "silk_red.json").string()};

@@ -137,24 +137,38 @@ TEST(SvgFile, WhatCannotBeSewnIsOneLine) {
   EXPECT_NE(refusal([&] { drawn(deep); }).find("within more than"), std::string::npos);
 }
 
-TEST(SvgFile, CutAndDamagedDrawingsAreReadOrRefused) {
+TEST(SvgFile, CutDrawingsAreRefusedAndDamagedOnesReadOrRefusedInOneLineThatNamesTheFile) {
   const std::string whole = R"svg(<svg width="40mm" viewBox="0 0 40 40"><style>.a{stroke:red}</style>
     <g transform="translate(3 4) rotate(20)">
     <path class="a" d="M1 2 C 3 4 5 6 7 8 S 9 1 2 3 Q 1 1 2 2 T 3 3 A 2 3 10 0 1 8 8 z"/>
     <rect x="1" y="2" width="3" height="4" rx="1" style="stroke:#123;stroke-width:2mm"/></g></svg>)svg";
-  const auto read = [](const std::string& text) {
+  // Whether it is read, to stitches of a size that can be sewn.
+  const auto is_read = [](const std::string& text) {
     try {
-      renderer::digitise(parse_svg(text, "motif.svg"), "motif.svg");
-    } catch (const std::runtime_error&) {
+      const renderer::Motif motif = renderer::digitise(parse_svg(text, "motif.svg"), "motif.svg");
+      EXPECT_FALSE(motif.threads.empty()) << text;
+      const renderer::MotifMeasures measures = renderer::measure(motif);
+      EXPECT_TRUE(measures.low.allFinite() && measures.high.allFinite()) << text;
+      EXPECT_LE((measures.high - measures.low).maxCoeff(), 2000) << text;
+      return true;
+    } catch (const std::runtime_error& problem) {
+      const std::string line = problem.what();
+      EXPECT_TRUE(line.starts_with("motif.svg: ")) << line;
+      EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+      return false;
     }
   };
-  for (std::size_t size = 0; size <= whole.size(); ++size) read(whole.substr(0, size));
+  EXPECT_TRUE(is_read(whole));
+  for (std::size_t size = 0; size < whole.size(); ++size) EXPECT_FALSE(is_read(whole.substr(0, size))) << size;
   std::mt19937 random(1);
+  int read = 0;
   for (int i = 0; i < 2000; ++i) {
     std::string damaged = whole;
     for (int k = 0; k < 3; ++k) damaged[random() % damaged.size()] = static_cast<char>(32 + random() % 95);
-    read(damaged);
+    read += is_read(damaged);
   }
+  EXPECT_GT(read, 50) << "a digit in place of another is no damage";
+  EXPECT_LT(read, 2000);
 }
 
 }  // namespace

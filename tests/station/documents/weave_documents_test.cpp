@@ -22,7 +22,7 @@ using nlohmann::json;
 using station_test::refusal;
 namespace fs = std::filesystem;
 
-const fs::path kDrafts = fs::path(FIXTURES_DIR) / "drafts";
+const fs::path kDrafts = fs::path(DATA_DIR) / "drafts";
 
 void expect_refused(const json& document, bool is_draft, const std::string& named) {
   const std::string line =

@@ -25,7 +25,7 @@ TEST_F(TechnicianPage, ASessionIsShownAsItsJournalHasItNow) {
 
 TEST_F(TechnicianPage, AViewThatTheFitHasNotSeenIsToldApart) {
   copy_session();
-  json thread = station::read_json_file(std::filesystem::path(FIXTURES_DIR) / "threads/silk_red.json");
+  json thread = station::read_json_file(std::filesystem::path(DATA_DIR) / "threads/silk_red.json");
   const json view{{"id", "reflection-horizontal-1"}, {"relative_rmse", 0.1}, {"relative_bias", 0.02}};
   json held_out = view;
   held_out["held_out"] = true;
@@ -122,7 +122,7 @@ TEST_F(TechnicianPage, TheSpoolFormWritesWhatCaptureReads) {
 }
 
 TEST(SampleFile, TheDocumentedOneIsReadAndWrittenAgain) {
-  const station::Sample sample = station::read_sample_file(std::string(FIXTURES_DIR) + "/samples/silk_blue.json");
+  const station::Sample sample = station::read_sample_file(std::string(DATA_DIR) + "/samples/silk_blue.json");
   EXPECT_EQ(sample.lot, "B 3");
   const TemporaryFolder folder;
   station::write_sample_file(folder / "sample.json", sample);
@@ -198,7 +198,7 @@ TEST_F(TechnicianPage, AJournalThatNamesAFileElsewhereShowsNoPicture) {
 
 TEST_F(TechnicianPage, AThreadOfTheLibraryIsShownWithItsCurves) {
   station::Library(folder_ / "bench/library", true)
-      .add(std::string(FIXTURES_DIR) + "/threads/silk_red.json", "2026-01-01T00:00:00Z");
+      .add(std::string(DATA_DIR) + "/threads/silk_red.json", "2026-01-01T00:00:00Z");
   const json thread = json::parse(asked("/api/thread", {{"number", "1"}}).body);
   ASSERT_EQ(thread.at("curves").size(), 41U);
   EXPECT_EQ(thread["curves"][0].at("cosine"), 0);
@@ -213,7 +213,7 @@ TEST_F(TechnicianPage, AThreadOfTheLibraryIsShownWithItsCurves) {
 void write_week(const std::filesystem::path& workspace) {
   std::filesystem::copy(std::string(FIXTURES_DIR) + "/sessions/silk_red", workspace / "sessions/4006381333931-A-12",
                         std::filesystem::copy_options::recursive);
-  const std::string spool = std::string(FIXTURES_DIR) + "/spools/silk_red.json";
+  const std::string spool = std::string(DATA_DIR) + "/spools/silk_red.json";
   std::ofstream(workspace / "queues/week.csv")
       << "barcode,name,lot,material,colour,note,spool\n4006381333931,red,A 12,silk,,," << spool
       << "\n4006381333948,blue,B 3,silk,,,\n4006381333955,green,,silk,,,\n";

@@ -28,7 +28,7 @@ using station::HttpResponse;
 class TechnicianPage : public testing::Test {
  protected:
   explicit TechnicianPage(const json& changes = {{"operator", "console"}}) {
-    json rig = station::read_json_file(std::string(FIXTURES_DIR) + "/rigs/simulated.json");
+    json rig = station::read_json_file(std::string(DATA_DIR) + "/rigs/simulated.json");
     rig.merge_patch(changes);
     std::ofstream(folder_ / "rig.json") << rig.dump();
     page_ = std::make_unique<station::TechnicianPage>(

@@ -138,9 +138,7 @@ TEST_F(TurnedByHand, IsCalibratedAndASpoolCapturedFromThePage) {
 
 TEST_F(TechnicianPage, TheEmergencyStopIsAnybodysAndEndsTheRun) {
   start_calibration();
-  const auto began = std::chrono::steady_clock::now();
   EXPECT_EQ(post("/api/stop", {{"client", "a watcher"}}).status, 200);
-  EXPECT_LT(std::chrono::steady_clock::now() - began, 1s);
   ASSERT_TRUE(eventually([&] { return job().at("running") == false; }));
   EXPECT_NE(job().at("status"), 0);
 }
@@ -154,6 +152,28 @@ TEST_F(TechnicianPage, WhoeverIsNotInControlChangesNothing) {
   EXPECT_EQ(refused_with("/api/pause", {{"client", "you"}}), 409);
   EXPECT_TRUE(get("/api/state").at("spools").empty());
   EXPECT_TRUE(get("/api/state").at("job").is_null());
+}
+
+TEST_F(TechnicianPage, ASpoolGetsTheHolderOfTheRigAndNoneWithoutOne) {
+  post("/api/control", {{"client", "me"}});
+  const json spool{{"client", "me"}, {"name", "silk"}, {"turns", 40}, {"diameter_mm", 0.5}};
+  json rig = station::read_json_file(folder_ / "rig.json");
+  rig["holder"] = {{"frame_width_mm", 90},
+                   {"frame_height_mm", 80},
+                   {"frame_depth_mm", 4},
+                   {"window_width_mm", 50},
+                   {"window_height_mm", 15}};
+  station::write_json_file(folder_ / "rig.json", rig);
+  ASSERT_EQ(post("/api/spool", spool).status, 200);
+  EXPECT_EQ(station::read_json_file(folder_ / "bench/spools/silk.json").at("holder"), rig["holder"]);
+
+  rig.erase("holder");
+  station::write_json_file(folder_ / "rig.json", rig);
+  std::filesystem::remove(folder_ / "bench/spools/silk.json");
+  const HttpResponse refused = post("/api/spool", spool);
+  EXPECT_EQ(refused.status, 400);
+  EXPECT_NE(refused.body.find("measure its frame and window"), std::string::npos) << refused.body;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "bench/spools/silk.json"));
 }
 
 TEST_F(TechnicianPage, NoNameOfARequestLeavesItsFolder) {

@@ -11,7 +11,7 @@ namespace station {
 namespace {
 
 TEST(CalibrationFiles, AreThoseOfTheDocumentThatWasGiven) {
-  const std::string document = std::string(FIXTURES_DIR) + "/calibrations/simulated.json";
+  const std::string document = std::string(DATA_DIR) + "/calibrations/simulated.json";
   const CalibrationFiles files = calibration_files(document, read_calibration(document));
   ASSERT_EQ(files.size(), 1U);
   const auto& bytes = files.at("calibration.json");

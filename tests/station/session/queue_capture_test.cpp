@@ -26,24 +26,24 @@ using station_test::ProgramResult;
 using station_test::run_threadstation;
 using testing::HasSubstr;
 
-std::string fixture(const std::string& name) {
-  return std::string(FIXTURES_DIR) + "/" + name + ".json";
+std::string ready(const std::string& name) {
+  return std::string(DATA_DIR) + "/" + name + ".json";
 }
 
 struct QueueCapture : testing::Test {
   QueueCapture() {
-    json calibration = station_test::hasty_calibration(station::read_json_file(fixture("calibrations/simulated")));
+    json calibration = station_test::hasty_calibration(station::read_json_file(ready("calibrations/simulated")));
     calibration["utc"] = rig::SystemClock().utc();  // it must not be too old
     fs::create_directory(folder / "calibration");
     station::write_json_file(folder / "calibration/calibration.json", calibration);
     station::write_json_file(folder / "rig.json",
-                             station_test::hasty_rig(station::read_json_file(fixture("rigs/simulated"))));
+                             station_test::hasty_rig(station::read_json_file(ready("rigs/simulated"))));
   }
   void write_queue(const std::string& second_spool) const {
     std::ofstream(folder / "spools.csv") << "barcode,lot,material,note,spool\n"
-                                         << "4711,A 1,silk,\"left shelf, top\"," << fixture("spools/silk_red") << "\n"
+                                         << "4711,A 1,silk,\"left shelf, top\"," << ready("spools/silk_red") << "\n"
                                          << "4712,,,," << second_spool << "\n"
-                                         << "4713,,,," << fixture("spools/silk_blue") << "\n";
+                                         << "4713,,,," << ready("spools/silk_blue") << "\n";
   }
   std::vector<std::string> arguments() const {
     return {"capture",
@@ -84,7 +84,7 @@ TEST_F(QueueCapture, TakesEverySpoolSaysWhichFailedAndGoesOnFromThere) {
   EXPECT_EQ(session.at("spool").at("material"), "silk");
   EXPECT_EQ(session.at("operator"), "Ada");
 
-  write_queue(fixture("spools/silk_gold"));
+  write_queue(ready("spools/silk_gold"));
   const ProgramResult second = run_threadstation(arguments());
   EXPECT_EQ(second.status, 0) << second.error;
   EXPECT_THAT(second.out, HasSubstr("4711-A-1: was complete already\n4712: captured\n4713: was complete already\n"));
@@ -92,7 +92,7 @@ TEST_F(QueueCapture, TakesEverySpoolSaysWhichFailedAndGoesOnFromThere) {
 }
 
 TEST_F(QueueCapture, KilledInASpoolItCapturesThatOneToItsEndAndTheRest) {
-  write_queue(fixture("spools/silk_gold"));
+  write_queue(ready("spools/silk_gold"));
   const pid_t process = station_test::start_threadstation(arguments());
   const auto pictures = [&] {
     std::error_code none;
@@ -114,7 +114,7 @@ TEST_F(QueueCapture, CtrlCWhileTheDevicesAreConnectedPausesTheSession) {
   station::CaptureRequest request{
       .session = folder / "one",
       .new_session = station::NewSession{
-          .rig = folder / "rig.json", .calibration = folder / "calibration", .spool = fixture("spools/silk_red")}};
+          .rig = folder / "rig.json", .calibration = folder / "calibration", .spool = ready("spools/silk_red")}};
   request.progress_style = station::ProgressStyle::quiet;
   EXPECT_EQ(station::capture_session(request), station::RunState::paused);
   station::watch_interrupts();
@@ -131,12 +131,12 @@ std::size_t count(const std::string& text, const std::string& word) {
 struct QueueOnAWire : QueueCapture {
   QueueOnAWire() {
     write_queue(folder / "nowhere.json");
-    json calibration = station::read_json_file(fixture("calibrations/simulated"));
+    json calibration = station::read_json_file(ready("calibrations/simulated"));
     calibration["utc"] = rig::SystemClock().utc();
     calibration.erase("sensor");
     station::write_json_file(folder / "calibration/calibration.json", calibration);
-    json rig = station::read_json_file(fixture("rigs/simulated"));
-    const json wire = station::read_json_file(fixture("rigs/simulated_wire_grbl"));
+    json rig = station::read_json_file(ready("rigs/simulated"));
+    const json wire = station::read_json_file(ready("rigs/simulated_wire_grbl"));
     for (const char* key : {"camera", "camera_connection", "turntable", "turntable_setup"}) rig[key] = wire[key];
     rig["camera_connection"].update({{"port", camera.camera_port()}, {"width_px", 600}, {"height_px", 400}});
     rig["turntable_setup"].update({{"line", "pty"}, {"port", port.string()}});
@@ -147,7 +147,7 @@ struct QueueOnAWire : QueueCapture {
   ~QueueOnAWire() override { fs::remove(port); }
   // One of the wire's two devices; the other one is in process, where nobody asks it.
   static json with_one_device(const char* device, const char* setup) {
-    json rig = station::read_json_file(fixture("rigs/simulated_wire_grbl"));
+    json rig = station::read_json_file(ready("rigs/simulated_wire_grbl"));
     rig[device] = "simulated";
     rig.erase(setup);
     rig["simulation"]["turntable"]["speed_deg_s"] = 300;  // in real time
@@ -173,7 +173,7 @@ struct QueueOnAWire : QueueCapture {
 
 TEST_F(QueueOnAWire, ATurntableThatIsUnpluggedPausesTheQueueAndTheSameCommandGoesOn) {
   const json unplugged{{"at_operation", 12}, {"fault", "unplug"}};
-  json faults = station::read_json_file(fixture("faults/example"));
+  json faults = station::read_json_file(ready("faults/example"));
   faults.update({{"turntable", json::array({unplugged})}, {"camera", json::array()}});
   station::write_json_file(folder / "faults.json", faults);
   plug_in_turntable(folder / "faults.json");

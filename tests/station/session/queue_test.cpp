@@ -42,7 +42,7 @@ TEST_F(Queue, ARowIsASpoolWithItsNamesAndTheSettingsOfTheRowAboveWhereItHasNone)
 }
 
 TEST_F(Queue, TheDocumentedTableIsRead) {
-  const auto queue = read_queue(std::filesystem::path(FIXTURES_DIR) / "queues/two_silks.csv");
+  const auto queue = read_queue(std::filesystem::path(DATA_DIR) / "queues/two_silks.csv");
   ASSERT_EQ(queue.size(), 2U);
   EXPECT_EQ(queue[0].session, "4006381333931-A-12");
   for (const QueuedSpool& spool : queue) EXPECT_TRUE(std::filesystem::exists(spool.spool)) << spool.spool;

@@ -24,8 +24,8 @@ using nlohmann::json;
 using station_test::ProgramResult;
 using station_test::run_threadstation;
 
-json fixture(const std::string& name) {
-  return station::read_json_file(std::string(FIXTURES_DIR) + "/" + name + ".json");
+json ready(const std::string& name) {
+  return station::read_json_file(std::string(DATA_DIR) + "/" + name + ".json");
 }
 
 std::map<std::string, json> pictures_of(const std::string& session) {
@@ -62,7 +62,7 @@ Difference difference(const calibration::SensorPicture& a, const calibration::Se
 
 struct WireCapture : testing::TestWithParam<const char*> {
   void SetUp() override {
-    json calibration = station_test::hasty_calibration(fixture("calibrations/simulated"));
+    json calibration = station_test::hasty_calibration(ready("calibrations/simulated"));
     calibration["utc"] = rig::SystemClock().utc();  // it must not be too old
     std::filesystem::create_directory(folder / "calibration");
     station::write_json_file(folder / "calibration/calibration.json", calibration);
@@ -72,7 +72,7 @@ struct WireCapture : testing::TestWithParam<const char*> {
     const std::string session = folder / name;
     const ProgramResult captured = run_threadstation(
         {"capture", "--rig", folder / (name + "-rig.json"), "--calibration", folder / "calibration", "--spool",
-         std::string(FIXTURES_DIR) + "/spools/silk_red.json", "--out", session, "--unattended", "--quiet"});
+         std::string(DATA_DIR) + "/spools/silk_red.json", "--out", session, "--unattended", "--quiet"});
     EXPECT_EQ(captured.status, 0) << captured.error;
     const ProgramResult verified = run_threadstation({"verify", session});
     EXPECT_EQ(verified.status, 0) << verified.error;
@@ -90,9 +90,9 @@ INSTANTIATE_TEST_SUITE_P(OverThe, WireCapture, testing::Values("grbl", "zaber"),
 }  // namespace
 
 TEST_P(WireCapture, GivesTheSessionOfTheDevicesInProcess) {
-  const json rig = station_test::hasty_rig(fixture("rigs/simulated"));
+  const json rig = station_test::hasty_rig(ready("rigs/simulated"));
   const auto expected = capture("in-process", rig);
-  const json wire = fixture("rigs/simulated_wire_" + std::string(GetParam()));
+  const json wire = ready("rigs/simulated_wire_" + std::string(GetParam()));
   json wired = rig;
   for (const char* key : {"camera", "camera_connection", "turntable", "turntable_setup"}) wired[key] = wire[key];
   const auto found = capture("wire", wired);

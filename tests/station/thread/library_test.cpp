@@ -17,7 +17,7 @@ using testing::HasSubstr;
 constexpr const char* kNow = "2026-11-21T10:20:30.123Z";
 
 struct ThreadLibrary : testing::Test {
-  static fs::path thread(const std::string& name) { return fs::path(FIXTURES_DIR) / "threads" / (name + ".json"); }
+  static fs::path thread(const std::string& name) { return fs::path(DATA_DIR) / "threads" / (name + ".json"); }
   TemporaryFolder folder;
   fs::path place = folder / "library";
 };
@@ -38,7 +38,7 @@ TEST_F(ThreadLibrary, RefusesWhatItHasAlreadyAndWhatIsNoThread) {
   Library library(place, true);
   library.add(thread("silk_blue"), kNow);
   EXPECT_THAT(message_of([&] { library.add(thread("silk_blue"), kNow); }), HasSubstr("already, as number 1"));
-  EXPECT_THAT(message_of([&] { library.add(fs::path(FIXTURES_DIR) / "spools/silk_red.json", kNow); }),
+  EXPECT_THAT(message_of([&] { library.add(fs::path(DATA_DIR) / "spools/silk_red.json", kNow); }),
               HasSubstr("threadstation/thread"));
   EXPECT_EQ(library.list().size(), 1U);
   EXPECT_THAT(message_of([&] { Library(folder / "none", false); }), HasSubstr("no library"));

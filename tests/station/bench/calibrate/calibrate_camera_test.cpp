@@ -17,7 +17,7 @@ using calibration::synthetic::narrow_lens;
 constexpr const char* kPhotographs = "/usr/share/doc/opencv-doc/examples/data/";  // Debian's opencv-doc
 
 std::string board(const std::string& name) {
-  return std::string(FIXTURES_DIR) + "/boards/" + name + ".json";
+  return std::string(DATA_DIR) + "/boards/" + name + ".json";
 }
 
 ProgramResult calibrate(const std::filesystem::path& images, const std::string& board_file,

@@ -39,7 +39,7 @@ void keep(const std::string& name, const cv::Mat3f& picture) {
 }
 
 void expect_cycles_to_show_the_fiber(const std::string& thread, const std::string& scene) {
-  const fs::path file = fs::path(FIXTURES_DIR) / "threads" / (thread + ".json");
+  const fs::path file = fs::path(DATA_DIR) / "threads" / (thread + ".json");
   TemporaryFolder folder;
   const fs::path out = folder / "exported", cycles_file = folder / "cycles.exr";
   const ProgramResult exported =

@@ -20,8 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const std::string kFixtures = FIXTURES_DIR, kNpm = std::string(SOURCE_DIR) + "/tests/npm/";
-const std::string kSwatch = kFixtures + "/scenes/plain_swatch.json";
+const std::string kData = DATA_DIR, kNpm = std::string(SOURCE_DIR) + "/tests/npm/";
+const std::string kSwatch = kData + "/scenes/plain_swatch.json";
 
 ProgramResult export_cloth(const std::vector<std::string>& arguments) {
   std::vector<std::string> all{"export", "cloth"};
@@ -148,11 +148,11 @@ class ExportCloth : public ::testing::Test {
 };
 
 TEST_F(ExportCloth, RefusesInOneLineWhatItCannotDo) {
-  const std::string out = folder_ / "out", thread = kFixtures + "/threads/silk_red.json";
-  expect_refused({kFixtures + "/scenes/none.json", "--out", out}, 1, "none.json");
-  expect_refused({kFixtures + "/scenes/satin_drape.json", "--out", out}, 1, "mesh or garment");
-  expect_refused({kFixtures + "/scenes/satin_cylinder.json", "--out", out}, 1, "cylinder");
-  expect_refused({kFixtures + "/scenes/skirts_four_colours.json", "--out", out}, 1, "cloths");
+  const std::string out = folder_ / "out", thread = kData + "/threads/silk_red.json";
+  expect_refused({kData + "/scenes/none.json", "--out", out}, 1, "none.json");
+  expect_refused({kData + "/scenes/satin_drape.json", "--out", out}, 1, "mesh or garment");
+  expect_refused({kData + "/scenes/satin_cylinder.json", "--out", out}, 1, "cylinder");
+  expect_refused({kData + "/scenes/skirts_four_colours.json", "--out", out}, 1, "cloths");
   expect_refused({"--out", out}, 2, "--draft");
   expect_refused({kSwatch, "--out", ""}, 1, "--out");
   expect_refused({kSwatch, "--out", out, "--size", "8"}, 2, "--size");
@@ -161,7 +161,7 @@ TEST_F(ExportCloth, RefusesInOneLineWhatItCannotDo) {
   station::write_text_file(folder_ / "file", "not a folder");
   expect_refused({kSwatch, "--out", folder_ / "file/out"}, 1, "file/out");
   expect_refused({kSwatch, "--out", folder_.path()}, 1, "is there already");
-  expect_refused({"--draft", kFixtures + "/drafts/plain.json", "--warp", thread, "--out", out}, 2, "--weft");
+  expect_refused({"--draft", kData + "/drafts/plain.json", "--warp", thread, "--out", out}, 2, "--weft");
   EXPECT_TRUE(nothing_left());
 }
 
@@ -172,10 +172,10 @@ TEST_F(ExportCloth, RefusesWhatTakesMoreMemoryThanThereIs) {
 }
 
 TEST_F(ExportCloth, WritesOnlyWhatIsAskedForOfADraftAndTwoThreads) {
-  const std::string thread = kFixtures + "/threads/silk_";
-  const ProgramResult found = export_cloth(
-      {"--draft", kFixtures + "/drafts/twill_2_2.json", "--warp", thread + "blue.json", "--weft", thread + "gold.json",
-       "--out", folder_ / "twill", "--size", "24", "--spp", "1", "--only", "textures,u3m", "--quiet"});
+  const std::string thread = kData + "/threads/silk_";
+  const ProgramResult found = export_cloth({"--draft", kData + "/drafts/twill_2_2.json", "--warp", thread + "blue.json",
+                                            "--weft", thread + "gold.json", "--out", folder_ / "twill", "--size", "24",
+                                            "--spp", "1", "--only", "textures,u3m", "--quiet"});
   ASSERT_EQ(found.status, 0) << found.error;
   EXPECT_EQ(found.error, "");
   EXPECT_NE(found.out.find("CIEDE2000"), std::string::npos) << found.out;

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const std::string kThreads = std::string(FIXTURES_DIR) + "/threads/", kDrafts = std::string(FIXTURES_DIR) + "/drafts/";
+const std::string kThreads = std::string(DATA_DIR) + "/threads/", kDrafts = std::string(DATA_DIR) + "/drafts/";
 
 std::string text_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -175,7 +175,7 @@ assert sum(isinstance(node, ast.Import) for node in body) == 1
 
 TEST_F(ExportThread, RefusalsAreOneLineAndLeaveNothing) {
   expect_refused(exported(folder_ / "none.json"), {"none.json"});
-  expect_refused(exported(std::string(FIXTURES_DIR) + "/fibers/" + "README.md"), {"README.md"});
+  expect_refused(exported(std::string(DATA_DIR) + "/fibers/" + "README.md"), {"README.md"});
   expect_refused(exported(kDrafts + "plain.json"), {"threadstation/thread", "plain.json"});
   expect_refused(exported(kThreads + "silk_red.json", {"--only", "merl"}), {"--draft"});
   expect_refused(exported(kThreads + "silk_red.json", {"--only", "merl", "--draft", kDrafts + "none.json"}),

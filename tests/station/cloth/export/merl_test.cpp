@@ -77,8 +77,8 @@ Array3d mean_over_turns(const renderer::ClothReflectance& cloth, const Vector3d&
 }
 
 TEST(MerlExport, ReadersFindTheClothsReflectance) {
-  const fs::path thread_file = fs::path(FIXTURES_DIR) / "threads" / "silk_gold.json",
-                 draft = fs::path(FIXTURES_DIR) / "drafts" / "plain.json";
+  const fs::path thread_file = fs::path(DATA_DIR) / "threads" / "silk_gold.json",
+                 draft = fs::path(DATA_DIR) / "drafts" / "plain.json";
   TemporaryFolder folder;
   const fs::path out = folder / "exported";
   const ProgramResult result = run_threadstation({"export", "thread", thread_file.string(), "--out", out.string(),

@@ -21,7 +21,7 @@ using nlohmann::json;
 
 // Of Debian's opencv-doc.
 const std::string kPhotographs = "/usr/share/doc/opencv-doc/examples/data/";
-const std::string kFixtures = FIXTURES_DIR;
+const std::string kData = DATA_DIR;
 
 class PatternCommand : public ::testing::Test {
  protected:
@@ -31,8 +31,8 @@ class PatternCommand : public ::testing::Test {
     return run_threadstation(arguments);
   }
   ProgramResult woven(const std::string& image, int ends) {
-    return pattern(image, {"--thread", kFixtures + "/threads/silk_gold.json", "--draft",
-                           kFixtures + "/drafts/satin_5.json", "--ends", std::to_string(ends)});
+    return pattern(image, {"--thread", kData + "/threads/silk_gold.json", "--draft", kData + "/drafts/satin_5.json",
+                           "--ends", std::to_string(ends)});
   }
   std::string picture(const std::string& name, const cv::Mat3b& rgb) {
     renderer::write_png(folder_ / name, rgb);
@@ -103,9 +103,9 @@ TEST_F(PatternCommand, ColoursAsTheyAreAreMetWithinTheGamut) {
   cv::Mat3b patches(40, 60, cv::Vec3b(170, 165, 160));
   patches(cv::Rect(20, 0, 20, 40)).setTo(cv::Scalar(205, 170, 175));
   patches(cv::Rect(0, 25, 60, 15)).setTo(cv::Scalar(5, 5, 5));
-  const ProgramResult result = pattern(
-      picture("patches.png", patches),
-      {"--thread", kFixtures + "/threads/silk_gold.json", "--draft", kFixtures + "/drafts/satin_5.json", "--as-it-is"});
+  const ProgramResult result =
+      pattern(picture("patches.png", patches),
+              {"--thread", kData + "/threads/silk_gold.json", "--draft", kData + "/drafts/satin_5.json", "--as-it-is"});
   ASSERT_EQ(result.status, 0) << result.error;
   const json report = json::parse(result.out);
   EXPECT_NEAR(report.at("out_of_gamut").get<double>(), 15.0 / 40, 0.05);
@@ -134,23 +134,24 @@ TEST_F(PatternCommand, WritesWhatItSaysAndCurvesAloneAreTheSameTwice) {
 
 TEST_F(PatternCommand, AReadySceneIsWrittenAgainWithThePictureInItsCloth) {
   const std::string image = picture("stripes.png", cv::Mat3b(8, 8, cv::Vec3b(150, 120, 100)));
-  const ProgramResult result = pattern(image, {"--scene", kFixtures + "/scenes/satin_drape.json", "--curves-only"});
+  const ProgramResult result = pattern(image, {"--scene", kData + "/scenes/satin_drape.json", "--curves-only"});
   ASSERT_EQ(result.status, 0) << result.error;
   const station::SceneFile scene = station::read_scene(folder_ / "out" / "scene.json"),
-                           ready = station::read_scene(kFixtures + "/scenes/satin_drape.json");
+                           ready = station::read_scene(kData + "/scenes/satin_drape.json");
   EXPECT_EQ(scene.threads.size(), ready.threads.size());
   ASSERT_TRUE(scene.cloths.at(0).absorption);
   EXPECT_FALSE(ready.cloths.at(0).absorption);
-  EXPECT_TRUE(station::build_scene(scene, station::build_cloths(scene)).cloths.at(0).absorption);
+  station::ProgressDisplay quiet("test", station::ProgressStyle::quiet);
+  EXPECT_TRUE(station::build_scene(scene, station::build_cloths(scene, quiet)).cloths.at(0).absorption);
 }
 
 TEST_F(PatternCommand, AJacquardHasThePictureInItsStructure) {
   cv::Mat3b halves(96, 96, cv::Vec3b(250, 250, 250));
   halves(cv::Rect(0, 0, 48, 96)).setTo(cv::Scalar(10, 10, 30));
   const ProgramResult result =
-      pattern(picture("halves.png", halves), {"--thread", kFixtures + "/threads/cotton_white.json", "--jacquard",
-                                              kFixtures + "/threads/silk_blue.json", "--draft",
-                                              kFixtures + "/drafts/jacquard/draft.json", "--ends", "48"});
+      pattern(picture("halves.png", halves),
+              {"--thread", kData + "/threads/cotton_white.json", "--jacquard", kData + "/threads/silk_blue.json",
+               "--draft", kData + "/drafts/jacquard/draft.json", "--ends", "48"});
   ASSERT_EQ(result.status, 0) << result.error;
   const json report = json::parse(result.out);
   EXPECT_EQ(report, station::read_json_file(folder_ / "out" / "jacquard.json"));
@@ -171,7 +172,7 @@ TEST_F(PatternCommand, AJacquardHasThePictureInItsStructure) {
 }
 
 TEST_F(PatternCommand, WhatCannotBeWovenIsOneLine) {
-  const std::string thread = kFixtures + "/threads/silk_gold.json", draft = kFixtures + "/drafts/satin_5.json",
+  const std::string thread = kData + "/threads/silk_gold.json", draft = kData + "/drafts/satin_5.json",
                     grey = picture("grey.png", cv::Mat3b(4, 4, cv::Vec3b(128, 128, 128)));
   const auto refused = [&](const ProgramResult& result, const std::string& named, int status = 1) {
     EXPECT_EQ(result.status, status) << result.error;
@@ -189,7 +190,7 @@ TEST_F(PatternCommand, WhatCannotBeWovenIsOneLine) {
   refused(woven(folder_ / "cut.png", 4), "cut.png");
   refused(woven(grey, 1 << 20), "crossings");
   refused(pattern(grey, {}), "thread and a draft");
-  refused(pattern(grey, {"--scene", kFixtures + "/scenes/satin_drape.json", "--cloth", "3"}), "counted from 0");
+  refused(pattern(grey, {"--scene", kData + "/scenes/satin_drape.json", "--cloth", "3"}), "counted from 0");
   refused(pattern(grey, {"--scene", folder_ / "none.json"}), "none.json");
   std::ofstream(folder_ / "out") << "a file";
   refused(woven(grey, 4), folder_ / "out");

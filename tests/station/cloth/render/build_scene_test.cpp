@@ -19,7 +19,12 @@ using nlohmann::json;
 using station_test::refusal;
 namespace fs = std::filesystem;
 
-const fs::path kScenes = fs::path(FIXTURES_DIR) / "scenes";
+const fs::path kScenes = fs::path(DATA_DIR) / "scenes";
+
+ProgressDisplay& quiet() {
+  static ProgressDisplay display("test", ProgressStyle::quiet);
+  return display;
+}
 
 SceneFile plain_scene(const json& cloth = json::object()) {
   json document = read_json_file(kScenes / "plain_swatch.json");
@@ -34,7 +39,7 @@ TEST(BuildScene, ReadyScenesAreBuilt) {
     const SceneFile file = read_scene(entry.path());
     ++read;
     EXPECT_FALSE(file.cloths.empty()) << entry.path();
-    const renderer::Scene scene = build_scene(file, build_cloths(file));
+    const renderer::Scene scene = build_scene(file, build_cloths(file, quiet()));
     EXPECT_EQ(scene.cloths.size(), file.cloths.size()) << "ready scenes are in two scales";
     EXPECT_EQ(scene.meshes.size(), file.objects.size());
   }
@@ -43,15 +48,15 @@ TEST(BuildScene, ReadyScenesAreBuilt) {
 
 TEST(BuildScene, BruteForceTurnsClothIntoCurvesOfItsThreads) {
   const SceneFile file = plain_scene({{"method", "brute_force"}});
-  const renderer::Scene scene = build_scene(file, build_cloths(file));
+  const renderer::Scene scene = build_scene(file, build_cloths(file, quiet()));
   EXPECT_TRUE(scene.cloths.empty());
   EXPECT_EQ(scene.curves.size(), 2u);
 }
 
 TEST(BuildScene, ADraftIsWovenToTheClothOfTheWeaveCommand) {
-  const renderer::Draft draft = read_draft(fs::path(FIXTURES_DIR) / "drafts" / "plain.json");
+  const renderer::Draft draft = read_draft(fs::path(DATA_DIR) / "drafts" / "plain.json");
   const renderer::YarnPatch woven = renderer::woven_patch(draft).patch, drawn = renderer::initial_patch(draft),
-                            patch = woven_cloth(plain_scene(), 0);
+                            patch = woven_cloth(plain_scene(), 0, quiet());
   ASSERT_EQ(patch.yarns.size(), woven.yarns.size());
   for (std::size_t i = 0; i < patch.yarns.size(); ++i) {
     EXPECT_EQ(patch.yarns[i].control_points, woven.yarns[i].control_points);
@@ -63,9 +68,9 @@ TEST(BuildScene, AShadeOfAThreadThatTheSceneDoesNotListIsRefused) {
   SceneFile file = plain_scene();
   renderer::Draft& draft = std::get<renderer::Draft>(file.cloths[0].weave);
   draft.warp.threads = {0}, draft.weft.threads = {1};
-  EXPECT_NO_THROW(build_cloths(file));
+  EXPECT_NO_THROW(build_cloths(file, quiet()));
   draft.unevenness.shades = 2;
-  const std::string line = refusal([&] { build_cloths(file); });
+  const std::string line = refusal([&] { build_cloths(file, quiet()); });
   EXPECT_TRUE(line.starts_with("scene.json: key \"cloths[0].draft\": \"plain") &&
               line.find("but the scene lists 2 threads") != std::string::npos)
       << line;
@@ -73,7 +78,7 @@ TEST(BuildScene, AShadeOfAThreadThatTheSceneDoesNotListIsRefused) {
 
 TEST(BuildScene, APatchThatReachesFarBeyondItsCellIsRefused) {
   const SceneFile file = plain_scene();
-  const std::vector<BuiltCloth> good = build_cloths(file);
+  const std::vector<BuiltCloth> good = build_cloths(file, quiet());
   std::vector<BuiltCloth> far = good;
   far[0].patch.yarns[0].control_points[1].z() = 1e5;
   EXPECT_NE(refusal([&] { renderer::RayScene(build_scene(file, far)); }).find("periods beyond"), std::string::npos);

@@ -21,10 +21,10 @@ using nlohmann::json;
 
 // A ready scene in few pixels, with its files named absolutely.
 json small_scene(const std::string& name) {
-  json scene = station::read_json_file(std::string(FIXTURES_DIR) + "/scenes/" + name + ".json");
-  for (json& thread : scene["threads"]) thread = std::string(FIXTURES_DIR) + "/scenes/" + thread.get<std::string>();
+  json scene = station::read_json_file(std::string(DATA_DIR) + "/scenes/" + name + ".json");
+  for (json& thread : scene["threads"]) thread = std::string(DATA_DIR) + "/scenes/" + thread.get<std::string>();
   for (json& cloth : scene["cloths"])
-    cloth["draft"] = std::string(FIXTURES_DIR) + "/scenes/" + cloth["draft"].get<std::string>();
+    cloth["draft"] = std::string(DATA_DIR) + "/scenes/" + cloth["draft"].get<std::string>();
   const int divisor = 12;
   scene["camera"]["width_px"] = scene["camera"]["width_px"].get<int>() / divisor;
   scene["camera"]["height_px"] = scene["camera"]["height_px"].get<int>() / divisor;
@@ -173,6 +173,83 @@ TEST_F(Render, AnotherRenderingsCheckpointIsRefusedInOneLineUntilItIsThrownAway)
   EXPECT_FALSE(std::filesystem::exists(checkpoint));
 }
 
+TEST_F(Render, APictureThatCannotBeWrittenStaysAsACheckpointFromWhichTheSameCommandWritesIt) {
+  json scene = small_scene("plain_swatch");
+  scene["samples_per_pixel"] = 32;
+  const std::string file = written("scene.json", scene), picture = folder_ / "a.exr";
+  ASSERT_EQ(render(file, "whole.exr").status, 0);
+  std::filesystem::create_directory(picture);  // nothing can take its name
+  try {
+    station::render_scene({.scene = file, .out = picture, .progress = station::ProgressStyle::quiet});
+    ADD_FAILURE() << "nothing was refused";
+  } catch (const std::runtime_error& error) {
+    const std::string line = error.what();
+    EXPECT_NE(line.find("Is a directory"), std::string::npos) << line;
+    EXPECT_NE(line.find("the same command then writes the picture"), std::string::npos) << line;
+  }
+  std::filesystem::remove(picture);
+  const ProgramResult finished = render(file, "a.exr", {"--json"});
+  ASSERT_EQ(finished.status, 0) << finished.error;
+  EXPECT_EQ(json::parse(finished.out).at("samples"), 0) << "all of them were there";
+  EXPECT_EQ(station::sha256_of_file(picture), station::sha256_of_file(folder_ / "whole.exr"));
+  EXPECT_FALSE(std::filesystem::exists(picture + ".checkpoint"));
+}
+
+// A disk of its own, in memory, that is filled as soon as a rendering to $disk/a.exr has begun. The words of its script
+// are $disk, $program, which renders, and `render`, which does the same once more.
+class FullDisk : public Render {
+ protected:
+  void SetUp() override {
+    if (run_shell("unshare -rm true").status != 0)
+      GTEST_SKIP() << "this system lets its users have no disks of their own (unshare --map-root-user --mount)";
+    json scene = small_scene("plain_swatch");
+    scene["samples_per_pixel"] = 400;
+    scene_ = written("scene.json", scene);
+    ASSERT_EQ(render(scene_, "whole.exr").status, 0);
+  }
+  // `begun`: what happens once the disk is full and the rendering is not over yet.
+  ProgramResult on_disk(const std::string& kilobytes, const std::string& begun, const std::string& then) {
+    const std::string disk = folder_ / "disk";
+    std::filesystem::create_directory(disk);
+    std::ofstream script(folder_ / "script");
+    script << "disk=" << disk << " pipe=" << folder_ / "pipe"
+           << "\nrender() { " << THREADSTATION_PROGRAM << " render " << scene_ << " --out $disk/a.exr $*; }\n"
+           << "mount -t tmpfs -o size=" << kilobytes << "k tmpfs $disk && mkfifo $pipe\n"
+           << THREADSTATION_PROGRAM << " render " << scene_ << " --out $disk/a.exr 2> $pipe & program=$!\n"
+           << "{ read first; kill -STOP $program; cat /dev/zero > $disk/fill 2> /dev/null\n"
+           << begun << "\nkill -CONT $program; echo \"$first\"; cat; } < $pipe\n"
+           << "wait $program; status=$?\n"
+           << then << "\nexit $status\n";
+    script.close();
+    return run_shell("unshare -rm sh " + (folder_ / "script").string());
+  }
+  void expect_the_whole_picture() {
+    EXPECT_EQ(station::sha256_of_file(folder_ / "a.exr"), station::sha256_of_file(folder_ / "whole.exr"));
+  }
+  std::string scene_;
+};
+
+TEST_F(FullDisk, AtTheEndOfARenderingThePictureFindsTheRoomThatWasHeldForIt) {
+  const ProgramResult said = on_disk("400", "", "cp $disk/a.exr " + (folder_ / "a.exr").string());
+  ASSERT_EQ(said.status, 0) << said.out << said.error;
+  expect_the_whole_picture();
+}
+
+TEST_F(FullDisk, AnInterruptedRenderingLeavesItsCheckpointWithWhichTheSameCommandGoesOn) {
+  const ProgramResult said = on_disk(
+      "400", "kill -INT $program",
+      "ls $disk/a.exr.checkpoint && rm $disk/fill && render --json && cp $disk/a.exr " + (folder_ / "a.exr").string());
+  ASSERT_EQ(said.status, 1) << said.out << said.error;
+  EXPECT_NE(said.out.find("the same command goes on with it"), std::string::npos) << said.out;
+  expect_the_whole_picture();
+}
+
+TEST_F(FullDisk, WithoutRoomARenderingDoesNotEvenBegin) {
+  const ProgramResult said = on_disk("64", "", "");
+  EXPECT_EQ(said.status, 1) << said.out << said.error;
+  EXPECT_NE(said.out.find("there is no room for 0.2 MB in"), std::string::npos) << said.out;
+}
+
 TEST_F(Render, CheckpointsNowAndThenDoNotChangeThePicture) {
   json scene = small_scene("plain_swatch");
   scene["samples_per_pixel"] = 32;
@@ -258,9 +335,9 @@ TEST_F(Render, ADraftThatCannotBeWovenIsRefusedBeforeTheFirstSceneIsRendered) {
 TEST_F(Render, ASquareMetreOfSilkTakesLittleMemory) {
   json scene = small_scene("square_metre/scene");
   for (json& thread : scene["threads"])
-    thread = std::string(FIXTURES_DIR) + "/scenes/square_metre/../../threads/" +
+    thread = std::string(DATA_DIR) + "/scenes/square_metre/../../threads/" +
              std::filesystem::path(thread.get<std::string>()).filename().string();
-  scene["cloths"][0]["draft"] = std::string(FIXTURES_DIR) + "/scenes/square_metre/draft.json";
+  scene["cloths"][0]["draft"] = std::string(DATA_DIR) + "/scenes/square_metre/draft.json";
   const ProgramResult result = render(written("scene.json", scene), "a.exr", {"--json"});
   ASSERT_EQ(result.status, 0) << result.error;
   const json memory = json::parse(result.out).at("memory");

@@ -1,4 +1,4 @@
-// node guided_job.mjs PROGRAM FIXTURES FOLDER
+// node guided_job.mjs PROGRAM DATA FOLDER
 // The whole guided job through the technician's page, clicked as a person clicks it, with the real drivers on the simulated
 // wires: check, live view, calibration, spool form, 17 views, development, fit, cloth, library, export. FOLDER is made anew;
 // its screenshots are for looking at.
@@ -10,7 +10,7 @@ import {disturb} from "./disturb.mjs";
 import {startServer} from "./station_server.mjs";
 import {WatchedPage} from "./watched_page.mjs";
 
-const [program, fixtures, folder] = process.argv.slice(2);
+const [program, data, folder] = process.argv.slice(2);
 const workspace = path.join(folder, "bench");
 const session = "4006381333948-B-3";
 const inWorkspace = (...parts) => path.join(workspace, ...parts);
@@ -20,7 +20,7 @@ const note = text => console.log(`${((Date.now() - began) / 1000).toFixed(1).pad
 
 // The documented rig with a person at it, drawn with few samples a pixel.
 function writeRig() {
-  const rig = JSON.parse(readFileSync(path.join(fixtures, "rigs/simulated_wire_grbl.json"), "utf8"));
+  const rig = JSON.parse(readFileSync(path.join(data, "rigs/simulated_wire_grbl.json"), "utf8"));
   rig.operator = "console";
   rig.simulation.samples_per_pixel = 2;
   rig.simulation.target_samples_per_pixel = 6;
@@ -229,9 +229,9 @@ async function library(station) {
 mkdirSync(folder, {recursive: true});
 rmSync(folder, {recursive: true});
 mkdirSync(inWorkspace("queues"), {recursive: true});
-execFileSync(program, ["library", "add", path.join(fixtures, "threads/silk_red.json"), "--library", inWorkspace("library")]);
+execFileSync(program, ["library", "add", path.join(data, "threads/silk_red.json"), "--library", inWorkspace("library")]);
 writeFileSync(inWorkspace("queues/week.csv"), "barcode,name,lot,material,colour,note,spool\n" +
-  `4006381333931,"silk, red",A 12,silk,red,,${path.join(fixtures, "spools/silk_red.json")}\n`);
+  `4006381333931,"silk, red",A 12,silk,red,,${path.join(data, "spools/silk_red.json")}\n`);
 const server = await startServer(program, writeRig(), workspace);
 let station = await WatchedPage.open(server.address, path.join(folder, "browser"));
 try {

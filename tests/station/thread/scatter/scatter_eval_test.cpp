@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using station::NumberTable;
 
-const fs::path kFixtures = FIXTURES_DIR;
+const fs::path kFixtures = FIXTURES_DIR, kData = DATA_DIR;
 constexpr station::Range kAny{-1e300, 1e300};
 const std::vector<std::string> kValueColumns{"f_cos_r", "f_cos_g", "f_cos_b", "pdf"};
 constexpr const char* kPlaceColumns = "h,theta_i_rad,phi_i_rad,theta_o_rad,phi_o_rad";
@@ -135,7 +135,7 @@ TEST_F(ScatterEval, FibersAgreeWithAllRowsOfTheReferenceTable) {
 }
 
 TEST_F(ScatterEval, ColumnsOverrideTheFiberRowByRow) {
-  const fs::path file = kFixtures / "fibers" / "dyed_red.json";
+  const fs::path file = kData / "fibers" / "dyed_red.json";
   const std::vector<Row> rows = unit_rows();
   std::string queries = "beta_n," + std::string(kPlaceColumns) + ",sigma_a_g\n";
   std::vector<renderer::FiberParameters> fibers(rows.size(), station::read_fiber(file));
@@ -158,8 +158,8 @@ TEST_F(ScatterEval, ColumnsOverrideTheFiberRowByRow) {
 
 TEST_F(ScatterEval, EveryModelIsThatOfItsFile) {
   const std::vector<Row> rows = unit_rows();
-  const fs::path fiber = kFixtures / "fibers" / "clear.json", thread = kFixtures / "threads" / "metal_gold.json",
-                 yarn = kFixtures / "yarns" / "twenty_fibers.json";
+  const fs::path fiber = kData / "fibers" / "clear.json", thread = kData / "threads" / "metal_gold.json",
+                 yarn = kData / "yarns" / "twenty_fibers.json";
   ASSERT_EQ(evaluate("fiber", queries_of(rows), fiber).status, 0);
   expect_values_of(renderer::FiberModel<double>(station::read_fiber(fiber)), rows);
   ASSERT_EQ(evaluate("thread", queries_of(rows), thread).status, 0);
@@ -175,13 +175,13 @@ TEST_F(ScatterEval, RightAnglesGrazingOffsetsCommentsAndSpreadsheetHabitsAreAcce
       evaluate("fiber",
                "\xEF\xBB\xBFh, theta_i_rad, phi_i_rad, theta_o_rad, phi_o_rad\r\n# right angles\r\n"
                "1, 1.5708, 0, -1.5708, 3\r\n-1, 0, 0, 0.3, 100\r\n\r\n",
-               kFixtures / "fibers" / "clear.json");
+               kData / "fibers" / "clear.json");
   ASSERT_EQ(result.status, 0) << result.error;
   EXPECT_EQ(values().rows(), 2u);  // which are finite, as the table's reader demands
 }
 
 TEST_F(ScatterEval, WrongTablesAreRefusedInOneLineThatNamesThePlace) {
-  const fs::path fiber = kFixtures / "fibers" / "clear.json";
+  const fs::path fiber = kData / "fibers" / "clear.json";
   const std::string names = std::string(kPlaceColumns) + "\n", good = "0.1,0,1,0,2\n";
   const auto refused = [&](const std::string& queries, const std::vector<std::string>& words) {
     expect_refused(evaluate("fiber", queries, fiber), words);
@@ -205,9 +205,9 @@ TEST_F(ScatterEval, WhatIsMissingIsSaidWithWhatToDo) {
   const std::string queries = queries_of(unit_rows());
   expect_refused(evaluate("fiber", queries), {"--parameters", "\"eta\"", "fiber file"});
   expect_refused(evaluate("thread", queries), {"--parameters", "thread file"});
-  expect_refused(evaluate("thread", queries, kFixtures / "fibers" / "clear.json"), {"threadstation/thread"});
+  expect_refused(evaluate("thread", queries, kData / "fibers" / "clear.json"), {"threadstation/thread"});
   expect_refused(evaluate("thread", "eta," + std::string(kPlaceColumns) + "\n1.5,0,0,0,0,0\n",
-                          kFixtures / "threads" / "silk_red.json"),
+                          kData / "threads" / "silk_red.json"),
                  {"column \"eta\" is not known"});
   expect_refused(evaluate("yarn", queries, folder_ / "none.json"), {"none.json", "no such file"});
   EXPECT_EQ(evaluate("cloth", queries).status, 2);
@@ -218,7 +218,7 @@ TEST_F(ScatterEval, WhatIsMissingIsSaidWithWhatToDo) {
 TEST(ScatteringDocuments, ExamplesAreReadAndMistakesNamed) {
   for (const auto& [folder, kind] : {std::pair{"fibers", "fiber"}, std::pair{"yarns", "yarn"}}) {
     int read = 0;
-    for (const auto& entry : fs::directory_iterator(kFixtures / folder)) {
+    for (const auto& entry : fs::directory_iterator(kData / folder)) {
       if (entry.path().extension() != ".json") continue;
       if (kind == std::string("fiber"))
         EXPECT_NO_THROW(station::read_fiber(entry.path())) << entry.path();

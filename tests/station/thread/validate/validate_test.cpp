@@ -21,8 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const std::string kFixtures = FIXTURES_DIR;
-const std::string kRig = kFixtures + "/rigs/simulated.json", kThread = kFixtures + "/threads/silk_blue.json";
+const std::string kData = DATA_DIR;
+const std::string kRig = kData + "/rigs/simulated.json", kThread = kData + "/threads/silk_blue.json";
 
 void expect_one_line(const ProgramResult& result, const std::string& must_name) {
   EXPECT_EQ(result.status, 1) << result.error;
@@ -31,8 +31,8 @@ void expect_one_line(const ProgramResult& result, const std::string& must_name) 
 }
 
 ProgramResult recover(const std::string& rig, const std::string& thread) {
-  return run_threadstation({"recover", "--rig", rig, "--spool", kFixtures + "/spools/silk_blue.json", "--thread",
-                            thread, "--draws", "2", "--paths", "32", "64", "--spp", "64", "--json"});
+  return run_threadstation({"recover", "--rig", rig, "--spool", kData + "/spools/silk_blue.json", "--thread", thread,
+                            "--draws", "2", "--paths", "32", "64", "--spp", "64", "--json"});
 }
 
 TEST(Recover, TheTruthIsTheThreadsAndExplainsItsOwnPictures) {
@@ -64,8 +64,8 @@ TEST(Recover, TheTruthIsTheThreadsAndExplainsItsOwnPictures) {
 }
 
 TEST(Recover, BadInputGetsOneLine) {
-  expect_one_line(recover(kFixtures + "/rigs/grbl_sony_usb.json", kThread), "simulation");
-  expect_one_line(recover(kRig, kFixtures + "/threads/none.json"), "no such file");
+  expect_one_line(recover(kData + "/rigs/grbl_sony_usb.json", kThread), "simulation");
+  expect_one_line(recover(kRig, kData + "/threads/none.json"), "no such file");
 }
 
 class Validate : public ::testing::Test {
@@ -78,7 +78,7 @@ class Validate : public ::testing::Test {
 };
 
 TEST_F(Validate, PhotographsAreTakenOnceAndTwoDrawsOfTheFibersDiffer) {
-  const std::string spool = kFixtures + "/spools/packed_silk_red_20.json";
+  const std::string spool = kData + "/spools/packed_silk_red_20.json";
   const ProgramResult first = validate(spool);
   ASSERT_EQ(first.status, 0) << first.error;
   const json found = json::parse(first.out);
@@ -98,7 +98,7 @@ TEST_F(Validate, PhotographsAreTakenOnceAndTwoDrawsOfTheFibersDiffer) {
 }
 
 TEST_F(Validate, ASpoolWithoutFibersIsRefusedInOneLine) {
-  json spool = station::read_json_file(kFixtures + "/spools/packed_silk_red_20.json");
+  json spool = station::read_json_file(kData + "/spools/packed_silk_red_20.json");
   spool.erase("simulation");
   station::write_json_file(folder_ / "real.json", spool);
   expect_one_line(validate(folder_ / "real.json"), "simulat");
@@ -114,7 +114,7 @@ class ValidateCloth : public ::testing::Test {
                               "--warp",
                               warp,
                               "--weft",
-                              kFixtures + "/spools/packed_silk_gold_40.json",
+                              kData + "/spools/packed_silk_gold_40.json",
                               "--draft",
                               draft,
                               "--out",
@@ -133,7 +133,7 @@ class ValidateCloth : public ::testing::Test {
 };
 
 TEST_F(ValidateCloth, SamplesAreLitFromBothSidesAndFromBehindAndPicturesAreMadeOnce) {
-  const std::string warp = kFixtures + "/spools/packed_silk_red_20.json", draft = kFixtures + "/drafts/plain.json";
+  const std::string warp = kData + "/spools/packed_silk_red_20.json", draft = kData + "/drafts/plain.json";
   const ProgramResult first = validate_cloth(warp, draft);
   ASSERT_EQ(first.status, 0) << first.error;
   const json found = json::parse(first.out);
@@ -173,7 +173,7 @@ TEST_F(ValidateCloth, SamplesAreLitFromBothSidesAndFromBehindAndPicturesAreMadeO
 }
 
 TEST(WithFibersOf, FlatYarnsHaveRoundFibersAndPliesThinnerOnes) {
-  const station::Spool spool = station::read_spool(kFixtures + "/spools/packed_silk_red_20.json");
+  const station::Spool spool = station::read_spool(kData + "/spools/packed_silk_red_20.json");
   renderer::YarnPatch patch = renderer::initial_patch(renderer::plain_draft());  // 0.5 mm, as the spool's thread
   patch.yarns[0].flatness = 2.5;
   const renderer::YarnPatch fibers = station::with_fibers_of(patch, {spool});
@@ -198,8 +198,8 @@ TEST(WithFibersOf, FlatYarnsHaveRoundFibersAndPliesThinnerOnes) {
 }
 
 TEST_F(ValidateCloth, AThreadThatIsNotTheDraftsIsRefusedInOneLine) {
-  const std::string draft = kFixtures + "/drafts/plain.json";
-  json spool = station::read_json_file(kFixtures + "/spools/packed_silk_red_20.json");
+  const std::string draft = kData + "/drafts/plain.json";
+  json spool = station::read_json_file(kData + "/spools/packed_silk_red_20.json");
   spool["thread_diameter_mm"] = 0.6;
   station::write_json_file(folder_ / "thick.json", spool);
   expect_one_line(validate_cloth(folder_ / "thick.json", draft), "0.6");
