@@ -54,6 +54,7 @@ ViewFit fit_views(const WrappedSpool& spool, const std::vector<View>& views, con
   std::vector<VectorXd> starts{start_at(options.start)};
   if (options.held.empty())
     for (const renderer::ThreadParameters& start : options.other_starts) starts.push_back(start_at(start));
+  if (options.tinted && starts.size() > 1) starts.push_back(start_at(metallic_starting_thread()));
   const ThreadFamily family{options.start.exit, options.start.transmittance_powers, options.tinted};
   return fit_family(spool, views, options, family, starts);
 }

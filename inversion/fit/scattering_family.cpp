@@ -302,4 +302,14 @@ std::vector<renderer::ThreadParameters> other_starting_threads() {
   return {clear, dark};
 }
 
+renderer::ThreadParameters metallic_starting_thread() {
+  renderer::ThreadParameters metal = starting_thread();
+  metal.sigma_a.setConstant(0.6);
+  metal.alpha = {0.15, 0.3, 0.3};
+  metal.beta = {0.5, 0.6, 0.3};
+  ThreadUnknowns unknowns = unknowns_of(metal);
+  unknowns[kL0] = unknowns[kL1] = 0.6, unknowns[kConcavity] = 0, unknowns[kR1a] = 0.2, unknowns[kN2] = 0.1;
+  return parameters_of(unknowns);
+}
+
 }  // namespace inversion

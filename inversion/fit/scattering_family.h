@@ -79,6 +79,9 @@ renderer::ThreadParameters starting_thread();
 // Further starts, as the loss has local minima where the lobes have changed roles: a clearer thread with lobes of like
 // width, a darker one with a narrow reflection.
 std::vector<renderer::ThreadParameters> other_starting_threads();
+// The start of a metallic thread, whose light comes back from its surface: one beside the others where the highlight
+// may be tinted.
+renderer::ThreadParameters metallic_starting_thread();
 
 // The numbers of fibers that a yarn is fitted with; the best fit is kept [Xia 2025, section 6: the model needs one
 // given].

@@ -29,7 +29,8 @@ struct FitOptions {
   // adam_paths.
   int paths_per_pixel = 8;
   // Paths per block in each round, of which there is at least one. Every start goes through all rounds but the last,
-  // which is for the one that has got farthest. Adam goes from `start` alone, with adam_paths paths a step.
+  // which is for the one that gets nearest (start_choice.h). Adam goes from `start` alone, with adam_paths paths a
+  // step.
   std::vector<int> paths_per_block{256, 256, 2048};
   int adam_steps = 100, adam_paths = 1024;
   // How strongly the thread model leans on simulated threads (renderer/scattering/thread_prior.h). At 1 their chi

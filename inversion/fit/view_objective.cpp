@@ -87,24 +87,27 @@ void ViewObjective::residuals(const Eigen::VectorXd& unknowns, double* residuals
     });
 }
 
-ViewObjective::Halves ViewObjective::halves(const Eigen::VectorXd& unknowns) const {
+ViewObjective::Halves ViewObjective::halves(const Eigen::VectorXd& unknowns, bool with_jacobians) const {
   const BlockShader shader = shader_at(family_, unknowns);
   Halves both;
   for (std::size_t h = 0; h < 2; ++h) {
     both.residuals[h].resize(residual_count());
-    both.jacobians[h].resize(residual_count(), unknowns.size());
+    if (with_jacobians) both.jacobians[h].resize(residual_count(), unknowns.size());
   }
+  both.variances.resize(residual_count());
   for (const ViewBlocks& v : views_)
     tbb::parallel_for(std::size_t{0}, v.blocks.size(), [&](std::size_t b) {
-      const BlockEstimate estimate = shade(shader, v.paths, b, true);
+      const BlockEstimate estimate = shade(shader, v.paths, b, with_jacobians);
       const double weight = residual_weight(v, b);
       const auto first = static_cast<Eigen::Index>(3 * (v.first_block + b));
       for (std::size_t h = 0; h < 2; ++h) {
         const HalfEstimate& half = estimate.halves[h];
         both.residuals[h].segment<3>(first) = (weight * (v.scale * half.value - v.references[b])).matrix();
-        both.jacobians[h].middleRows<3>(first) =
-            (weight * v.scale).matrix().asDiagonal() * by_unknowns(shader, half.slopes);
+        if (with_jacobians)
+          both.jacobians[h].middleRows<3>(first) =
+              (weight * v.scale).matrix().asDiagonal() * by_unknowns(shader, half.slopes);
       }
+      both.variances.segment<3>(first) = variance(v, b, estimate.variance);
     });
   return both;
 }
@@ -114,9 +117,8 @@ Eigen::VectorXd ViewObjective::residual_variances(const Eigen::VectorXd& unknown
   Eigen::VectorXd variances(residual_count());
   for (const ViewBlocks& v : views_)
     tbb::parallel_for(std::size_t{0}, v.blocks.size(), [&](std::size_t b) {
-      const double weight = residual_weight(v, b);
       variances.segment<3>(static_cast<Eigen::Index>(3 * (v.first_block + b))) =
-          (weight * weight) * (v.scale.square() * shade(shader, v.paths, b, false).variance + v.variances[b]).matrix();
+          variance(v, b, shade(shader, v.paths, b, false).variance);
     });
   return variances;
 }
@@ -172,6 +174,11 @@ std::vector<int> ViewObjective::residual_views() const {
   for (std::size_t v = 0; v < views_.size(); ++v)
     views.insert(views.end(), 3 * views_[v].blocks.size(), static_cast<int>(v));
   return views;
+}
+
+Eigen::Vector3d ViewObjective::variance(const ViewBlocks& view, std::size_t block, const Eigen::Array3d& of_paths) {
+  const double weight = residual_weight(view, block);
+  return (weight * weight) * (view.scale.square() * of_paths + view.variances[block]).matrix();
 }
 
 double ViewObjective::residual_weight(const ViewBlocks& view, std::size_t block) {

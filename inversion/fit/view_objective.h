@@ -36,8 +36,10 @@ class ViewObjective {
   struct Halves {
     std::array<Eigen::VectorXd, 2> residuals;
     std::array<Eigen::MatrixXd, 2> jacobians;
+    Eigen::VectorXd variances;  // residual_variances() of the whole
   };
-  Halves halves(const Eigen::VectorXd& unknowns) const;
+  // Without Jacobians it takes half the time.
+  Halves halves(const Eigen::VectorXd& unknowns, bool with_jacobians = true) const;
 
   // The variance of each residual: the photographs' noise (View::noise) and that of the light paths.
   Eigen::VectorXd residual_variances(const Eigen::VectorXd& unknowns) const;
@@ -67,6 +69,8 @@ class ViewObjective {
   };
 
   static double residual_weight(const ViewBlocks& view, std::size_t block);
+  // Of the block's residual, where its estimate has the variance `of_paths`.
+  static Eigen::Vector3d variance(const ViewBlocks& view, std::size_t block, const Eigen::Array3d& of_paths);
 
   ScatteringFamily family_;
   renderer::RayScene rays_;

@@ -3,10 +3,8 @@
 #include <fcntl.h>
 
 #include <cerrno>
-#include <cmath>
 #include <stdexcept>
-
-#include "station/documents/number_text.h"
+#include <string>
 
 namespace station {
 
@@ -16,7 +14,8 @@ OpenFile reserve_space(const std::filesystem::path& folder, std::uintmax_t bytes
   if (room.descriptor() < 0) return room;
   if (::fallocate(room.descriptor(), 0, 0, static_cast<off_t>(bytes)) == 0) return room;
   if (errno != ENOSPC && errno != EDQUOT) return OpenFile();
-  throw std::runtime_error("there is no room for " + number_text(std::ceil(static_cast<double>(bytes) / 1e5) / 10, 1) +
+  const std::uintmax_t tenths = (bytes + 99'999) / 100'000;  // of a megabyte, rounded up
+  throw std::runtime_error("there is no room for " + std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) +
                            " MB in '" + there.string() + "'; free space on that disk, then begin again");
 }
 

@@ -6,18 +6,18 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <random>
 
 #include "inversion/fit/fit_views.h"
 #include "inversion/view/agreement.h"
 #include "tests/inversion/fit/synthetic_spool.h"
+#include "tests/support/asked.h"
 
 namespace inversion {
 namespace {
 
 constexpr int kWidth_px = 96, kSamples = 192;
-constexpr int kSeed = 20261125, kBundles = 2;
+constexpr int kSeed = 20261125, kBundles = 1;
 
 renderer::BundleParameters random_bundle(std::mt19937& random) {
   const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
@@ -43,10 +43,6 @@ Eigen::VectorXd unknowns_of(const renderer::FiberParameters& fiber) {
 }
 
 TEST(BundleFitTest, BundlesDrawnAtRandomAreFoundAndPredictAViewThatWasLeftOut) {
-  const auto asked = [](const char* name, int otherwise) {
-    const char* value = std::getenv(name);
-    return value ? std::atoi(value) : otherwise;
-  };
   const int bundles = asked("THREADSTATION_BUNDLES", kBundles), seed = asked("THREADSTATION_SEED", kSeed);
   ASSERT_GT(bundles, 0);
   const WrappedSpool spool;

@@ -6,6 +6,7 @@
 
 #include <stdexcept>
 
+#include "inversion/fit/effort.h"
 #include "tests/inversion/fit/synthetic_spool.h"
 
 namespace inversion {
@@ -105,6 +106,11 @@ TEST_F(FitViewsTest, ProgressNeverGoesBackAndNamesTheRound) {
   };
   quick_fit(*views_, options);
   EXPECT_THAT(words, AllOf(HasSubstr("start 1, round 1 of 2, tracing"), HasSubstr("round 2 of 2, step 1")));
+  last = 0;
+  options.paths_per_block = {32, kFewestPathsWithoutBias};
+  fit_views(kSpool, *views_, options);
+  EXPECT_THAT(words, AllOf(HasSubstr("comparing starts"), HasSubstr("without bias, step 2")));
+  EXPECT_GT(last, 0.9);
 }
 
 TEST_F(FitViewsTest, AFitIsStoppedOnRequestWhileTracingAndBetweenSteps) {

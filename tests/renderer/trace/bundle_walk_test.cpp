@@ -30,6 +30,9 @@ struct Case {
   Vector3d to_light;
   double crimp_mm = 0;  // height of the waves in which threads run, kWave_mm long, up at x = 0
 };
+void PrintTo(const Case& one, std::ostream* out) {
+  *out << one.name;
+}
 
 // From threads as round curves along x.
 Eigen::Affine3f flattened(double flatness) {

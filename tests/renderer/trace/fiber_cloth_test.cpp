@@ -103,6 +103,9 @@ struct ClothCase {
   const char* name;
   Draft draft;
 };
+void PrintTo(const ClothCase& cloth, std::ostream* out) {
+  *out << cloth.name;
+}
 
 Draft with(Draft draft, const std::function<void(Draft&)>& change) {
   change(draft);

@@ -1,0 +1,139 @@
+#include "inversion/fit/unbiased_steps.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "inversion/fit/loss_terms.h"
+#include "inversion/fit/noise_weights.h"
+#include "inversion/fit/step_coordinates.h"
+#include "inversion/solve/bias_free.h"
+
+namespace inversion {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// What a set of paths counts of the next one in `UnbiasedEnd::mean`, on the approach: the Hessian changes less there
+// than by its noise.
+constexpr double kOldInMean = 0.8;
+
+// LinearisedFit::bounds.
+std::vector<int> touched_bounds(const Search& search, const VectorXd& unknowns) {
+  constexpr double kTouching = 1e-9;
+  const VectorXd &low = search.unknowns.lower, &high = search.unknowns.upper;
+  std::vector<int> bounds;
+  for (Eigen::Index k = 0; k < unknowns.size(); ++k)
+    bounds.push_back(unknowns[k] <= low[k] + kTouching ? -1 : unknowns[k] >= high[k] - kTouching ? 1 : 0);
+  return bounds;
+}
+
+// The fit by the paths that were recorded last, without the gradient and what several sets of paths say.
+LinearisedFit linearised(const ViewObjective& objective, const Search& search, double prior_scale,
+                         const VectorXd& unknowns) {
+  LinearisedFit fit;
+  RowMajor jacobian(objective.residual_count(), unknowns.size());
+  fit.residuals.resize(objective.residual_count());
+  objective.residuals(unknowns, fit.residuals.data(), jacobian.data());
+  fit.jacobian = jacobian;
+  fit.variances = objective.residual_variances(unknowns);
+  fit.views = objective.residual_views();
+  fit.held.assign(static_cast<std::size_t>(unknowns.size()), false);
+  for (int k : search.held) fit.held[static_cast<std::size_t>(k)] = true;
+  fit.bounds = touched_bounds(search, unknowns);
+  fit.scales = VectorXd::Ones(unknowns.size());
+  fit.penalty_jacobian = OtherTerms(*search.family, 0).jacobian(unknowns);
+  if (prior_scale > 0) fit.prior_jacobian = PriorTerm(prior_scale).jacobian();
+  return fit;
+}
+
+}  // namespace
+
+UnbiasedEnd remove_bias(ViewObjective& objective, const Search& search, int first_trace,
+                        const std::function<void(int)>& show, Attempt& attempt) {
+  const FitOptions& options = *search.options;
+  const int paths = options.paths_per_block.back();
+  const bool with_prior = search.has_prior() && !attempt.rounds.empty();
+  const VectorXd photographs = objective.photograph_variances();
+  const StepCoordinates coordinates(search.unknowns);
+  NoiseWeights weights(views_and_colours(objective));
+  const auto learn_noise = [&](const ViewObjective::Halves& both) {
+    weights.add(both.variances, both.residuals[0].cwiseProduct(both.residuals[1]) - photographs);
+  };
+  const auto count = attempt.unknowns.size();
+  UnbiasedEnd end{.start_covariance =
+                      attempt.covariance.size() > 0 ? attempt.covariance : MatrixXd::Zero(count, count)};
+  double sets = 0, squared_sets = 0;
+  const BiasFreeOptions steps{.lower = coordinates.of(search.unknowns.lower),
+                              .upper = coordinates.of(search.unknowns.upper),
+                              .held = search.held,
+                              .exact =
+                                  [&](const VectorXd& at) {
+                                    const VectorXd unknowns = coordinates.unknowns(at);
+                                    OtherTerms others(*search.family, end.prior_scale);
+                                    return coordinates.of(others.at(unknowns), unknowns);
+                                  },
+                              .approach_steps = search.effort.approach_steps,
+                              .joint_steps = search.effort.joint_steps};
+  const auto loss = [&](int step, const VectorXd& at) {
+    const VectorXd unknowns = coordinates.unknowns(at);
+    objective.trace(unknowns, paths, seed_of_trace(options, first_trace + step), [&](int, int) { show(step); });
+    ViewObjective::Halves both = objective.halves(unknowns);
+    end.factors = weights.factors();
+    const double variance = weights.weighted_variance(), alike = weights.variance_alike(photographs);
+    learn_noise(both);
+    scale_rows(both, end.factors);
+    const double old = step < steps.approach_steps ? steps.old : 1.0;
+    end.mean.add(both, unknowns, std::max(old, kOldInMean));
+    sets = old * sets + 1, squared_sets = old * old * squared_sets + 1;
+    end.variance = alike + (variance - alike) * squared_sets / (sets * sets);
+    if (with_prior) end.prior_scale = options.prior_weight * end.variance;
+    BiasFreeTerms terms = data_terms(both);
+    if (search.effort.by_whole_hessian) terms.hessian = whole_hessian(both);
+    terms.variance = variance;
+    return coordinates.of(std::move(terms), unknowns);
+  };
+  if (options.robust && search.effort.robust && attempt.view_weights.empty())
+    attempt.view_weights = objective.weigh_robustly(attempt.unknowns);
+  learn_noise(objective.halves(attempt.unknowns));
+  FitRound round{.paths_per_block = paths, .bias_free = true, .converged = true};
+  VectorXd at = coordinates.of(attempt.unknowns);
+  const VectorXd slopes = coordinates.slopes(attempt.unknowns);
+  BiasFreeEnd reached = minimise_bias_free(loss, steps, at);
+  attempt.unknowns = coordinates.unknowns(at);
+  end.left = coordinates.slopes(attempt.unknowns).asDiagonal() * reached.left * slopes.cwiseInverse().asDiagonal();
+  round.losses = std::move(reached.losses);
+  round.steps = static_cast<int>(round.losses.size());
+  round.loss_before = round.losses.front(), round.loss_after = round.losses.back();
+  attempt.rounds.push_back(std::move(round));
+  attempt.prior_scale = end.prior_scale;
+  return end;
+}
+
+Certainty certainty_at(const ViewObjective& objective, const Search& search, double prior_scale,
+                       const VectorXd& unknowns, UnbiasedEnd end) {
+  LinearisedFit fit = linearised(objective, search, prior_scale, unknowns);
+  if (end.factors.size() > 0) {
+    fit.residuals.array() *= end.factors.array();
+    fit.jacobian = end.factors.asDiagonal() * fit.jacobian;
+    fit.variances.array() *= end.factors.array().square();
+  }
+  if (end.mean.empty()) end.mean.add(objective.halves(unknowns), unknowns);
+  fit.hessian = end.mean.hessian();
+  fit.gradient_covariance = end.mean.gradient_covariance(unknowns);
+  fit.gradient = end.mean.gradient(unknowns) + OtherTerms(*search.family, prior_scale).at(unknowns).gradient;
+  fit.mean_variance = end.variance;
+  fit.left = std::move(end.left);
+  fit.start_covariance = std::move(end.start_covariance);
+  return certainty_of(fit);
+}
+
+MatrixXd covariance_of_round(const ViewObjective& objective, const Search& search, const Attempt& attempt) {
+  LinearisedFit fit = linearised(objective, search, attempt.prior_scale, attempt.unknowns);
+  fit.gradient_covariance = gradient_covariance(fit.jacobian, fit.residuals);
+  return certainty_of(fit).noise_covariance;
+}
+
+}  // namespace inversion

@@ -1,0 +1,92 @@
+#include "inversion/fit/start_choice.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "inversion/fit/view_objective.h"
+#include "tests/inversion/fit/synthetic_spool.h"
+
+namespace inversion {
+namespace {
+
+using Eigen::VectorXd;
+
+class StartChoiceTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { views_ = new std::vector<View>(photographs(kSpool, known_thread(), 48, 64)); }
+  static void TearDownTestSuite() { delete views_; }
+
+  StartChoiceTest() {
+    options_.paths_per_block = {512};
+    options_.robust = false;
+  }
+
+  Attempt nearest(const std::vector<VectorXd>& starts) {
+    std::vector<Attempt> attempts;
+    for (const VectorXd& start : starts)
+      attempts.push_back({.start = static_cast<int>(attempts.size()), .unknowns = start});
+    const Search search{.family = &family_, .options = &options_, .effort = {}, .unknowns = unknowns_of(family_)};
+    const ViewObjective objective(kSpool, *views_, family_);
+    Work work(options_, work_of_choice(search, objective.block_count(), starts.size()));
+    return nearest_search(kSpool, *views_, objective.block_count(), search, std::move(attempts), work);
+  }
+
+  inline static const WrappedSpool kSpool{};
+  inline static std::vector<View>* views_ = nullptr;
+  const ScatteringFamily family_ = ThreadFamily{};
+  FitOptions options_;
+};
+
+TEST_F(StartChoiceTest, TheSearchThatIsNearestIsTakenWithHowUncertainItIs) {
+  VectorXd far = unknowns_of(known_thread());
+  far.segment<3>(kBeta).setConstant(0.1);
+  const Attempt found = nearest({far, unknowns_of(known_thread())});
+  EXPECT_EQ(found.start, 1);
+  ASSERT_EQ(found.covariance.rows(), far.size());
+  EXPECT_GT(found.covariance.diagonal().minCoeff(), 0);
+}
+
+TEST_F(StartChoiceTest, ItTriesTheNearestOnceMoreWithRAndTRTExchangedAndItsProgressNeverGoesBack) {
+  double last = 0;
+  std::set<std::string> searches;
+  options_.progress = [&](const std::string& what, double share) {
+    EXPECT_GE(share, last);
+    last = share;
+    searches.insert(what.substr(0, what.find(',')));
+    return true;
+  };
+  nearest({unknowns_of(known_thread())});
+  EXPECT_THAT(searches, testing::ElementsAre("R and TRT exchanged", "comparing starts", "start 1"));
+  EXPECT_GT(last, 0.9);
+  EXPECT_LE(last, 1);
+}
+
+TEST_F(StartChoiceTest, ItIsStoppedOnRequest) {
+  options_.progress = [&](const std::string& what, double) { return what != "comparing starts"; };
+  EXPECT_THROW(nearest({unknowns_of(known_thread())}), std::runtime_error);
+}
+
+TEST(LightenBlackestTest, AColourThatHasBecomeBlackIsSeenAgainUnlessItIsHeld) {
+  const ScatteringFamily family = ThreadFamily{};
+  const FitOptions options;
+  Search search{.family = &family, .options = &options, .effort = {}, .unknowns = unknowns_of(family)};
+  VectorXd unknowns = unknowns_of(known_thread());
+  const double green = unknowns[1];
+  unknowns[2] = 20;
+  VectorXd held = unknowns;
+  lighten_blackest(search, unknowns);
+  EXPECT_EQ(unknowns[1], green);
+  EXPECT_LE(unknowns[2], 3);
+  search.held = {0, 1, 2};
+  lighten_blackest(search, held);
+  EXPECT_EQ(held[2], 20);
+}
+
+}  // namespace
+}  // namespace inversion
