@@ -38,8 +38,7 @@ class ViewObjective {
     std::array<Eigen::MatrixXd, 2> jacobians;
     Eigen::VectorXd variances;  // residual_variances() of the whole
   };
-  // Without Jacobians it takes half the time.
-  Halves halves(const Eigen::VectorXd& unknowns, bool with_jacobians = true) const;
+  Halves halves(const Eigen::VectorXd& unknowns, bool with_jacobians = true) const;  // without them: empty
 
   // The variance of each residual: the photographs' noise (View::noise) and that of the light paths.
   Eigen::VectorXd residual_variances(const Eigen::VectorXd& unknowns) const;

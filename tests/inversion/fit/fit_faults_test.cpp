@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr int kWidth_px = 144, kSamples = 64;
-const FitOptions kQuick{.other_starts = {}, .paths_per_block = {256, 512}};
+const FitOptions kQuick{.paths_per_block = {256, 512}};
 
 struct DoubtedFit {
   ViewFit fit;
@@ -129,8 +129,7 @@ TEST(FitFaultsTest, OneBadViewIsNamedAndHardlyMovesTheThread) {
         Standpoint{"upright-25", 0, 25, -10, 35, true}, Standpoint{"upright--30", 0, -30, 15, 10, true},
         Standpoint{"through--20", -20, 0, 175, 20}})
     views.push_back(photographed(unlit_view({}, at, kWidth_px), {}, known_thread(), kSamples, 41 + views.size()));
-  // A bad view stands out as the others are explained.
-  const FitOptions whole{.other_starts = {}, .paths_per_block = {256, 256, 1024}};
+  const FitOptions whole;  // a bad view stands out as the others are explained
   const ViewFit good = fit_views({}, views, whole);
   views[1].image *= 1.7;  // the lamp was knocked
   const DoubtedFit found = fit_and_doubt(views, whole);

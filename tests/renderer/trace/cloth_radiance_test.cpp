@@ -73,7 +73,8 @@ TEST(ClothRadianceTest, OnAFlatSwatchItIsThatOfTheExplicitYarns) {
 
 TEST(ClothRadianceTest, OnABlackCylinderItIsNearlyThatOfTheBentYarns) {
   for (const auto& [patch, radius_mm] :
-       {std::pair(plain_patch(), 12.0), std::pair(satin_patch(), 41.0), std::pair(irregular_patch(), 12.0)}) {
+       {std::pair(plain_patch(), 12.0), std::pair(plain_patch(), 41.0), std::pair(satin_patch(), 41.0),
+        std::pair(irregular_patch(), 12.0), std::pair(irregular_patch(), 41.0)}) {
     const double height_mm = 5 * radius_mm, middle_mm = height_mm / 2;
     const CylinderShape cylinder{.radius_mm = radius_mm, .height_mm = height_mm};
     const CylinderShape inside{.radius_mm = radius_mm + surface_range(patch).low_mm - 0.05, .height_mm = height_mm};
