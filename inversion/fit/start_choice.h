@@ -2,7 +2,7 @@
 //
 // Their losses of eq. 6 do not tell them apart: those are mostly the noise of their own paths, which is least where
 // lobes are wide. So all are compared on paths that none has seen, weighted by noise alike, without bias. Before that
-// the searches for a thread go on by steps without bias, with up to every third block of the views: where
+// the searches for a thread go on by steps without bias, with every third block where there are many: where
 // Levenberg-Marquardt ends says little of where they lead. And R and TRT both send light back: they may each have taken
 // the other's place, from where no small step leads back. So the nearest search goes on once more with both exchanged.
 #pragma once
