@@ -10,13 +10,10 @@
 
 #include "calibration/develop/demosaic.h"
 #include "calibration/sensor/picture_stack.h"
+#include "calibration/sensor/size_text.h"
 
 namespace calibration {
 namespace {
-
-std::string size_text(const cv::Size& size) {
-  return std::to_string(size.width) + " x " + std::to_string(size.height);
-}
 
 void require_fitting(const SensorPicture& raw, const DevelopOptions& options) {
   const cv::Size size = raw.mosaic.size();

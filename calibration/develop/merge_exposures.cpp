@@ -8,13 +8,10 @@
 
 #include "calibration/sensor/developable.h"
 #include "calibration/sensor/sensor_range.h"
+#include "calibration/sensor/size_text.h"
 
 namespace calibration {
 namespace {
-
-std::string size_text(const cv::Size& size) {
-  return std::to_string(size.width) + " x " + std::to_string(size.height);
-}
 
 struct Exposure {
   const SensorPicture* raw;

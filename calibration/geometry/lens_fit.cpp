@@ -25,7 +25,7 @@ constexpr double kSmallestTilt_deg = 20.0;
 constexpr int kFewestFields = 6;
 constexpr double kFinest_px = 0.01;  // finer than corners can be found; smaller errors mean nothing
 
-[[noreturn]] void refuse(const std::string& found, const std::string& what_to_do) {
+[[noreturn]] void refuse_lens(const std::string& found, const std::string& what_to_do) {
   throw std::runtime_error("lens calibration: " + found + ": " + what_to_do);
 }
 
@@ -48,7 +48,7 @@ Lens seed_lens(const cv::Size& size, double focal_px) {
 UsedPictures gather(const std::vector<BoardPicture>& given, const Lattice& board, const cv::Size& size,
                     double focal_px) {
   if (size.width < 2 || size.height < 2 || !(focal_px > 0.0) || !std::isfinite(focal_px))
-    refuse("needs the size of the pictures and a positive guess of the focal length", "check the rig file");
+    refuse_lens("needs the size of the pictures and a positive guess of the focal length", "check the rig file");
   UsedPictures pictures;
   pictures.bundle.lattice = board;
   const Lens lens = seed_lens(size, focal_px);
@@ -59,8 +59,8 @@ UsedPictures gather(const std::vector<BoardPicture>& given, const Lattice& board
   for (std::size_t i = 0; i < given.size(); ++i) {
     for (const LatticeCorner& corner : given[i])
       if (!corner.pixel.allFinite())
-        refuse("picture " + std::to_string(i + 1) + " has a corner whose position is not a finite number",
-               "detect its corners again");
+        refuse_lens("picture " + std::to_string(i + 1) + " has a corner whose position is not a finite number",
+                    "detect its corners again");
     if (given[i].size() < kFewestCornersPerPicture) continue;
     ++seen;
     const std::optional<BoardCheck> check = check_board(given[i]);
@@ -80,13 +80,13 @@ UsedPictures gather(const std::vector<BoardPicture>& given, const Lattice& board
     pictures.index.push_back(i);
   }
   if (2 * mirrored > seen)
-    refuse("the board is seen mirrored, right and left exchanged, in " + std::to_string(mirrored) + " of " +
-               std::to_string(seen) + " pictures",
-           "print it again without mirroring, or take pictures that were not flipped");
+    refuse_lens("the board is seen mirrored, right and left exchanged, in " + std::to_string(mirrored) + " of " +
+                    std::to_string(seen) + " pictures",
+                "print it again without mirroring, or take pictures that were not flipped");
   if (2 * contradictory > seen)
-    refuse("the corners of " + std::to_string(contradictory) + " of " + std::to_string(seen) +
-               " pictures do not lie as on the board",
-           "check that the board file is the one of this print: rows, columns and first id");
+    refuse_lens("the corners of " + std::to_string(contradictory) + " of " + std::to_string(seen) +
+                    " pictures do not lie as on the board",
+                "check that the board file is the one of this print: rows, columns and first id");
   return pictures;
 }
 
@@ -120,17 +120,18 @@ int covered_fields(const LensBundle& bundle) {
 std::vector<Gate> require_determined(const UsedPictures& pictures) {
   const auto count = static_cast<int>(pictures.bundle.pictures.size());
   if (count < kFewestPictures)
-    refuse("the board is seen in " + std::to_string(count) + " pictures, at least " + std::to_string(kFewestPictures) +
-               " with eight corners (two tags) each are needed",
-           "take more pictures of the board");
+    refuse_lens("the board is seen in " + std::to_string(count) + " pictures, at least " +
+                    std::to_string(kFewestPictures) + " with eight corners (two tags) each are needed",
+                "take more pictures of the board");
   const double tilt_deg = tilt_spread_deg(pictures.bundle);
   if (tilt_deg < kSmallestTilt_deg)
-    refuse("the board's tilts differ by " + std::to_string(std::lround(tilt_deg)) + " degrees at most, 20 are needed",
-           "tilt the board to 30 or 40 degrees in several directions");
+    refuse_lens(
+        "the board's tilts differ by " + std::to_string(std::lround(tilt_deg)) + " degrees at most, 20 are needed",
+        "tilt the board to 30 or 40 degrees in several directions");
   const int fields = covered_fields(pictures.bundle);
   if (fields < kFewestFields)
-    refuse("corners lie in " + std::to_string(fields) + " of the picture's 3 x 3 fields, 6 are needed",
-           "bring the board to the picture's edges too");
+    refuse_lens("corners lie in " + std::to_string(fields) + " of the picture's 3 x 3 fields, 6 are needed",
+                "bring the board to the picture's edges too");
   return {at_least("pictures with the board", count, kFewestPictures, "fewer leave the lens undetermined; take more"),
           at_least("spread of the board's tilts, deg", tilt_deg, kSmallestTilt_deg,
                    "pictures alike leave focal length and distance undetermined; tilt the board more"),
@@ -361,7 +362,7 @@ LensFit fit_lens(const std::vector<BoardPicture>& pictures, const Lattice& board
   const BundleOutcome outcome = solve_in_stages(bundle);
   fit.messages = outcome.messages;
   if (!sane(bundle, outcome))
-    refuse("the fit went astray", "check the board's sizes and ids, and take pictures with more tags in them");
+    refuse_lens("the fit went astray", "check the board's sizes and ids, and take pictures with more tags in them");
   fit.working_distance_mm =
       options.working_distance_mm > 0.0 ? options.working_distance_mm : median_distance_mm(bundle);
   BundleUncertainty uncertainty;
@@ -380,8 +381,8 @@ LensFit fit_lens(const std::vector<TagObservation>& pictures, const TagLayout& b
   for (const TagObservation& picture : pictures) corners.push_back(on_lattice(tags, board, picture));
   const std::string displaced = displaced_tags(tags, board, corners);
   if (!displaced.empty())
-    refuse(displaced + " do not lie where the board file says in most pictures",
-           "check whether two tags are exchanged, and that the board file is the one of this print");
+    refuse_lens(displaced + " do not lie where the board file says in most pictures",
+                "check whether two tags are exchanged, and that the board file is the one of this print");
   return fit_lens(corners, tags.lattice, image_size, focal_guess_px, options);
 }
 

@@ -21,6 +21,8 @@
 extern "C" {
 #include <mrcal/mrcal.h>
 #include <suitesparse/cholmod.h>
+
+#include "calibration/geometry/rotation_vector.h"
 }
 
 namespace calibration {
@@ -98,11 +100,6 @@ mrcal_lensmodel_t mrcal_model(LensModel model) {
              : model == LensModel::opencv5 ? MRCAL_LENSMODEL_OPENCV5
                                            : MRCAL_LENSMODEL_OPENCV8;
   return out;
-}
-
-Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation) {
-  const Eigen::AngleAxisd turn(rotation);
-  return turn.angle() * turn.axis();
 }
 
 mrcal_pose_t pose_of(const Eigen::Isometry3d& camera_from_lattice) {

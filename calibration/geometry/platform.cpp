@@ -9,6 +9,7 @@
 
 #include "calibration/geometry/platform_bundle.h"
 #include "calibration/geometry/pose.h"
+#include "calibration/geometry/rotation_vector.h"
 #include "calibration/geometry/still_tags.h"
 #include "calibration/sensor/degree.h"
 #include "calibration/sensor/median.h"
@@ -19,16 +20,11 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-[[noreturn]] void refuse(const std::string& found, const std::string& what_to_do) {
+[[noreturn]] void refuse_platform(const std::string& found, const std::string& what_to_do) {
   throw std::runtime_error("platform calibration: " + found + ": " + what_to_do);
 }
 
 constexpr double kBump_px = 1.0;  // largest shift between calibration pictures; corners repeat to 0.1 px
-
-Vector3d rotation_vector(const Eigen::Matrix3d& rotation) {
-  const Eigen::AngleAxisd turn(rotation);
-  return turn.angle() * turn.axis();
-}
 
 // The direction of the axis in the camera frame, on the side of `up`: the mean of the rotation vectors from the first
 // picture, in which larger turns weigh more.
@@ -41,13 +37,14 @@ Vector3d axis_direction(const std::vector<Isometry3d>& poses, const Vector3d& up
     largest = std::max(largest, turn.norm());
   }
   if (largest < 20.0 * kDegree) {
-    refuse("the ring turns by " + std::to_string(std::lround(largest / kDegree)) + " degrees at most, 20 are needed",
-           "check that the platform moves, and take pictures over a wider range");
+    refuse_platform(
+        "the ring turns by " + std::to_string(std::lround(largest / kDegree)) + " degrees at most, 20 are needed",
+        "check that the platform moves, and take pictures over a wider range");
   }
   const Vector3d axis = sum.normalized();
   if (axis.dot(up) < std::cos(30.0 * kDegree)) {
-    refuse("the axis and the table's normal differ by more than 30 degrees",
-           "lay the sheet with the table's tags flat on the table, facing up");
+    refuse_platform("the axis and the table's normal differ by more than 30 degrees",
+                    "lay the sheet with the table's tags flat on the table, facing up");
   }
   return axis;
 }
@@ -94,8 +91,8 @@ void refuse_odd_tags(const std::set<int>& odd, const std::string& layout) {
   if (odd.empty()) return;
   std::string ids;
   for (const int id : odd) ids += (ids.empty() ? "" : ", ") + std::to_string(id);
-  refuse("tags of the " + layout + " are not where the others want them: " + ids,
-         "they were moved, or stand in each other's places; put them right and take the pictures again");
+  refuse_platform("tags of the " + layout + " are not where the others want them: " + ids,
+                  "they were moved, or stand in each other's places; put them right and take the pictures again");
 }
 
 Bundle seed(const Lens& lens, const PlatformTargets& targets, const std::vector<PlatformPicture>& pictures,
@@ -109,7 +106,8 @@ Bundle seed(const Lens& lens, const PlatformTargets& targets, const std::vector<
     const std::string name = "picture " + std::to_string(i + 1);
     const std::optional<PoseFit> ring = fit_pose(lens, targets.ring, pictures[i].seen);
     if (!ring)
-      refuse(name + " shows no tag of \"" + targets.ring.name + "\"", "uncover the ring or leave the picture out");
+      refuse_platform(name + " shows no tag of \"" + targets.ring.name + "\"",
+                      "uncover the ring or leave the picture out");
     odd.insert(ring->odd_tags.begin(), ring->odd_tags.end());
     poses.push_back(ring->camera_from_object);
     bundle.turning.push_back(tagged_corners(targets.ring, pictures[i].seen));
@@ -118,8 +116,9 @@ Bundle seed(const Lens& lens, const PlatformTargets& targets, const std::vector<
   refuse_odd_tags(odd, "ring");
   const std::optional<PoseFit> sheet = fit_pose(lens, targets.table, gathered(still));
   if (!sheet || sheet->tags_used < 2)
-    refuse(std::to_string(sheet ? sheet->tags_used : 0) + " of the table's tags were seen, at least 2 are needed",
-           "uncover the tags on the table");
+    refuse_platform(
+        std::to_string(sheet ? sheet->tags_used : 0) + " of the table's tags were seen, at least 2 are needed",
+        "uncover the tags on the table");
   refuse_odd_tags({sheet->odd_tags.begin(), sheet->odd_tags.end()}, "table");
   const Vector3d up = sheet->camera_from_object.linear().col(2);
   const Vector3d on_table = sheet->camera_from_object.translation() - targets.table_height_mm * up;
@@ -158,21 +157,23 @@ void fit_line(PlatformFit& fit) {
 
 void check(const PlatformTargets& targets, const std::vector<PlatformPicture>& pictures) {
   if (pictures.size() < 3) {
-    refuse(std::to_string(pictures.size()) + " pictures of the turning platform were given, at least 3 are needed",
-           "take more angles");
+    refuse_platform(
+        std::to_string(pictures.size()) + " pictures of the turning platform were given, at least 3 are needed",
+        "take more angles");
   }
   if (!(targets.table_height_mm >= 0.0) || !std::isfinite(targets.table_height_mm)) {
-    refuse("the thickness of the sheet on the table is " + std::to_string(targets.table_height_mm) + " mm",
-           "measure it");
+    refuse_platform("the thickness of the sheet on the table is " + std::to_string(targets.table_height_mm) + " mm",
+                    "measure it");
   }
   double smallest = pictures.front().reading_rad, largest = smallest;
   for (const PlatformPicture& picture : pictures) {
     if (!std::isfinite(picture.reading_rad))
-      refuse("a reading of the turntable is not a finite number", "check the turntable");
+      refuse_platform("a reading of the turntable is not a finite number", "check the turntable");
     smallest = std::min(smallest, picture.reading_rad);
     largest = std::max(largest, picture.reading_rad);
   }
-  if (!(largest > smallest)) refuse("all readings of the turntable are equal", "take pictures at different angles");
+  if (!(largest > smallest))
+    refuse_platform("all readings of the turntable are equal", "take pictures at different angles");
 }
 
 void refuse_bumps(const StillTags& still, const std::vector<PlatformPicture>& pictures) {
@@ -194,7 +195,7 @@ void refuse_misplaced_tags(const AllErrors& errors) {
     char text[120];
     std::snprintf(text, sizeof text, "tag %d stands %.2f px from its place in the layout (the others %.2f px)", id,
                   tag.rms(), typical_px);
-    refuse(text, "it was moved or glued on askew; print the sheet again or put the tag right");
+    refuse_platform(text, "it was moved or glued on askew; print the sheet again or put the tag right");
   }
 }
 
@@ -233,7 +234,7 @@ PlatformFit fit_platform(const Lens& lens, const PlatformTargets& targets,
   const AllErrors errors = errors_of(bundle);
   PlatformFit fit;
   fit.rms_px = errors.used.rms();
-  if (!std::isfinite(fit.rms_px)) refuse("the fit went astray", "check the sizes and ids of the printed tags");
+  if (!std::isfinite(fit.rms_px)) refuse_platform("the fit went astray", "check the sizes and ids of the printed tags");
   refuse_misplaced_tags(errors);
   converged = take_covariance(bundle, fit.axis_covariance) && converged;
   const double unknowns = 6.0 + 4.0 + 6.0 + static_cast<double>(pictures.size()) - 1.0;

@@ -65,7 +65,7 @@ struct SquareResidual {
   }
 };
 
-[[noreturn]] void refuse(const std::string& found, const std::string& what_to_do) {
+[[noreturn]] void refuse_chart(const std::string& found, const std::string& what_to_do) {
   throw std::runtime_error("colour chart: " + found + ": " + what_to_do);
 }
 
@@ -73,8 +73,8 @@ struct SquareResidual {
 void require_this_chart(const std::vector<Vector3d>& camera) {
   for (std::size_t i = 18; i < 23; ++i)
     if (!(camera[i].sum() > camera[i + 1].sum()))
-      refuse("the six grey squares do not darken from white to black",
-             "hold the chart upright, the brown square at the top left, without shadow or gloss");
+      refuse_chart("the six grey squares do not darken from white to black",
+                   "hold the chart upright, the brown square at the top left, without shadow or gloss");
 }
 
 }  // namespace
@@ -147,11 +147,12 @@ double delta_e_2000(const Vector3d& lab, const Vector3d& other) {
 ColourFit fit_colours(const std::vector<Vector3d>& camera) {
   const auto& chart = colour_chart();
   if (camera.size() != chart.size())
-    refuse(std::to_string(camera.size()) + " squares were measured, the chart has " + std::to_string(chart.size()),
-           "bring the whole chart into the picture");
+    refuse_chart(
+        std::to_string(camera.size()) + " squares were measured, the chart has " + std::to_string(chart.size()),
+        "bring the whole chart into the picture");
   for (std::size_t i = 0; i < camera.size(); ++i)
     if (!camera[i].allFinite())
-      refuse("square \"" + chart[i].name + "\" has no finite value", "take the picture again");
+      refuse_chart("square \"" + chart[i].name + "\" has no finite value", "take the picture again");
   require_this_chart(camera);
   std::array<double, 6> free{1, 0, 0, 1, 0, 0};
   ceres::Problem problem;

@@ -31,34 +31,35 @@ std::string text(const char* format, double value) {
   return out;
 }
 
-[[noreturn]] void refuse(const std::string& found, const std::string& what_to_do) {
+[[noreturn]] void refuse_light(const std::string& found, const std::string& what_to_do) {
   throw std::runtime_error("light calibration: " + found + ": " + what_to_do);
 }
 
 void check(const std::vector<PanelSpot>& spots, const std::vector<LightGuess>& guesses, const LightOptions& options,
            std::size_t pictures) {
-  if (guesses.empty()) refuse("no guess of a light's position was given", "measure it with a tape");
+  if (guesses.empty()) refuse_light("no guess of a light's position was given", "measure it with a tape");
   if (!(options.albedo > 0.0 && options.albedo <= 1.0))
-    refuse("the panel's albedo is " + std::to_string(options.albedo), "give a number above 0 and up to 1");
+    refuse_light("the panel's albedo is " + std::to_string(options.albedo), "give a number above 0 and up to 1");
   if (options.image_size.width < 2 || options.image_size.height < 2)
-    refuse("the size of the pictures is missing", "give it");
+    refuse_light("the size of the pictures is missing", "give it");
   for (const PanelSpot& spot : spots) {
     if (spot.light < 0 || spot.light >= static_cast<int>(guesses.size())) {
-      refuse("a spot belongs to light " + std::to_string(spot.light) + ", positions of " +
-                 std::to_string(guesses.size()) + " lights were given",
-             "give one guess per light");
+      refuse_light("a spot belongs to light " + std::to_string(spot.light) + ", positions of " +
+                       std::to_string(guesses.size()) + " lights were given",
+                   "give one guess per light");
     }
     if (spot.picture < 0 || spot.picture >= static_cast<int>(pictures))
-      refuse("a spot belongs to picture " + std::to_string(spot.picture) + " of " + std::to_string(pictures),
-             "give every picture");
+      refuse_light("a spot belongs to picture " + std::to_string(spot.picture) + " of " + std::to_string(pictures),
+                   "give every picture");
     const bool finite = spot.point.allFinite() && spot.normal.allFinite() && spot.to_camera.allFinite() &&
                         spot.pixel.allFinite() && spot.radiance.allFinite() && spot.sigma.allFinite();
     if (!finite || !(spot.sigma.minCoeff() > 0.0))
-      refuse("a spot has a measurement that is not a finite number, or no standard error", "leave this picture out");
+      refuse_light("a spot has a measurement that is not a finite number, or no standard error",
+                   "leave this picture out");
   }
   for (const LightGuess& guess : guesses)
     if (!guess.position.allFinite() || !guess.aim.allFinite())
-      refuse("a guessed position is not a finite number", "measure it with a tape");
+      refuse_light("a guessed position is not a finite number", "measure it with a tape");
 }
 
 std::vector<LightPicture> named(std::vector<LightPicture> pictures, const std::vector<PanelSpot>& spots) {
@@ -68,7 +69,7 @@ std::vector<LightPicture> named(std::vector<LightPicture> pictures, const std::v
         pictures.push_back({.name = "picture " + std::to_string(pictures.size() + 1)});
   for (const LightPicture& picture : pictures)
     if (picture.output && !(*picture.output > 0.0 && std::isfinite(*picture.output) && picture.output_sigma > 0.0))
-      refuse(picture.name + " has a reading of the lamp's output that is not a positive number", "read it again");
+      refuse_light(picture.name + " has a reading of the lamp's output that is not a positive number", "read it again");
   return pictures;
 }
 
@@ -104,18 +105,18 @@ void require_enough(const std::vector<PanelSpot>& used, const std::vector<LightG
     }
     const std::string name = guesses[light].name;
     if (count < kFewestSpots) {
-      refuse("the " + name + " lights " + std::to_string(count) + " spots of the panel, at least " +
-                 std::to_string(kFewestSpots) + " are needed",
-             "switch it on, turn the panel's face to the lamp and to the camera, and check the lamp's measured "
-             "position");
+      refuse_light("the " + name + " lights " + std::to_string(count) + " spots of the panel, at least " +
+                       std::to_string(kFewestSpots) + " are needed",
+                   "switch it on, turn the panel's face to the lamp and to the camera, and check the lamp's measured "
+                   "position");
     }
     if (!turned)
-      refuse("under the " + name + " the panel was seen in one direction only",
-             "take pictures with the panel turned by 20 to 40 degrees to all sides");
+      refuse_light("under the " + name + " the panel was seen in one direction only",
+                   "take pictures with the panel turned by 20 to 40 degrees to all sides");
     if (pictures.size() < kFewestPictures)
-      refuse("under the " + name + " the panel was seen in " + std::to_string(pictures.size()) + " poses, at least " +
-                 std::to_string(kFewestPictures) + " are needed",
-             "take pictures with the panel turned to all sides and in two depths");
+      refuse_light("under the " + name + " the panel was seen in " + std::to_string(pictures.size()) +
+                       " poses, at least " + std::to_string(kFewestPictures) + " are needed",
+                   "take pictures with the panel turned to all sides and in two depths");
   }
 }
 
@@ -147,7 +148,7 @@ struct Summary {
 };
 
 [[noreturn]] void refuse_dark(const std::string& picture, const std::string& how) {
-  refuse(picture + " is dark" + how, "switch the lamp on, see that nothing shades the panel, and take it again");
+  refuse_light(picture + " is dark" + how, "switch the lamp on, see that nothing shades the panel, and take it again");
 }
 
 // Refuses a picture that faces its light but stays within the noise.
@@ -185,7 +186,8 @@ void refuse_dark_pictures(const LightSolver& solver, const Unknowns& start, cons
 // Throws when the pictures leave a light undetermined; the message says in which direction and which pose is missing.
 void refuse_weak_light(const LightSolver& solver, const Unknowns& x, std::size_t light, const LightGuess& guess) {
   const std::optional<Eigen::Matrix3d> covariance = solver.position_covariance(x, light);
-  if (!covariance) refuse("the position of the " + guess.name + " is undetermined", "take the whole set of poses");
+  if (!covariance)
+    refuse_light("the position of the " + guess.name + " is undetermined", "take the whole set of poses");
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(*covariance);
   const double sigma_mm = std::sqrt(axes.eigenvalues()[2]);
   if (sigma_mm < kWeakest_mm) return;
@@ -199,11 +201,11 @@ void refuse_weak_light(const LightSolver& solver, const Unknowns& x, std::size_t
   const std::string found =
       "the poses of the panel leave the " + guess.name + " uncertain by " + text("%.0f mm", sigma_mm) + " in ";
   if (std::abs(weak.dot(beam)) > 0.7)
-    refuse(found + "distance along its beam",
-           "add poses turned by 30 degrees to either side, at two depths at least 50 mm apart");
+    refuse_light(found + "distance along its beam",
+                 "add poses turned by 30 degrees to either side, at two depths at least 50 mm apart");
   if (std::abs(weak.dot(sideways)) > 0.7)
-    refuse(found + "direction, sideways", "add poses with the panel turned left and right by 30 degrees");
-  refuse(found + "direction, up and down", "add poses with the panel tilted up and down by 30 degrees");
+    refuse_light(found + "direction, sideways", "add poses with the panel turned left and right by 30 degrees");
+  refuse_light(found + "direction, up and down", "add poses with the panel tilted up and down by 30 degrees");
 }
 
 // Fits without one picture after the other. Adds to `fit` how well each is predicted, and returns the covariance of the

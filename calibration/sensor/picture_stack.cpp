@@ -3,14 +3,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "calibration/sensor/size_text.h"
+
 namespace calibration {
-namespace {
-
-std::string size_text(const cv::Size& size) {
-  return std::to_string(size.width) + " x " + std::to_string(size.height);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 void PictureStack::add(const SensorPicture& picture) {
   if (count_ == 0) {

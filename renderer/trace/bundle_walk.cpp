@@ -13,8 +13,6 @@ using Eigen::Vector3f;
 
 constexpr float kRound = 1.01f;        // up to this flatness a section counts as round
 constexpr float kLeastCosine = 1e-4f;  // of a ray's inclination, below which it flies along the fibers
-// How far below a fiber's surface scattered rays start, in radii.
-constexpr float kStartDepth = 1e-3f;
 // How far along the axis a section counts as straight, in its longer half axes.
 constexpr float kStraight = 0.25f;
 constexpr int kMostSteps = 64;  // of them that a ray goes without meeting a fiber, before it counts as having left

@@ -12,9 +12,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-// How far below the surface scattered rays start, in curve radii: well above rounding of positions, far below a radius.
-constexpr float kStartDepth = 1e-3f;
-
 // Embree calls this for each candidate hit of a curve: 0 refuses it.
 void refuse_back_sides_and_what_is_cut_off(const RTCFilterFunctionNArguments* arguments) {
   const auto* ray = reinterpret_cast<const RTCRay*>(arguments->ray);

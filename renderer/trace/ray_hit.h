@@ -10,6 +10,10 @@
 
 namespace renderer {
 
+// How far below the surface scattered rays start, in radii of the curve or fiber: well above rounding of positions, far
+// below a radius.
+inline constexpr float kStartDepth = 1e-3f;
+
 struct Ray {
   Eigen::Vector3f origin;
   Eigen::Vector3f direction;  // unit

@@ -130,7 +130,7 @@ void ContactList::make_samples(const WeaveModel& model) {
 
 Eigen::Matrix3Xd ContactList::positions(const WeaveModel& model, const Eigen::Matrix3Xd& points) const {
   Eigen::Matrix3Xd at(3, static_cast<Eigen::Index>(samples_.size()));
-  Eigen::Matrix<double, 3, 4> controls;
+  Eigen::Matrix<double, 3, 4> controls = Eigen::Matrix<double, 3, 4>::Zero();
   int yarn = -1, segment = -1;
   for (std::size_t s = 0; s < samples_.size(); ++s) {
     const Sample& sample = samples_[s];

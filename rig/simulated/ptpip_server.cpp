@@ -28,7 +28,7 @@ constexpr std::uint32_t kInitCommand = 1, kInitCommandAck = 2, kInitEvent = 3, k
                         kRequest = 6, kResponse = 7, kEvent = 8, kStartData = 9, kData = 10, kEndData = 12, kPing = 13,
                         kPong = 14;
 constexpr std::size_t kHeader = 8, kLargestPacket = 1 << 20, kPiece = 1 << 16;
-constexpr int kLookEveryMs = 5;         // how often the server looks for pictures that became ready
+constexpr int kPicturesEveryMs = 5;     // how often the server looks for pictures that became ready
 constexpr std::size_t kMostGuests = 8;  // connections that have not said yet which they are
 // The header of a packet of an unknown type whose announced length, more than a kilobyte, never comes.
 constexpr std::string_view kNoise("\x00\x05\x00\x00\xff\xfe\x81\x07\xc3", 9);
@@ -114,9 +114,10 @@ std::string packet(std::uint32_t type, const std::string& body) {
   return PtpWriter().put(static_cast<std::uint32_t>(kHeader + body.size())).put(type).bytes(body).take();
 }
 
-class Server final : public PtpipServer {
+class TcpServer final : public PtpipServer {
  public:
-  Server(SimulatedBody& camera, int port, CameraFaultPlan plan) : camera_(camera), plan_(std::move(plan)), port_(port) {
+  TcpServer(SimulatedBody& camera, int port, CameraFaultPlan plan)
+      : camera_(camera), plan_(std::move(plan)), port_(port) {
     listen_there();
     thread_ = std::jthread([this](const std::stop_token& ending) { serve(ending); });
   }
@@ -176,14 +177,14 @@ class Server final : public PtpipServer {
       guests_.clear();
       door_ = Socket();
       listening_ = false;
-      std::this_thread::sleep_for(std::chrono::milliseconds(kLookEveryMs));
+      std::this_thread::sleep_for(std::chrono::milliseconds(kPicturesEveryMs));
       return;
     }
     if (!door_.open()) listen_there();
     std::vector<pollfd> watched{pollfd{door_.get(), POLLIN, 0}, pollfd{command_.get(), POLLIN, 0},
                                 pollfd{event_.get(), POLLIN, 0}};  // poll() skips negative descriptors
     for (const Guest& guest : guests_) watched.push_back({guest.socket.get(), POLLIN, 0});
-    ::poll(watched.data(), watched.size(), kLookEveryMs);
+    ::poll(watched.data(), watched.size(), kPicturesEveryMs);
     if (watched[1].revents != 0) answer(receive_packet(command_));
     if (watched[2].revents != 0 && receive_packet(event_).type == kPing) send_all(event_, packet(kPong, ""));
     std::erase_if(guests_, [this](Guest& guest) { return leaves(guest); });
@@ -366,7 +367,7 @@ class Server final : public PtpipServer {
 }  // namespace
 
 std::unique_ptr<PtpipServer> serve_on_ptpip(SimulatedBody& camera, int port, CameraFaultPlan plan) {
-  return std::make_unique<Server>(camera, port, std::move(plan));
+  return std::make_unique<TcpServer>(camera, port, std::move(plan));
 }
 
 }  // namespace rig

@@ -16,11 +16,11 @@
 namespace rig {
 namespace {
 
-constexpr int kLookEveryMs = 2;  // how often, in real time, the server looks for what the firmware says by itself
+constexpr int kFirmwareEveryMs = 2;  // how often, in real time, the server looks for what the firmware says by itself
 
-class Server final : public PtyServer {
+class ServerThread final : public PtyServer {
  public:
-  explicit Server(std::shared_ptr<SimulatedPort> port)
+  explicit ServerThread(std::shared_ptr<SimulatedPort> port)
       : port_(std::move(port)), master_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK)) {
     std::array<char, 128> name{};
     if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0 ||
@@ -54,13 +54,13 @@ class Server final : public PtyServer {
     bool open = false;
     while (!ending.stop_requested() && port_->plugged()) {
       pollfd watched{.fd = master_, .events = POLLIN, .revents = 0};
-      ::poll(&watched, 1, kLookEveryMs);
+      ::poll(&watched, 1, kFirmwareEveryMs);
       const bool hung_up = (watched.revents & POLLHUP) != 0;
       // What a program wrote just before it ended is still to be heard: its last stop, for example.
       if (hung_up && (watched.revents & POLLIN) == 0) {
         open = false;
         port_->transmit();  // the firmware lives on, and nobody hears what it says
-        std::this_thread::sleep_for(std::chrono::milliseconds(kLookEveryMs));
+        std::this_thread::sleep_for(std::chrono::milliseconds(kFirmwareEveryMs));
         continue;
       }
       if (!std::exchange(open, true)) port_->opened();
@@ -87,7 +87,7 @@ class Server final : public PtyServer {
 }  // namespace
 
 std::unique_ptr<PtyServer> serve_on_pty(std::shared_ptr<SimulatedPort> port) {
-  return std::make_unique<Server>(std::move(port));
+  return std::make_unique<ServerThread>(std::move(port));
 }
 
 }  // namespace rig

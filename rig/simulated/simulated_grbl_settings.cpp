@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "rig/turntables/grbl_code.h"
-#include "rig/turntables/number_text.h"
+#include "rig/turntables/reply_text.h"
 #include "rig/turntables/stopping.h"
 
 namespace rig {

@@ -9,7 +9,7 @@
 namespace rig {
 namespace {
 
-constexpr double kSliceS = 0.02;  // the longest time until a stop is noticed
+constexpr double kStopNoticedS = 0.02;  // the longest time until a stop is noticed
 
 // Only the thread in home() or move_to() touches the bench; others may call stop(), state() and angle_rad().
 class SimulatedTurntable final : public TrackedTurntable {
@@ -54,7 +54,7 @@ class SimulatedTurntable final : public TrackedTurntable {
   bool travel(double from_rad, double to_rad) {
     const double duration_s = std::abs(to_rad - from_rad) / truth().speed_rad_s;
     for (double done_s = 0; done_s < duration_s;) {
-      const double slice_s = std::min(kSliceS, duration_s - done_s);
+      const double slice_s = std::min(kStopNoticedS, duration_s - done_s);
       clock_.sleep_s(slice_s);
       done_s += slice_s;
       stand_at(nearest_step(from_rad + (to_rad - from_rad) * (done_s / duration_s)));

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "rig/simulated/simulated_controller.h"
-#include "rig/turntables/number_text.h"
+#include "rig/turntables/reply_text.h"
 #include "rig/turntables/stopping.h"
 #include "rig/turntables/zaber_reply.h"
 

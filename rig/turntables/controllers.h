@@ -11,6 +11,10 @@
 
 namespace rig {
 
+inline constexpr int kMostTries = 4;        // of a question: asked once and repeated three times
+inline constexpr double kPollS = 0.05;      // between questions whether the platform still turns
+inline constexpr double kSameRatio = 1e-4;  // rounding when steps per degree are written down in two places
+
 struct ControllerSetup {
   double steps_per_deg = 0;  // from the rig file; the controller's own value must agree
   HomeBy home_by = HomeBy::here;

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "rig/turntables/number_text.h"
+#include "rig/turntables/reply_text.h"
 
 namespace rig {
 namespace {

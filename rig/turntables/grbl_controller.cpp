@@ -21,14 +21,11 @@
 namespace rig {
 namespace {
 
-constexpr int kMostTries = 4;        // of a question: asked once and repeated three times
 constexpr double kMuteS = 0.3;       // a board that is silent for so long does not hear
 constexpr double kQuietS = 0.1;      // a silence of this length: nothing more is coming
 constexpr double kHoldTimeoutS = 3;  // from the hold to standing still
 constexpr double kLookS = 0.02;      // the wait per look for homing's answer, which may come much later
-constexpr double kPollS = 0.05;
-constexpr double kStandsS = 1;  // a controller that reports for so long that it stands does not look for its home
-constexpr double kSecondsPerMinute = 60;
+constexpr double kStandsS = 1;       // a controller that reports for so long that it stands does not look for its home
 constexpr char kReset = '\x18';
 
 using Take = std::function<bool(const GrblReply&)>;

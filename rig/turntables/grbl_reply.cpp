@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "rig/turntables/number_text.h"
+#include "rig/turntables/reply_text.h"
 
 namespace rig {
 namespace {
@@ -85,10 +85,6 @@ std::optional<GrblSetting> setting_from(std::string_view line) {
   const auto value = number_from<double>(text);
   if (!number || *number < 0 || !value) return std::nullopt;
   return GrblSetting{*number, *value};
-}
-
-bool is_plain(std::string_view line) {
-  return std::ranges::all_of(line, [](char c) { return c >= ' ' && c < '\x7f'; });
 }
 
 }  // namespace

@@ -11,9 +11,7 @@
 namespace rig {
 namespace {
 
-constexpr double kSameRatio = 1e-4;     // rounding when steps per degree are written down in two places
-constexpr double kWrittenRatio = 1e-5;  // rounding of what the firmware prints with three decimals
-constexpr double kSecondsPerMinute = 60;
+constexpr double kWrittenRatio = 1e-5;         // rounding of what the firmware prints with three decimals
 constexpr double kTravelDeg = 360;             // 1.5 x $130 passes the switch even when it begins just behind it
 constexpr int kHomingOn = 1, kSingleAxis = 2;  // bits of grblHAL's $22; other firmware has the first alone
 

@@ -18,6 +18,8 @@
 
 namespace rig {
 
+inline constexpr double kSecondsPerMinute = 60;  // GRBL's speeds are per minute
+
 using GrblSettings = std::map<int, double>;  // values by number: 100 for $100
 
 struct GrblFirmware {

@@ -14,12 +14,12 @@
 
 namespace rig {
 namespace {
-constexpr double kPollS = 0.05;
-constexpr int kMostTries = 4;      // of a move: begun once and repeated three times
-constexpr int kIdleReadings = 2;   // so many in a row at the target: the platform has arrived
-constexpr int kLostReadings = 6;   // so many in a row elsewhere: the command was lost
-constexpr int kMostReadings = 20;  // for two equal ones of a platform that stands
-constexpr double kLeashS = 1;      // the controller is told of no place farther away than what is turned in this time
+constexpr double kAngleEveryS = 0.05;
+constexpr int kMostBeginnings = 4;  // of a move: begun once and repeated three times
+constexpr int kIdleReadings = 2;    // so many in a row at the target: the platform has arrived
+constexpr int kLostReadings = 6;    // so many in a row elsewhere: the command was lost
+constexpr int kMostReadings = 20;   // for two equal ones of a platform that stands
+constexpr double kLeashS = 1;       // the controller is told of no place farther away than what is turned in this time
 constexpr int kPiecesPerLeash = 4;
 constexpr const char* kStoppedHoming = "the platform was stopped while it looked for its home; home it again";
 constexpr double kLargestSteps = 1 << 24;  // GRBL counts in single precision, 24 bits
@@ -244,15 +244,15 @@ class StepperTurntable final : public Turntable {
     const auto leash =
         std::max<std::int64_t>(kPiecesPerLeash, std::llround(identity.speed_deg_s * identity.steps_per_deg * kLeashS));
     std::int64_t stands_at = standing_steps();
-    for (int tries = 0; tries < kMostTries; ++tries) {
+    for (int tries = 0; tries < kMostBeginnings; ++tries) {
       const std::int64_t began_at = stands_at;
       stands_at = turn_on_leash(stands_at, target, leash, tolerance);
       if (std::abs(stands_at - target) <= tolerance) return;
       stands_at = standing_steps();                               // the next piece begins there
       if (std::abs(stands_at - began_at) > tolerance) tries = 0;  // only a part of the way was lost
     }
-    throw std::runtime_error("the platform was asked to turn to " + place(target) + " " + std::to_string(kMostTries) +
-                             " times and stands at " + place(stands_at) +
+    throw std::runtime_error("the platform was asked to turn to " + place(target) + " " +
+                             std::to_string(kMostBeginnings) + " times and stands at " + place(stands_at) +
                              "; check the turntable's cable and that nothing else commands it, then home it");
   }
 
@@ -341,7 +341,7 @@ class StepperTurntable final : public Turntable {
         throw std::runtime_error("the platform has not come to rest within " + std::to_string(setup_.move_timeout_s) +
                                  " s; see that nothing blocks it and that the turntable is on, then home it");
       }
-      clock_.sleep_s(kPollS);
+      clock_.sleep_s(kAngleEveryS);
     }
   }
 

@@ -10,17 +10,14 @@
 
 #include "rig/turntables/controllers.h"
 #include "rig/turntables/line_frames.h"
-#include "rig/turntables/number_text.h"
+#include "rig/turntables/reply_text.h"
 #include "rig/turntables/stopping.h"
 #include "rig/turntables/zaber_reply.h"
 
 namespace rig {
 namespace {
 
-constexpr int kMostTries = 4;        // of a question: asked once and repeated three times
 constexpr double kStopTimeoutS = 3;  // from the stop to standing still
-constexpr double kPollS = 0.05;
-constexpr double kSameRatio = 1e-4;  // rounding when steps per degree are written down in two places
 constexpr double kDegreesPerTurn = 360;
 // The stage's units: 1.6384 in "maxspeed" is a microstep per second, and 1 in "accel" is 10000 / 1.6384 of them per
 // second squared.

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdio>
 
-#include "rig/turntables/number_text.h"
+#include "rig/turntables/reply_text.h"
 
 namespace rig {
 namespace {
@@ -23,10 +23,6 @@ bool is_digits(std::string_view word, std::size_t count) {
 
 bool is_warning(std::string_view word) {
   return word == "--" || (word.size() == 2 && std::ranges::all_of(word, [](char c) { return c >= 'A' && c <= 'Z'; }));
-}
-
-bool is_plain(std::string_view text) {
-  return std::ranges::all_of(text, [](char c) { return c >= ' ' && c < '\x7f'; });
 }
 
 }  // namespace

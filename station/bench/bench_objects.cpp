@@ -10,8 +10,7 @@
 namespace station {
 namespace {
 
-constexpr float kPaperAlbedo = 0.85F, kGreyPaperAlbedo = 0.12F, kInkAlbedo = 0.04F, kBlackPaintAlbedo = 0.03F,
-                kTableAlbedo = 0.03F;
+constexpr float kPaperAlbedo = 0.85F, kGreyPaperAlbedo = 0.12F, kInkAlbedo = 0.04F, kTableAlbedo = 0.03F;
 constexpr double kPaperLift_mm = 0.02;  // a printed tag lies this far above what carries it
 
 // A flat rectangle centred at the frame's origin, in its xy plane, +y up; texture upright seen from +z.

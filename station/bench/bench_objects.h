@@ -10,6 +10,8 @@
 
 namespace station {
 
+inline constexpr float kBlackPaintAlbedo = 0.03F;
+
 // A dark table at z = 0 and the platform's disc standing on it, in the world frame.
 std::vector<renderer::TriangleMesh> table_and_platform(double platform_height_mm, double platform_radius_mm);
 

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kStill_mm = 0.1, kStill_px = 0.3;
 constexpr double kLargestSlip_rad = 0.5 * kDegree;
-constexpr int kFewestRingTags = 2;
 
 }  // namespace
 

@@ -12,8 +12,10 @@
 
 namespace station {
 
+inline constexpr int kFewestRingTags = 2;  // that measure an angle
+
 struct BenchReading {
-  std::optional<calibration::AngleFit> angle;  // from two or more tags of the ring
+  std::optional<calibration::AngleFit> angle;  // from kFewestRingTags or more tags of the ring
   std::optional<calibration::Shift> shift;     // of the table's tags since the calibration
 };
 

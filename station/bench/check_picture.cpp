@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kMostTestPictures = 8;
 constexpr double kMostBlur_px = 1.2;  // of edges in focus: they then turn from dark to light within three pixels
-constexpr int kFewestRingTags = 2, kFewestTableTags = 1;
+constexpr int kFewestTableTags = 1;
 
 template <typename... Parts>
 std::string words(const Parts&... parts) {

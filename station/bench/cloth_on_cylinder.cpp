@@ -5,13 +5,13 @@
 
 #include "renderer/scene/cloth_shape.h"
 #include "renderer/weave/patch_measures.h"
+#include "station/bench/bench_objects.h"
 #include "station/documents/degree.h"
 
 namespace station {
 namespace {
 
 constexpr int kMostColumns = 1024;  // that are looked at; between them a cylinder has no surprises
-constexpr float kBlackPaintAlbedo = 0.03F;
 constexpr double kRim_mm = 3;
 const double kLeastCosine = std::cos(75 * kDegree);
 

@@ -10,7 +10,7 @@
 namespace station {
 namespace {
 
-constexpr double kUsedFraction = 0.7;     // of the chip's edge: away from its border, which blurs into the frame
+constexpr double kUsedOfChip = 0.7;       // of the chip's edge: away from its border, which blurs into the frame
 constexpr double kBesideThreads_mm = 20;  // the upright edge carries the threads' turns in its middle
 constexpr int kFewestPixels = 30;
 
@@ -55,7 +55,7 @@ Eigen::Isometry3d holder_from_chip(const ReferenceChip& chip, const inversion::W
 std::array<Eigen::Vector2d, 4> chip_outline(const renderer::Camera& camera, const ReferenceChip& chip,
                                             const inversion::WrappedSpool& spool, rig::Mounting mounting) {
   const Eigen::Isometry3d pose = holder_from_chip(chip, spool, mounting);
-  const double half = kUsedFraction * chip.edge_mm / 2;
+  const double half = kUsedOfChip * chip.edge_mm / 2;
   std::array<Eigen::Vector2d, 4> outline{{{-half, -half}, {half, -half}, {half, half}, {-half, half}}};
   for (Eigen::Vector2d& corner : outline)
     corner = renderer::project(camera, pose * Eigen::Vector3d(corner.x(), corner.y(), 0));

@@ -30,7 +30,7 @@ using Eigen::Array3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kSamples = 64;           // per pixel, of the curves and without a scene
+constexpr int kSamplesPerPixel = 64;   // per pixel, of the curves and without a scene
 constexpr double kEye_mm = 1000;       // above the cloth
 constexpr double kCurveShare = 30;     // of the work, %
 constexpr double kSatinPitch = 0.875;  // of the diameter: stitches side by side
@@ -95,7 +95,7 @@ AbsorptionCurves curves_of_satin(const renderer::ThreadParameters& thread, doubl
   const renderer::Camera camera = camera_above(middle - half, middle + half, 6 / diameter_mm);
   const auto seen = [&](const renderer::ThreadParameters& coloured) {
     const renderer::PathTracer tracer(scene_of(satin, {coloured}, diameter_mm, ground));
-    const cv::Scalar mean = cv::mean(tracer.render(camera, {.samples_per_pixel = kSamples, .seed = seed}));
+    const cv::Scalar mean = cv::mean(tracer.render(camera, {.samples_per_pixel = kSamplesPerPixel, .seed = seed}));
     return Array3d(mean[0], mean[1], mean[2]);
   };
   return absorption_curves(thread, 14, seen, done);
@@ -238,12 +238,13 @@ Embroidery embroider(const EmbroiderRequest& request) {
   }
   const renderer::PathTracer tracer(
       scene_of(motif, scattering_of(embroidery.threads, digitized), request.diameter_mm, ground));
-  const cv::Mat3f image = tracer.render(camera, {.samples_per_pixel = request.samples_per_pixel.value_or(kSamples),
-                                                 .seed = request.seed,
-                                                 .progress = [&](double share) {
-                                                   show(kCurveShare + (100 - kCurveShare) * share, "rendering");
-                                                   return !interrupted();
-                                                 }});
+  const cv::Mat3f image =
+      tracer.render(camera, {.samples_per_pixel = request.samples_per_pixel.value_or(kSamplesPerPixel),
+                             .seed = request.seed,
+                             .progress = [&](double share) {
+                               show(kCurveShare + (100 - kCurveShare) * share, "rendering");
+                               return !interrupted();
+                             }});
   write_reflectance(request.out, image, motif.name, digitized);
   progress.finish(request.out.string());
   return embroidery;

@@ -11,7 +11,7 @@
 namespace station {
 namespace {
 
-struct Arguments {
+struct CalibrateArguments {
   CalibrateRequest request;
   OutputOptions output;
 };
@@ -57,7 +57,7 @@ void add_camera_command(CLI::App& calibrate) {
   command->callback([arguments] { run_camera(*arguments); });
 }
 
-void run(Arguments& arguments) {
+void run(CalibrateArguments& arguments) {
   const auto person = asked_person(arguments.output.json);
   arguments.request.asked = person.get();
   arguments.request.progress_style = arguments.output.progress_style();
@@ -74,7 +74,7 @@ void run(Arguments& arguments) {
 }  // namespace
 
 void add_calibrate_command(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CalibrateArguments>();
   CLI::App* command =
       turns_platform(app.add_subcommand("calibrate", "calibrate lens, platform, sensor and lamp with the rig"));
   command->add_option("--rig", arguments->request.rig, "rig file");

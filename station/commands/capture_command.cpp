@@ -9,7 +9,7 @@
 namespace station {
 namespace {
 
-struct Arguments {
+struct CaptureArguments {
   CaptureRequest request;
   bool unattended = false, resume = false;
   std::string queue, sample;
@@ -43,7 +43,7 @@ std::string outcome_text(const QueueResult& result) {
   return "waits";
 }
 
-void run_queue(const Arguments& arguments) {
+void run_queue(const CaptureArguments& arguments) {
   const CaptureRequest& request = arguments.request;
   std::function<bool(const QueuedSpool&)> next;
   if (request.asked && read_rig(request.new_session->rig).operator_driver == "console")
@@ -58,7 +58,7 @@ void run_queue(const Arguments& arguments) {
   if (!first_problem.empty()) throw std::runtime_error(first_problem + "; the same command goes on from here");
 }
 
-void run(Arguments& arguments) {
+void run(CaptureArguments& arguments) {
   CaptureRequest& request = arguments.request;
   request.progress_style = arguments.output.progress_style();
   const auto person = asked_person(arguments.output.json);
@@ -75,7 +75,7 @@ void run(Arguments& arguments) {
 }  // namespace
 
 void add_capture_command(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CaptureArguments>();
   CaptureRequest& request = arguments->request;
   NewSession& made_of = request.new_session.emplace();
   CLI::App* command = turns_platform(app.add_subcommand("capture", "photograph a spool in 17 views"));

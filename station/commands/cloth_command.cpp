@@ -8,12 +8,12 @@
 namespace station {
 
 void add_cloth_command(CLI::App& app) {
-  struct Arguments {
+  struct ClothArguments {
     ClothPreviewRequest request;
     std::string warp_colour, weft_colour;
     OutputOptions output;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ClothArguments>();
   ClothPreviewRequest& request = arguments->request;
   CLI::App* command = app.add_subcommand("cloth", "what a session's thread weaves into: a swatch and a cylinder");
   command->add_option("session", request.session, "session folder with a fitted thread or bundle")->required();

@@ -22,11 +22,11 @@ void print(const Comparison& found) {
 }  // namespace
 
 void add_compare_command(CLI::App& app) {
-  struct Arguments {
+  struct CompareArguments {
     CompareRequest request;
     bool same_unit = false, json = false;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CompareArguments>();
   CompareRequest& request = arguments->request;
   CLI::App* command = app.add_subcommand("compare", "a photograph against a rendering of the same view");
   command->add_option("photograph", request.photograph, "linear EXR, as develop writes it")->required();

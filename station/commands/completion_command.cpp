@@ -10,13 +10,9 @@ namespace {
 // A command with its own commands and options, by the words that lead to it: "threadstation scatter eval".
 using Visit = std::function<void(const std::string& words, const CLI::App& command)>;
 
-bool listed(const CLI::App* command) {
-  return !command->get_group().empty();
-}
-
 void each_command(const std::string& words, const CLI::App& command, const Visit& visit) {
   visit(words, command);
-  for (const CLI::App* part : command.get_subcommands(listed))
+  for (const CLI::App* part : command.get_subcommands(is_listed))
     each_command(words + " " + part->get_name(), *part, visit);
 }
 
@@ -58,7 +54,7 @@ std::string for_bash(const CLI::App& app) {
     text += "    \"" + words + "\")\n      case \"${COMP_WORDS[COMP_CWORD]}\" in\n        -*) words=\"";
     for (const CLI::Option* option : options_of(command)) text += typed_name(*option) + " ";
     text += "\" ;;\n        *) words=\"";
-    for (const CLI::App* part : command.get_subcommands(listed)) text += part->get_name() + " ";
+    for (const CLI::App* part : command.get_subcommands(is_listed)) text += part->get_name() + " ";
     text += "\" ;;\n      esac ;;\n";
   });
   return text +
@@ -87,7 +83,7 @@ std::string for_zsh(const CLI::App& app) {
                      "  case \"$at\" in\n";
   each_command(name, app, [&](const std::string& words, const CLI::App& command) {
     text += "    \"" + words + "\")\n      commands=(";
-    for (const CLI::App* part : command.get_subcommands(listed))
+    for (const CLI::App* part : command.get_subcommands(is_listed))
       text += described(part->get_name(), part->get_description());
     text += ")\n      options=(";
     for (const CLI::Option* option : options_of(command))

@@ -8,7 +8,7 @@
 namespace station {
 namespace {
 
-struct Arguments {
+struct DemoArguments {
   DemoRequest request;
   OutputOptions output;
 };
@@ -19,7 +19,7 @@ std::string clothes(const DemoResult& result) {
   return names;
 }
 
-void run(Arguments& arguments) {
+void run(DemoArguments& arguments) {
   arguments.request.progress_style = arguments.output.progress_style();
   const DemoResult result = run_demo(arguments.request);
   if (arguments.output.json)
@@ -40,7 +40,7 @@ void run(Arguments& arguments) {
 }  // namespace
 
 void add_demo_command(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<DemoArguments>();
   CLI::App* command = app.add_subcommand("demo", "the whole job on the simulated bench");
   command->add_option("--out", arguments->request.out, "folder for the results")->capture_default_str();
   command->add_flag("--quick", arguments->request.quick, "fewer samples per pixel: noisier, within a minute");

@@ -7,11 +7,11 @@
 namespace station {
 
 void add_develop_command(CLI::App& app) {
-  struct Arguments {
+  struct DevelopArguments {
     std::string session;
     OutputOptions output;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<DevelopArguments>();
   CLI::App* command = app.add_subcommand("develop", "raw pictures to linear views and masks");
   command->add_option("session", arguments->session, "session folder")->required();
   arguments->output.add_to(*command);

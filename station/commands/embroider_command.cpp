@@ -9,14 +9,14 @@
 namespace station {
 
 void add_embroider_command(CLI::App& app) {
-  struct Arguments {
+  struct EmbroiderArguments {
     EmbroiderRequest request;
     std::vector<std::string> colours;
     std::string ground;
     std::vector<double> at_mm;
     OutputOptions output;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<EmbroiderArguments>();
   EmbroiderRequest& request = arguments->request;
   CLI::App* command = app.add_subcommand("embroider", "a machine embroidery motif in a digitized thread");
   command->add_option("motif", request.motif, "Tajima .dst, Brother .pes or line art as .svg")->required();

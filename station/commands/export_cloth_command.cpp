@@ -7,12 +7,12 @@
 namespace station {
 
 void add_export_cloth_command(CLI::App& export_app) {
-  struct Arguments {
+  struct ExportClothArguments {
     ExportClothRequest request;
     std::vector<ClothExport> only;
     OutputOptions output;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ExportClothArguments>();
   ExportClothRequest& request = arguments->request;
   CLI::App* command = export_app.add_subcommand("cloth", "a cloth as tileable textures, glTF and U3M");
   CLI::Option* scene = command->add_option("scene", request.scene, "scene file with one flat cloth");

@@ -7,13 +7,13 @@
 namespace station {
 
 void add_export_thread_command(CLI::App& exports) {
-  struct Arguments {
+  struct ExportThreadArguments {
     ExportThreadRequest request;
     ClothBrdfRequest cloth;
     std::vector<std::string> only;
     OutputOptions output;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ExportThreadArguments>();
   ExportThreadRequest& request = arguments->request;
   CLI::App* command = exports.add_subcommand(
       "thread", "the nearest single fiber for Mitsuba and Blender, tables of the scattering, the BRDF of its cloth");

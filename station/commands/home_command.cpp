@@ -9,11 +9,11 @@
 namespace station {
 
 void add_home_command(CLI::App& app) {
-  struct Arguments {
+  struct HomeArguments {
     HomeRequest request;
     OutputOptions output;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<HomeArguments>();
   CLI::App* command = turns_platform(app.add_subcommand("home", "turn the platform to its angle 0"));
   command->add_option("--rig", arguments->request.rig, "rig file")->required();
   command->add_flag(

@@ -5,12 +5,12 @@
 namespace station {
 
 void add_import_command(CLI::App& app) {
-  struct Arguments {
+  struct ImportArguments {
     std::string list;
     CaptureRequest request;
     OutputOptions output;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ImportArguments>();
   CLI::App* command = app.add_subcommand("import", "a session from pictures taken by hand");
   command->add_option("--views", arguments->list, "list of the pictures and what they show (import file)")->required();
   command->add_option("--out", arguments->request.session, "session folder")->required();

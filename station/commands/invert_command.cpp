@@ -11,14 +11,14 @@
 namespace station {
 namespace {
 
-struct Arguments {
+struct InvertArguments {
   InvertRequest request;
   std::string solver = "lm", out;
   std::vector<std::string> held;
   OutputOptions output;
 };
 
-void run(Arguments& arguments) {
+void run(InvertArguments& arguments) {
   InvertRequest& request = arguments.request;
   if (!arguments.out.empty()) request.out = arguments.out;
   for (inversion::ParameterGroup group : inversion::kParameterGroups)
@@ -39,7 +39,7 @@ void run(Arguments& arguments) {
 }  // namespace
 
 void add_invert_command(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<InvertArguments>();
   CLI::App* command = app.add_subcommand("invert", "fit a thread to a session's developed views");
   command->add_option("session", arguments->request.session, "session folder")->required();
   command->add_option("--out", arguments->out, "write the model's file here as well");

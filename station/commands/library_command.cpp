@@ -8,7 +8,7 @@
 namespace station {
 namespace {
 
-struct Arguments {
+struct LibraryArguments {
   std::string folder = "library", words, what, out;
   int number = 0;
   bool json = false;
@@ -43,7 +43,7 @@ void print_all(const LibraryThread& thread) {
   if (thread.relative_rmse) std::printf("agreement   %.1f %% relative RMSE\n", 100 * *thread.relative_rmse);
 }
 
-void list(const Arguments& arguments) {
+void list(const LibraryArguments& arguments) {
   const auto threads = Library(arguments.folder, false).list(arguments.words);
   if (arguments.json) {
     nlohmann::json all = nlohmann::json::array();
@@ -58,7 +58,7 @@ void list(const Arguments& arguments) {
 }  // namespace
 
 void add_library_command(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<LibraryArguments>();
   CLI::App* command = app.add_subcommand("library", "the lab's collection of digitized threads");
   command->require_subcommand(1);
   const auto add = [&](const char* name, const char* description) {

@@ -2,23 +2,21 @@
 
 #include <algorithm>
 
+#include "station/commands/plain_help.h"
+
 namespace station {
 namespace {
 
 constexpr int kNear = 2;  // further words have nothing to do with each other
 using Words = std::vector<std::string>;
 
-bool listed(const CLI::App* command) {
-  return !command->get_group().empty();
-}
-
-Words commands_of(const CLI::App& app) {
+Words command_names_of(const CLI::App& app) {
   Words names;
-  for (const CLI::App* command : app.get_subcommands(listed)) names.push_back(command->get_name());
+  for (const CLI::App* command : app.get_subcommands(is_listed)) names.push_back(command->get_name());
   return names;
 }
 
-Words options_of(const CLI::App& app) {
+Words option_names_of(const CLI::App& app) {
   Words names;
   for (const CLI::Option* option : app.get_options())
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
@@ -60,14 +58,14 @@ std::optional<std::string> unknown_word(const CLI::App& app, const Words& words)
     if (word == "--") break;
     if (word.starts_with("--")) {
       const std::string name = word.substr(0, word.find('='));
-      if (!at->get_option_no_throw(name)) return said(name, options_of(*at), *at);
+      if (!at->get_option_no_throw(name)) return said(name, option_names_of(*at), *at);
       continue;
     }
     const auto found = at->get_subcommands([&](const CLI::App* command) { return command->get_name() == word; });
     if (!found.empty())
       at = found.front();
     else if (at->get_require_subcommand_min() > 0 && !word.starts_with("-"))
-      return said(word, commands_of(*at), *at);
+      return said(word, command_names_of(*at), *at);
   }
   return std::nullopt;
 }

@@ -9,13 +9,13 @@
 namespace station {
 
 void add_pattern_command(CLI::App& app) {
-  struct Arguments {
+  struct PatternArguments {
     PatternRequest request;
     std::string jacquard_weft;
     bool curves_only = false;
     OutputOptions output;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<PatternArguments>();
   PatternRequest& request = arguments->request;
   CLI::App* command = app.add_subcommand("pattern", "a picture woven in a digitized thread");
   command->add_option("--image", request.image, "the picture: PNG, JPEG or linear EXR")->required();

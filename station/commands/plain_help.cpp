@@ -14,6 +14,10 @@ std::string joined(const std::set<CLI::Option*>& options) {
 
 }  // namespace
 
+bool is_listed(const CLI::App* command) {
+  return !command->get_group().empty();
+}
+
 std::vector<std::string> words_of(const CLI::Option& option) {
   // CLI11 lists them as {a,b}, and where they stand for values as {a->0,b->1} OR {0,1}.
   static const std::regex kList(R"(\{([^}]*)\})");

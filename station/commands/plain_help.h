@@ -7,6 +7,9 @@
 
 namespace station {
 
+// Whether --help lists a command.
+bool is_listed(const CLI::App* command);
+
 // The words that an option takes, in their order; empty when it takes more than a few.
 std::vector<std::string> words_of(const CLI::Option& option);
 

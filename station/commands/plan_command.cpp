@@ -10,7 +10,7 @@
 namespace station {
 namespace {
 
-struct Arguments {
+struct PlanArguments {
   std::string rig, spool, plan, out;
   bool json = false;
 };
@@ -25,7 +25,7 @@ void print(const Plan& plan) {
   std::printf("%zu view(s), %zu steps, about %.0f min\n", view_count(plan), plan.steps.size(), std::ceil(seconds / 60));
 }
 
-void run(const Arguments& arguments) {
+void run(const PlanArguments& arguments) {
   const Plan plan = arguments.plan.empty() ? plan_of(read_rig(arguments.rig),
                                                      arguments.spool.empty() ? Spool{} : read_spool(arguments.spool))
                                            : plan_from_json(read_json_file(arguments.plan), arguments.plan);
@@ -40,7 +40,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_plan_command(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<PlanArguments>();
   CLI::App* command = app.add_subcommand("plan", "the steps of a capture and how long it takes, without hardware");
   CLI::Option* rig = command->add_option("--rig", arguments->rig, "the plan that this rig file asks for");
   CLI::Option* plan = command->add_option("--plan", arguments->plan, "an edited plan to check");

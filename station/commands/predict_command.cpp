@@ -23,11 +23,11 @@ void print(const PredictedView& view) {
 }  // namespace
 
 void add_predict_command(CLI::App& app) {
-  struct Arguments {
+  struct PredictArguments {
     PredictRequest request;
     OutputOptions output;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<PredictArguments>();
   PredictRequest& request = arguments->request;
   CLI::App* command =
       app.add_subcommand("predict", "what a cloth on the cylinder should look like, beside its photographs");

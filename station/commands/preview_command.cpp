@@ -7,11 +7,11 @@
 namespace station {
 
 void add_preview_command(CLI::App& app) {
-  struct Arguments {
+  struct PreviewArguments {
     LiveViewRequest request;
     OutputOptions output;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<PreviewArguments>();
   CLI::App* command =
       turns_platform(app.add_subcommand("preview", "the camera's live view, frame after frame, in a JPEG file"));
   command->add_option("--rig", arguments->request.rig, "rig file")->required();

@@ -7,12 +7,12 @@
 namespace station {
 namespace {
 
-struct Arguments {
+struct RecoverArguments {
   RecoverRequest request;
   OutputOptions output;
 };
 
-void run(Arguments& arguments) {
+void run(RecoverArguments& arguments) {
   arguments.request.progress_style = arguments.output.progress_style();
   const RecoveredThread recovered = recover_thread(arguments.request);
   if (arguments.output.json)
@@ -24,7 +24,7 @@ void run(Arguments& arguments) {
 }  // namespace
 
 void add_recover_command(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RecoverArguments>();
   RecoverRequest& request = arguments->request;
   CLI::App* command =
       app.add_subcommand("recover", "fit pictures of a known thread: errors, and predicted against seen deviations");

@@ -8,7 +8,7 @@
 namespace station {
 namespace {
 
-struct Arguments {
+struct RenderArguments {
   std::vector<std::filesystem::path> scenes;
   RenderRequest request;
   bool time = false, memory = false;
@@ -17,7 +17,7 @@ struct Arguments {
 };
 
 // Renders into a folder where several pictures are to be made, or where the name has no ending.
-std::vector<RenderReport> render(const Arguments& arguments) {
+std::vector<RenderReport> render(const RenderArguments& arguments) {
   RenderRequest request = arguments.request;
   request.noise = parse_noise(arguments.noise).value_or(0);
   request.progress = arguments.output.progress_style();
@@ -27,13 +27,13 @@ std::vector<RenderReport> render(const Arguments& arguments) {
   return {render_scene(request)};
 }
 
-std::string description(const Arguments& arguments, const RenderReport& report) {
+std::string description(const RenderArguments& arguments, const RenderReport& report) {
   if (report.kept) return report.image + " is there already\n";
   return report.image + "\n" + (arguments.time ? describe_times(report) + describe_noise(report) : "") +
          (arguments.memory ? describe(report.memory) : "");
 }
 
-void print(const Arguments& arguments, const std::vector<RenderReport>& reports) {
+void print(const RenderArguments& arguments, const std::vector<RenderReport>& reports) {
   if (arguments.output.json) {
     nlohmann::json all = nlohmann::json::array();
     for (const RenderReport& report : reports) all.push_back(to_json(report));
@@ -46,7 +46,7 @@ void print(const Arguments& arguments, const std::vector<RenderReport>& reports)
 }  // namespace
 
 void add_render_command(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RenderArguments>();
   RenderRequest& request = arguments->request;
   CLI::App* command = app.add_subcommand("render", "a scene of cloth to a picture");
   command->add_option("scene", arguments->scenes, "scene file, or several")->required();

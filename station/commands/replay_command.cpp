@@ -10,14 +10,14 @@
 namespace station {
 namespace {
 
-struct Arguments {
+struct ReplayArguments {
   std::string recorded;
   CaptureRequest request;
   bool resume = false;
   OutputOptions output;
 };
 
-void run(Arguments& arguments) {
+void run(ReplayArguments& arguments) {
   CaptureRequest& request = arguments.request;
   request.progress_style = arguments.output.progress_style();
   const auto began = std::chrono::steady_clock::now();
@@ -46,7 +46,7 @@ void run(Arguments& arguments) {
 }  // namespace
 
 void add_replay_command(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReplayArguments>();
   CLI::App* command =
       app.add_subcommand("replay", "play a session that was captured with --record again, without hardware");
   command->add_option("session", arguments->recorded, "recorded session")->required();

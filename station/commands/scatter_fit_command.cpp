@@ -7,11 +7,11 @@
 namespace station {
 
 void add_scatter_fit_command(CLI::App& scatter) {
-  struct Arguments {
+  struct ScatterFitArguments {
     FitRequest request;
     OutputOptions output;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ScatterFitArguments>();
   CLI::App* command = scatter.add_subcommand("fit", "thread model and yarn baseline to simulated distributions");
   command->add_option("--in", arguments->request.in, "distributions of one thread (CSV of scatter simulate)")
       ->required();

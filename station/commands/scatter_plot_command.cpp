@@ -7,11 +7,11 @@
 namespace station {
 
 void add_scatter_plot_command(CLI::App& scatter) {
-  struct Arguments {
+  struct ScatterPlotArguments {
     ScatterPlotRequest request;
     OutputOptions output;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ScatterPlotArguments>();
   renderer::MultiFiberOptions& options = arguments->request.options;
   CLI::App* command = scatter.add_subcommand("plot", "what many fibers do, simulated and fitted, as pictures");
   command->add_option("--out", arguments->request.out, "folder for the pictures")->required();

@@ -7,12 +7,12 @@
 namespace station {
 
 void add_scatter_prior_command(CLI::App& scatter) {
-  struct Arguments {
+  struct ScatterPriorArguments {
     std::filesystem::path out;
     std::uint64_t seed = 1;
     OutputOptions output;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ScatterPriorArguments>();
   CLI::App* command = scatter.add_subcommand("prior", "what simulated threads have in common, made again");
   command->add_option("--out", arguments->out, "prior to write (JSON)")->required();
   command->add_option("--seed", arguments->seed, "another number gives other threads")->capture_default_str();

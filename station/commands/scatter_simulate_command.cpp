@@ -8,13 +8,13 @@
 namespace station {
 
 void add_scatter_simulate_command(CLI::App& scatter) {
-  struct Arguments {
+  struct ScatterSimulateArguments {
     SimulateRequest request;
     double theta_deg = 0;
     std::string placement = "area";
     OutputOptions output;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ScatterSimulateArguments>();
   renderer::MultiFiberOptions& options = arguments->request.options;
   CLI::App* command = scatter.add_subcommand("simulate", "light in a thread of many smooth fibers");
   command->add_option("--fiber-radius", options.fiber_radius, "in the unit of the thread's")->capture_default_str();

@@ -7,12 +7,12 @@
 namespace station {
 namespace {
 
-struct Arguments {
+struct TargetArguments {
   std::filesystem::path rig, out;
   std::string paper = "a4";
 };
 
-void run(const Arguments& arguments) {
+void run(const TargetArguments& arguments) {
   if (arguments.rig.empty())
     throw CLI::ValidationError(
         "--rig",
@@ -26,7 +26,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_target_command(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<TargetArguments>();
   CLI::App* command = app.add_subcommand("target", "printable calibration targets (PDF, PNG) and their geometry");
   command->add_option("--out", arguments->out, "folder for the files")->required();
   command->add_option("--paper", arguments->paper, "a4 or letter")->check(CLI::IsMember({"a4", "letter"}));

@@ -10,7 +10,7 @@
 namespace station {
 namespace {
 
-struct Arguments {
+struct TurntableArguments {
   std::string rig;
   SetUpRequest request;
   bool json = false;
@@ -78,7 +78,7 @@ void add_turntable_command(CLI::App& app) {
   turntable->require_subcommand(1);
   CLI::App* command =
       turntable->add_subcommand("set-up", "a GRBL controller's settings beside those that the rig file needs");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<TurntableArguments>();
   command->add_option("--rig", arguments->rig, "rig file")->required();
   command->add_flag("--write", arguments->request.write, "write the settings that differ, and read them back");
   command->add_option("--back-up", arguments->request.back_up, "new file for the former settings; goes with --write");

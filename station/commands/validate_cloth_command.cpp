@@ -10,11 +10,11 @@
 namespace station {
 
 void add_validate_cloth_command(CLI::App& app) {
-  struct Arguments {
+  struct ValidateClothArguments {
     ValidateClothRequest request;
     OutputOptions output;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ValidateClothArguments>();
   ValidateClothRequest& request = arguments->request;
   CLI::App* command = app.add_subcommand(
       "validate-cloth", "predict cloth from simulated spools and compare it with cloth of their fibers");

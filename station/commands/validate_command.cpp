@@ -8,13 +8,13 @@
 namespace station {
 namespace {
 
-struct Arguments {
+struct ValidateArguments {
   ValidateRequest request;
   std::string calibration;
   OutputOptions output;
 };
 
-void run(Arguments& arguments) {
+void run(ValidateArguments& arguments) {
   if (!arguments.calibration.empty()) arguments.request.calibration = arguments.calibration;
   arguments.request.progress_style = arguments.output.progress_style();
   const std::vector<ValidatedSpool> spools = validate_fits(arguments.request);
@@ -27,7 +27,7 @@ void run(Arguments& arguments) {
 }  // namespace
 
 void add_validate_command(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ValidateArguments>();
   ValidateRequest& request = arguments->request;
   CLI::App* command = app.add_subcommand("validate", "fit simulated spools of fibers and predict views left out");
   command->add_option("--rig", request.rig, "rig file with a simulation part: lens, lamps and sensor")->required();

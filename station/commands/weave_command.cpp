@@ -116,12 +116,12 @@ void write_drawing(const std::string& file, const Draft& draft) {
 }  // namespace
 
 void add_weave_command(CLI::App& app) {
-  struct Arguments {
+  struct WeaveArguments {
     std::string draft, out, drawing, view;
     std::vector<std::function<void(Draft&)>> changes;
     OutputOptions output;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<WeaveArguments>();
   CLI::App* command = app.add_subcommand("weave", "a weave draft to a periodic patch of yarns");
   command->add_option("--draft", arguments->draft, "draft file (JSON or WIF)")->required();
   command->add_option("--out", arguments->out, "patch file to write")->required();

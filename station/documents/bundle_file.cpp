@@ -14,7 +14,7 @@ using renderer::BundleParameters;
 constexpr int kMostFibers = 1000;
 constexpr double kMostPacking = 0.5;  // placed at random, fibers do not get denser
 
-BundleParameters parse_parameters(ObjectReader reader) {
+BundleParameters parse_bundle_parameters(ObjectReader reader) {
   BundleParameters p;
   p.fiber_count = reader.integer("fiber_count", 1, kMostFibers);
   p.radius_ratio = reader.number("radius_ratio", 0.001, 1);
@@ -36,7 +36,7 @@ json parameters_json(const BundleParameters& p) {
           {"sigma_a", to_json(p.fiber.sigma_a)}, {"beta_m", p.fiber.beta_m},       {"beta_n", p.fiber.beta_n}};
 }
 
-json units() {
+json bundle_units() {
   return {{"fiber_count", "fibers of the thread"},
           {"radius_ratio", "fiber radius / thread radius"},
           {"eta", "relative index of refraction of a fiber"},
@@ -53,7 +53,7 @@ ClothThread cloth_thread(const File& file) {
 }  // namespace
 
 BundleFile parse_bundle(const json& document, const std::string& source) {
-  return parse_digitized<BundleParameters>("bundle", document, source, units(), parse_parameters);
+  return parse_digitized<BundleParameters>("bundle", document, source, bundle_units(), parse_bundle_parameters);
 }
 
 BundleFile read_bundle(const std::filesystem::path& file) {
@@ -61,7 +61,7 @@ BundleFile read_bundle(const std::filesystem::path& file) {
 }
 
 json to_json(const BundleFile& bundle) {
-  return digitized_json("bundle", bundle, parameters_json(bundle.parameters), units());
+  return digitized_json("bundle", bundle, parameters_json(bundle.parameters), bundle_units());
 }
 
 ClothThread read_cloth_thread(const std::filesystem::path& file) {

@@ -21,7 +21,7 @@ json camera_json(const CameraSetup& camera) {
           {"f_number", camera.f_number}};
 }
 
-CameraSetup parse_camera(ObjectReader reader) {
+CameraSetup parse_calibrated_camera(ObjectReader reader) {
   CameraSetup camera{.model = reader.text("model"),
                      .serial = reader.text("serial"),
                      .lens = reader.text("lens"),
@@ -236,7 +236,7 @@ RigCalibration parse_calibration(const json& document, const std::string& source
   calibration.rig_name = reader.text("rig");
   calibration.utc = reader.text("utc");
   calibration.software = reader.text("software");
-  calibration.camera = parse_camera(reader.object("camera"));
+  calibration.camera = parse_calibrated_camera(reader.object("camera"));
   const auto colour = reader.numbers("linear_srgb_from_camera", 9);
   std::copy(colour.begin(), colour.end(), calibration.linear_srgb_from_camera.begin());
   calibration.lens = parse_lens_fit(reader.object("lens"));

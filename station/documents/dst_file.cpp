@@ -10,7 +10,7 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr std::size_t kHeader = 512, kRecord = 3;
-constexpr double kUnit_mm = 0.1;
+constexpr double kDstUnit_mm = 0.1;
 constexpr int kJumpsThatCut = 3;
 
 int digit(unsigned char byte, int plus_bit, int minus_bit) {
@@ -20,7 +20,7 @@ int digit(unsigned char byte, int plus_bit, int minus_bit) {
 Eigen::Vector2d move_mm(unsigned char a, unsigned char b, unsigned char c) {
   const int x = digit(a, 0, 1) + 3 * digit(b, 0, 1) + 9 * digit(a, 2, 3) + 27 * digit(b, 2, 3) + 81 * digit(c, 2, 3);
   const int y = digit(a, 7, 6) + 3 * digit(b, 7, 6) + 9 * digit(a, 5, 4) + 27 * digit(b, 5, 4) + 81 * digit(c, 5, 4);
-  return kUnit_mm * Eigen::Vector2d(x, y);
+  return kDstUnit_mm * Eigen::Vector2d(x, y);
 }
 
 std::string label_of(std::string_view header) {

@@ -12,7 +12,7 @@ using namespace std::string_view_literals;
 
 constexpr std::size_t kOffsetAt = 8, kCountAt = 48,
                       kStitchesAt = 532;  // the latter two from where the section begins
-constexpr double kUnit_mm = 0.1;
+constexpr double kPesUnit_mm = 0.1;
 
 class Bytes {
  public:
@@ -81,7 +81,7 @@ renderer::Motif parse_pes(std::string_view bytes, const std::string& source) {
       continue;
     }
     const Coordinate x = coordinate(reader, first), y = coordinate(reader, reader.next());
-    const Eigen::Vector2d move = kUnit_mm * Eigen::Vector2d(x.value, -y.value);
+    const Eigen::Vector2d move = kPesUnit_mm * Eigen::Vector2d(x.value, -y.value);
     if (x.trim || y.trim) recorder.trim();
     if (x.jump || y.jump || x.trim || y.trim)
       recorder.jump(move);

@@ -15,14 +15,14 @@ namespace {
 
 using nlohmann::json;
 
-std::string shown(const json& value) {
-  return shown_text(value.dump(), 60);
-}
-
-std::string joined(std::initializer_list<const char*> words) {
+std::string quoted_list(std::initializer_list<const char*> words) {
   std::string all;
   for (const char* word : words) all += (all.empty() ? "" : ", ") + std::string("\"") + word + "\"";
   return all;
+}
+
+std::string shown(const json& value) {
+  return shown_text(value.dump(), 60);
 }
 
 std::string text_of(Range range) {
@@ -119,7 +119,7 @@ std::string ObjectReader::text(const std::string& key) {
 std::string ObjectReader::choice(const std::string& key, std::initializer_list<const char*> allowed) {
   const std::string found = text(key);
   if (std::find(allowed.begin(), allowed.end(), found) == allowed.end())
-    refuse(key, "found \"" + found + "\", expected one of " + joined(allowed));
+    refuse(key, "found \"" + found + "\", expected one of " + quoted_list(allowed));
   return found;
 }
 

@@ -216,7 +216,7 @@ rig::SerialPortChoice parse_port(ObjectReader& reader, TurntableWire::Line line)
   return choice;
 }
 
-CameraWire parse_camera(ObjectReader reader) {
+CameraWire parse_camera_wire(ObjectReader reader) {
   CameraWire wire;
   wire.setup.port = reader.text("port");
   wire.simulated = wire.setup.port == "simulated";
@@ -353,7 +353,7 @@ RigFile parse_rig(const nlohmann::json& document, const std::string& source) {
   RigFile rig;
   rig.name = reader.text("name");
   rig.camera_driver = reader.choice("camera", {"simulated", "gphoto2"});
-  if (rig.camera_driver == "gphoto2") rig.camera_wire = parse_camera(reader.object("camera_connection"));
+  if (rig.camera_driver == "gphoto2") rig.camera_wire = parse_camera_wire(reader.object("camera_connection"));
   rig.turntable_driver = reader.choice("turntable", {"simulated", "grbl", "zaber", "manual"});
   if (rig.turntable_driver == "grbl" || rig.turntable_driver == "zaber")
     rig.turntable_wire = parse_turntable(reader.object("turntable_setup"), rig.turntable_driver);

@@ -309,7 +309,7 @@ void parse_surroundings(ObjectReader reader, const std::filesystem::path& folder
   scene.surroundings = std::move(light);
 }
 
-renderer::Camera parse_camera(ObjectReader reader) {
+renderer::Camera parse_scene_camera(ObjectReader reader) {
   const Vector3d eye = point(reader, "eye_mm"), target = point(reader, "target_mm");
   const Vector3d up = reader.has("up") ? reader.vector3("up") : Vector3d::UnitZ();
   if (!((target - eye).norm() > 0)) reader.refuse("target_mm", "is where the eye is; look at something else");
@@ -370,7 +370,7 @@ SceneFile parse_scene(const json& document, const std::string& source, const std
       parse_light(light, scene);
   if (scene.lights.empty() && scene.rectangles.empty() && !scene.surroundings)
     reader.refuse("lights", "the list is empty and the picture would be black; add a light");
-  scene.camera = parse_camera(reader.object("camera"));
+  scene.camera = parse_scene_camera(reader.object("camera"));
   if (reader.has("samples_per_pixel")) scene.samples_per_pixel = reader.integer("samples_per_pixel", 1, 1 << 20);
   if (reader.has("exposure")) scene.brightness = reader.number("exposure", 1e-12, 1e12);
   reader.finish();

@@ -11,7 +11,7 @@ namespace station {
 namespace {
 
 using nlohmann::json;
-constexpr double kMost = 1e9;
+constexpr double kMostOfSensor = 1e9;
 
 void require_same(const std::filesystem::path& file, const std::string& sha256) {
   if (!std::filesystem::is_regular_file(file) || sha256_of_file(file) != sha256)
@@ -55,15 +55,15 @@ SensorSection parse_sensor_section(ObjectReader reader) {
   calibration::SensorResponse& response = sensor.response;
   response.iso = reader.integer("iso", 1, 1 << 24);
   response.f_number = reader.number("f_number", 0.1, 1000);
-  sensor.bias_dn = reader.number("bias_dn", -kMost, kMost);
-  sensor.dark_dn_per_s = reader.number("dark_dn_per_s", -kMost, kMost);
-  response.gain_dn_per_e = reader.number("gain_dn_per_e", 1e-9, kMost);
-  response.gain_sigma = reader.number("gain_sigma", 0, kMost);
-  response.read_noise_e = reader.number("read_noise_e", 0, kMost);
-  response.read_noise_sigma = reader.number("read_noise_sigma", 0, kMost);
+  sensor.bias_dn = reader.number("bias_dn", -kMostOfSensor, kMostOfSensor);
+  sensor.dark_dn_per_s = reader.number("dark_dn_per_s", -kMostOfSensor, kMostOfSensor);
+  response.gain_dn_per_e = reader.number("gain_dn_per_e", 1e-9, kMostOfSensor);
+  response.gain_sigma = reader.number("gain_sigma", 0, kMostOfSensor);
+  response.read_noise_e = reader.number("read_noise_e", 0, kMostOfSensor);
+  response.read_noise_sigma = reader.number("read_noise_sigma", 0, kMostOfSensor);
   response.nonlinearity = reader.number("nonlinearity", -1, 1);
-  response.nonlinearity_sigma = reader.number("nonlinearity_sigma", 0, kMost);
-  sensor.linearity_residual = reader.number("linearity_residual", 0, kMost);
+  response.nonlinearity_sigma = reader.number("nonlinearity_sigma", 0, kMostOfSensor);
+  sensor.linearity_residual = reader.number("linearity_residual", 0, kMostOfSensor);
   for (ObjectReader& entry : reader.objects("shutter")) {
     response.shutter.push_back({.nominal_s = entry.number("nominal_s", 1e-9, 1e6),
                                 .true_s = entry.number("true_s", 1e-9, 1e6),
@@ -75,11 +75,11 @@ SensorSection parse_sensor_section(ObjectReader reader) {
                 .noisy = bad.integer("noisy", 0, 1 << 30),
                 .dead = bad.integer("dead", 0, 1 << 30)};
   bad.finish();
-  sensor.dust_depth = reader.number("dust_depth", -kMost, kMost);
-  sensor.flat_noise = reader.number("flat_noise", 0, kMost);
-  sensor.lamp_flicker = reader.number("lamp_flicker", 0, kMost);
-  sensor.lamp_drift_per_min = reader.number("lamp_drift_per_min", -kMost, kMost);
-  sensor.lamp_drift_sigma_per_min = reader.number("lamp_drift_sigma_per_min", 0, kMost);
+  sensor.dust_depth = reader.number("dust_depth", -kMostOfSensor, kMostOfSensor);
+  sensor.flat_noise = reader.number("flat_noise", 0, kMostOfSensor);
+  sensor.lamp_flicker = reader.number("lamp_flicker", 0, kMostOfSensor);
+  sensor.lamp_drift_per_min = reader.number("lamp_drift_per_min", -kMostOfSensor, kMostOfSensor);
+  sensor.lamp_drift_sigma_per_min = reader.number("lamp_drift_sigma_per_min", 0, kMostOfSensor);
   if (reader.has("maps_sha256") || reader.has("bad_pixels_sha256")) {  // both or none
     sensor.maps_sha256 = reader.text("maps_sha256");
     sensor.bad_pixels_sha256 = reader.text("bad_pixels_sha256");

@@ -43,9 +43,9 @@ std::optional<std::vector<double>> numbers(std::string_view text) {
   }
 }
 
-class Drawing {
+class SvgReader {
  public:
-  explicit Drawing(const std::string& source) : source_(source) {}
+  explicit SvgReader(const std::string& source) : source_(source) {}
 
   renderer::LineArt read(std::string_view text) {
     pugi::xml_document document;
@@ -341,7 +341,7 @@ class Drawing {
 }  // namespace
 
 renderer::LineArt parse_svg(std::string_view text, const std::string& source) {
-  return Drawing(source).read(text);
+  return SvgReader(source).read(text);
 }
 
 }  // namespace station

@@ -55,7 +55,7 @@ void check_lobe_energies(const ObjectReader& reader, ThreadParameters parameters
   }
 }
 
-ThreadParameters parse_parameters(ObjectReader reader) {
+ThreadParameters parse_thread_parameters(ObjectReader reader) {
   ThreadParameters p;
   p.sigma_a = reader.vector3("sigma_a", kAbsorption);
   p.alpha = roughness(reader, "alpha");
@@ -83,7 +83,7 @@ json parameters_json(const ThreadParameters& p) {
   return parameters;
 }
 
-json units() {
+json thread_units() {
   return {{"sigma_a", "1 / thread radius; camera R, G, B"},
           {"alpha", "longitudinal roughness of R, TT, TRT; 0.02 to 1"},
           {"beta", "azimuthal roughness of R, TT, TRT; 0.02 to 1"},
@@ -102,7 +102,7 @@ const std::map<std::string, renderer::ThreadExit>& thread_exits() {
 }
 
 ThreadFile parse_thread(const json& document, const std::string& source) {
-  return parse_digitized<ThreadParameters>("thread", document, source, units(), parse_parameters);
+  return parse_digitized<ThreadParameters>("thread", document, source, thread_units(), parse_thread_parameters);
 }
 
 ThreadFile read_thread(const std::filesystem::path& file) {
@@ -110,7 +110,7 @@ ThreadFile read_thread(const std::filesystem::path& file) {
 }
 
 json to_json(const ThreadFile& thread) {
-  return digitized_json("thread", thread, parameters_json(thread.parameters), units());
+  return digitized_json("thread", thread, parameters_json(thread.parameters), thread_units());
 }
 
 }  // namespace station

@@ -12,7 +12,7 @@ double display_scale(const cv::Mat3f& linear, const cv::Mat1b& mask = {});
 
 // The mask's bounding box, grown by `margin_px` and then to the picture's own aspect ratio, inside the picture; the
 // whole picture when the mask is empty.
-cv::Rect threads_box(const cv::Mat1b& mask, int margin_px);
+cv::Rect threads_box(const cv::Mat1b& mask, int margin_px = 24);
 
 // The picture as a screen shows it: sRGB, after multiplication by `scale`.
 cv::Mat3b display(const cv::Mat3f& linear, double scale, const std::array<double, 9>& linear_srgb_from_camera);

@@ -14,7 +14,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using Words = std::vector<std::string>;
 
-constexpr std::size_t kLongestText = 200;
 constexpr std::uint64_t kLargestNumber = 1'000'000;
 
 struct Asked {

@@ -9,6 +9,8 @@
 
 namespace station {
 
+inline constexpr std::size_t kLongestText = 200;  // that the page may send; UTF-8
+
 // A request that is not served, with the status and the one line that it is answered with.
 class Refused : public std::runtime_error {
  public:

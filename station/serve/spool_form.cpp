@@ -16,8 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t kLongestText = 200;
-
 fs::path ready_spools() {
   return data_folder() / "spools";
 }

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t kLongestClient = 64, kLongestText = 200;
+constexpr std::size_t kLongestClient = 64;
 constexpr const char* kLiveView = "preview";
 
 std::string word_of(const HttpRequest& request, const char* key) {

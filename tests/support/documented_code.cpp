@@ -7,8 +7,6 @@
 
 namespace {
 
-constexpr double kMmPerInch = 25.4;
-
 struct Words {
   std::set<int> groups;           // modal groups that had a word
   std::map<char, double> values;  // all letters but G and M

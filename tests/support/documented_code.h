@@ -7,6 +7,8 @@
 #include <variant>
 
 // The modes that a reset makes those of their defaults.
+inline constexpr double kMmPerInch = 25.4;
+
 struct DocumentedModes {
   int motion = 0;  // G0, G1; 80: none
   bool incremental = false, inches = false;

@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kSliceS = 0.005;  // the board looks at its lines and its switch so often
 constexpr std::size_t kPlannerBlocks = 15, kReceiveBytes = 128, kLineCharacters = 80;
-constexpr double kMmPerInch = 25.4;
 
 // As GRBL keeps a line: without blanks and comments, in capitals.
 std::string tidied(const std::string& line) {

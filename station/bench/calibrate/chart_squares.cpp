@@ -13,7 +13,7 @@
 namespace station {
 namespace {
 
-constexpr double kUsedFraction = 0.6;  // of a square's edge: away from its border, and from the pose's error
+constexpr double kUsedOfSquare = 0.6;  // of a square's edge: away from its border, and from the pose's error
 constexpr std::array<std::pair<int, int>, 4> kSquare{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
 
 }  // namespace
@@ -24,7 +24,7 @@ std::vector<Eigen::Vector3d> chart_colours(const calibration::Developed& picture
                                            const calibration::LightFit& light) {
   const renderer::Camera camera = camera_of(lens, camera_from_chart.inverse(), false);
   const Eigen::Isometry3d world_from_chart = world_from_camera * camera_from_chart;
-  const double half = chart.square_mm * kUsedFraction / 2;
+  const double half = chart.square_mm * kUsedOfSquare / 2;
   const cv::Rect frame(0, 0, picture.radiance.cols, picture.radiance.rows);
   std::vector<Eigen::Vector3d> colours;
   for (std::size_t square = 0; square < kChartColumns * kChartRows; ++square) {

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Array3d;
 using Eigen::Vector3d;
-constexpr int kPixels = 32;  // across a period
+constexpr int kPeriod_px = 32;  // across a period
 
 std::vector<Vector3d> directions(std::initializer_list<double> polar_deg, int azimuths, double first_deg) {
   std::vector<Vector3d> found;
@@ -39,14 +39,14 @@ std::vector<DirectionPair> standard_pairs() {
 std::vector<Array3d> far_field(const ClothSample& cloth, const std::vector<DirectionPair>& pairs,
                                const FarFieldOptions& options) {
   std::vector<Array3d> found;
-  const int samples = std::max(1, options.samples_per_pair / (kPixels * kPixels));
+  const int samples = std::max(1, options.samples_per_pair / (kPeriod_px * kPeriod_px));
   for (const DirectionPair& pair : pairs) {
     renderer::Scene scene = endless_cloth(cloth);
     scene.lights = {distant_light(pair.to_light)};
     const renderer::PathTracer tracer(std::move(scene));
     const double done = static_cast<double>(found.size());
     const cv::Mat3f picture = in_linear_srgb(
-        cloth, render_or_stop(tracer, camera_of_period(cloth, pair.to_view, kPixels, kPixels), samples,
+        cloth, render_or_stop(tracer, camera_of_period(cloth, pair.to_view, kPeriod_px, kPeriod_px), samples,
                               options.seed + found.size(), [&](double part) {
                                 return options.progress((done + part) / static_cast<double>(pairs.size()));
                               }));

@@ -34,10 +34,6 @@ std::vector<View> views() {
       {"light from behind at 30 deg, seen straight on", straight, direction_at(150, 45)}};
 }
 
-cv::Vec3f color_of(const Array3d& a) {
-  return {static_cast<float>(a[0]), static_cast<float>(a[1]), static_cast<float>(a[2])};
-}
-
 // Draws maps: each pixel is the average of shade(texel) at four places.
 template <class Shade>
 cv::Mat3f drawn_maps(const PbrMaps& maps, double normal_scale, const Eigen::Vector2d& period_mm,

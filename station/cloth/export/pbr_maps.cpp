@@ -15,10 +15,6 @@ Array3d linear(const cv::Vec3b& srgb) {
   return {decoded[0], decoded[1], decoded[2]};
 }
 
-cv::Vec3f color_of(const Array3d& a) {
-  return {static_cast<float>(a[0]), static_cast<float>(a[1]), static_cast<float>(a[2])};
-}
-
 unsigned char byte_of(double share) {
   return cv::saturate_cast<unsigned char>(255 * share);
 }

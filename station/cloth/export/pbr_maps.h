@@ -36,4 +36,9 @@ cv::Mat4b with_alpha(const cv::Mat3b& rgb, const cv::Mat1b& alpha);
 // Writes one PNG for each map, constant ones too. Errors: those of renderer::write_png.
 void write_texture_set(const std::filesystem::path& folder, const PbrMaps& maps, const GltfMaterial& material);
 
+// As pixels hold it.
+inline cv::Vec3f color_of(const Eigen::Array3d& a) {
+  return {static_cast<float>(a[0]), static_cast<float>(a[1]), static_cast<float>(a[2])};
+}
+
 }  // namespace station

@@ -7,7 +7,7 @@
 namespace station {
 namespace {
 
-constexpr int kTileWidth_px = 210, kGap_px = 4, kViewsPerRow = 3, kMargin_px = 24;
+constexpr int kTileWidth_px = 210, kGap_px = 4, kViewsPerRow = 3;
 
 void place(cv::Mat3b& sheet, const cv::Mat3b& picture, int column, int row, int tile_height) {
   cv::Mat3b tile;
@@ -28,7 +28,7 @@ cv::Mat3b contact_sheet(const DevelopedViews& developed) {
                   cv::Vec3b(255, 255, 255));
   for (int i = 0; i < count; ++i) {
     const inversion::View& view = developed.views[static_cast<std::size_t>(i)].view;
-    const cv::Rect box = threads_box(view.mask, kMargin_px);
+    const cv::Rect box = threads_box(view.mask);
     const cv::Mat3b picture =
         display(view.image, display_scale(view.image, view.mask), developed.linear_srgb_from_camera);
     cv::Mat3b outlined = picture.clone();

@@ -11,11 +11,10 @@
 namespace station {
 
 FittedTwins read_twins(const std::filesystem::path& session, const inversion::View& view, const std::string& model) {
-  constexpr int kMargin_px = 24;
   FittedTwins twins{.photographed = cv::Mat3f(view.image.size(), cv::Vec3f(0, 0, 0)),
                     .fitted = renderer::read_exr(fitted_file_of(session, view.id, model)),
                     .scale = display_scale(view.image, view.mask),
-                    .box = threads_box(view.mask, kMargin_px)};
+                    .box = threads_box(view.mask)};
   view.image.copyTo(twins.photographed, view.mask);
   return twins;
 }

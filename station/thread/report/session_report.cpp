@@ -21,7 +21,6 @@
 
 namespace station {
 namespace {
-constexpr int kMargin_px = 24;
 
 using Pictures = std::map<std::string, PictureRecord>;
 
@@ -45,7 +44,7 @@ std::string caption(const DevelopedView& developed, const Pictures& pictures) {
 // One tile: the developed picture and, under it, the same with the mask's outline.
 std::string tile(const DevelopedView& developed, const Pictures& pictures, const std::array<double, 9>& colour) {
   const double scale = display_scale(developed.view.image, developed.view.mask);
-  const cv::Rect box = threads_box(developed.view.mask, kMargin_px);
+  const cv::Rect box = threads_box(developed.view.mask);
   const cv::Mat3b picture = display(developed.view.image, scale, colour);
   cv::Mat3b outlined = picture.clone();
   draw_outline(outlined, developed.view.mask);

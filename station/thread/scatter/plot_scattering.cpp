@@ -18,7 +18,7 @@ using renderer::MultiFiberOptions;
 constexpr double kThetasDeg[] = {0, 15, 30, 45, 60, 70, 75, 80};
 constexpr std::size_t kShownThetas[] = {0, 3, 5, 7};  // of them, in figure 5
 constexpr double kRadiusRatios[] = {0.2, 0.1, 0.05};  // fiber / thread, in figure 3
-const char* const kAzimuth = "phi (degrees; 0 = back)";
+const char* const kAzimuthLabel = "phi (degrees; 0 = back)";
 const char* const kLobeNames[] = {"R", "TT", "TRT"};
 
 template <class Density>
@@ -35,7 +35,7 @@ PlotLine azimuth_line(const std::string& title, const Density& density, PlotStyl
 }
 
 PlotPanel azimuth_panel(const std::string& title) {
-  return {.title = title, .x_label = kAzimuth, .y_label = "per radian", .x_range = std::pair{-180.0, 180.0}};
+  return {.title = title, .x_label = kAzimuthLabel, .y_label = "per radian", .x_range = std::pair{-180.0, 180.0}};
 }
 
 // The options at another radius ratio, with attempts enough to fill the section as densely whatever the fibers' size,

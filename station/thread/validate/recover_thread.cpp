@@ -26,7 +26,7 @@ using inversion::View;
 constexpr double kLeastCosine = 0.65;  // inclinations that the 17 views show well
 constexpr double kSameEnergy = 1e-6;   // between a lobe's energies that are the same
 constexpr int kLossPaths = 4096, kLossRepetitions = 4;
-constexpr const char* kStopped = "the recovery was interrupted; start it again";
+constexpr const char* kRecoveryStopped = "the recovery was interrupted; start it again";
 
 // One fit's value of every quantity, with its deviation under a covariance of the unknowns.
 struct Reading {
@@ -112,7 +112,7 @@ std::vector<View> photographs(const RecoverRequest& request, const RigFile& rig,
         inversion::fitted_view(spool.wrapping, view, thread.parameters, request.samples_per_pixel,
                                request.fit.seed + kExactViewSeeds + static_cast<std::uint64_t>(&view - exact.data()),
                                [](double) { return !interrupted(); });
-    if (interrupted()) throw std::runtime_error(kStopped);
+    if (interrupted()) throw std::runtime_error(kRecoveryStopped);
   }
   return exact;
 }

@@ -36,7 +36,8 @@ constexpr const char* kTrueFibers = "true fibers";
 // Warp ends and weft picks of the reference's patch, at least. Bundles of ten fibers differ in brightness by some ten
 // percent; of so many the mean is within about 1 %.
 constexpr int kReferenceYarns = 40;
-constexpr const char* kStopped = "the validation was interrupted; the same command goes on with the pictures it has";
+constexpr const char* kValidationStopped =
+    "the validation was interrupted; the same command goes on with the pictures it has";
 
 struct SpoolToFit {
   fs::path file;
@@ -163,7 +164,7 @@ class Study {
     PictureHalves halves;
     std::optional<renderer::PathTracer> tracer;
     for (std::size_t half = 0; half < halves.size(); ++half) {
-      if (interrupted()) throw std::runtime_error(kStopped);
+      if (interrupted()) throw std::runtime_error(kValidationStopped);
       const fs::path file = request_.out / "samples" / (sample + "-" + what + (half ? "-b.exr" : "-a.exr"));
       renderer::ImageHeader header;
       if (fs::exists(file)) halves[half] = renderer::read_exr(file, &header);

@@ -22,7 +22,6 @@ namespace station {
 namespace {
 
 using inversion::View;
-using Pictures = PictureHalves;
 using Step = std::function<void(const std::string&, double)>;  // told what is being done and the finished fraction
 
 constexpr int kBlock_px = 8;
@@ -50,9 +49,9 @@ std::vector<bool> left_out(const std::vector<View>& views, std::size_t fold) {
   return out;
 }
 
-Pictures rendered(const inversion::WrappedSpool& spool, const View& view, const inversion::ViewFit& fit, int samples,
-                  std::uint64_t seed) {
-  Pictures pictures;
+PictureHalves rendered(const inversion::WrappedSpool& spool, const View& view, const inversion::ViewFit& fit,
+                       int samples, std::uint64_t seed) {
+  PictureHalves pictures;
   for (std::size_t half = 0; half < 2; ++half)
     pictures[half] =
         inversion::fitted_view(spool, view, fit.model, samples, seed + half, [](double) { return !interrupted(); });
@@ -210,7 +209,7 @@ void compare_views(const FittedSpool& of, const Variant& variant, const inversio
   for (std::size_t i = 0; i < fold.out.size(); ++i) {
     if (!fold.out[i] && fold.number > 0) continue;
     const View& view = variant.views[i];
-    const Pictures pictures =
+    const PictureHalves pictures =
         rendered(of.spool.wrapping, view, fit, of.request.fitted_samples,
                  kFittedViewSeeds + kFoldSeedStep * static_cast<std::uint64_t>(fold.number) + 2 * i);
     const auto agreement = inversion::noiseless_agreement(view, of.made.pictures[i], pictures, kBlock_px);

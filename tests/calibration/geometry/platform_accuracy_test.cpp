@@ -15,7 +15,7 @@
 
 namespace calibration {
 namespace {
-constexpr double kNoise_px = 0.2, kBow_mm = 0.5;
+constexpr double kNoise_px = 0.2, kTagBow_mm = 0.5;
 constexpr int kSolves = 100, kLensViews = 20;
 constexpr unsigned kSeed = 500;
 
@@ -30,8 +30,8 @@ TagLayout bent_board() {
   const double half_mm = 200.0;
   for (Tag& tag : out.tags) {
     const double u = tag.object_from_tag.translation().x() / half_mm;
-    tag.object_from_tag.translation().z() += kBow_mm * (1.0 - u * u);
-    tag.object_from_tag.rotate(Eigen::AngleAxisd(std::atan(2.0 * kBow_mm * u / half_mm), Eigen::Vector3d::UnitY()));
+    tag.object_from_tag.translation().z() += kTagBow_mm * (1.0 - u * u);
+    tag.object_from_tag.rotate(Eigen::AngleAxisd(std::atan(2.0 * kTagBow_mm * u / half_mm), Eigen::Vector3d::UnitY()));
   }
   return out;
 }

@@ -22,8 +22,8 @@ const Imperfections kNoiseOnly{.noise = 0.003, .drift = 0, .turn_rad = 0, .shift
 const Imperfections kMonitored{.monitored = 0.001};
 
 // Eight planned poses under each light, seen with the given errors; tape measures that are some 25 mm wrong.
-struct Bench {
-  explicit Bench(const Imperfections& by, const LampTruth& lamp = {}, double tape_error_mm = 15, unsigned seed = 5)
+struct LitBench {
+  explicit LitBench(const Imperfections& by, const LampTruth& lamp = {}, double tape_error_mm = 15, unsigned seed = 5)
       : truth(lamp), random(seed), guesses(synthetic::taped(truth, random, tape_error_mm)) {
     poses = plan_panel_poses(synthetic::panel_bench(), synthetic::taped(truth, random, 0), {8, 8},
                              synthetic::panel_options());
@@ -57,7 +57,7 @@ std::string failure(const LightFit& fit) {
 }
 
 TEST(Light, ExactRadiancesGiveTheExactLampPanelAndVignetting) {
-  Bench bench(kNone, {.mu = 0.6, .droop = 0.11, .table_albedo = 0});
+  LitBench bench(kNone, {.mu = 0.6, .droop = 0.11, .table_albedo = 0});
   const LightFit fit = bench.fit();
   EXPECT_TRUE(fit.converged);
   EXPECT_EQ(failure(fit), "");
@@ -77,7 +77,7 @@ TEST(Light, ExactRadiancesGiveTheExactLampPanelAndVignetting) {
 }
 
 TEST(Light, ALampThatDriftsIsFoundToMillimetresWithAReferenceChip) {
-  Bench bench(kMonitored);
+  LitBench bench(kMonitored);
   const LightFit fit = bench.fit();
   EXPECT_TRUE(fit.converged);
   EXPECT_EQ(failure(fit), "");
@@ -88,7 +88,7 @@ TEST(Light, ALampThatDriftsIsFoundToMillimetresWithAReferenceChip) {
 }
 
 TEST(Light, WithoutAReferenceChipADriftingLampIsFoundButNotAccepted) {
-  Bench bench({.drift = 0.01});
+  LitBench bench({.drift = 0.01});
   const LightFit fit = bench.fit();
   for (std::size_t i = 0; i < 2; ++i)
     EXPECT_LT((fit.positions[i] - bench.truth.positions[i]).norm(), 15);  // 2.6 mm rms for half the drift
@@ -96,7 +96,7 @@ TEST(Light, WithoutAReferenceChipADriftingLampIsFoundButNotAccepted) {
 }
 
 TEST(Light, TheCovarianceDoesNotDependOnTheUnitOfRadiance) {
-  Bench dim(kNoiseOnly), bright(kNoiseOnly);
+  LitBench dim(kNoiseOnly), bright(kNoiseOnly);
   for (PanelSpot& spot : bright.seen.spots) spot.radiance *= 1e6, spot.sigma *= 1e6;
   const LightFit a = dim.fit(), b = bright.fit();
   EXPECT_TRUE(b.converged);
@@ -106,7 +106,7 @@ TEST(Light, TheCovarianceDoesNotDependOnTheUnitOfRadiance) {
 }
 
 TEST(Light, AStainOnThePanelDoesNotPullTheLight) {
-  Bench bench(kNoiseOnly);
+  LitBench bench(kNoiseOnly);
   const LightFit clean = bench.fit();
   for (std::size_t i = 7; i < bench.seen.spots.size(); i += 25) bench.seen.spots[i].radiance *= 0.7;
   const LightFit stained = bench.fit();
@@ -114,7 +114,7 @@ TEST(Light, AStainOnThePanelDoesNotPullTheLight) {
 }
 
 TEST(Light, SpotsThatDoNotFaceTheirLightAreLeftOut) {
-  Bench bench(kNoiseOnly);
+  LitBench bench(kNoiseOnly);
   const LightFit without = bench.fit();
   PanelSpot away = bench.seen.spots.front();
   away.normal = -away.normal;
@@ -125,7 +125,7 @@ TEST(Light, SpotsThatDoNotFaceTheirLightAreLeftOut) {
 }
 
 TEST(Light, ATapeThatIsWrongByTenCentimetresIsCorrected) {
-  Bench bench(kNoiseOnly);
+  LitBench bench(kNoiseOnly);
   bench.guesses[0].position += Vector3d(60, -60, 50);
   const LightFit fit = bench.fit();
   EXPECT_LT((fit.positions[0] - bench.truth.positions[0]).norm(), 5);
@@ -133,7 +133,7 @@ TEST(Light, ATapeThatIsWrongByTenCentimetresIsCorrected) {
 }
 
 TEST(Light, AMovedLampAndARoomLightAreNoticedAndThePictureIsNamed) {
-  Bench moved(kMonitored);
+  LitBench moved(kMonitored);
   LampTruth elsewhere = moved.truth;
   elsewhere.positions[0] += Vector3d(0, 60, 0);
   const PanelPictures after = synthetic::panel_pictures(elsewhere, moved.poses, kMonitored, moved.random);
@@ -141,7 +141,7 @@ TEST(Light, AMovedLampAndARoomLightAreNoticedAndThePictureIsNamed) {
     if (moved.seen.spots[i].picture >= 4) moved.seen.spots[i] = after.spots[i];
   EXPECT_NE(failure(moved.fit()), "");
 
-  Bench lit(kMonitored);
+  LitBench lit(kMonitored);
   for (PanelSpot& spot : lit.seen.spots)
     if (spot.picture == 2) spot.radiance *= 1.08;  // as much as a room light adds
   const LightFit fit = lit.fit();
@@ -151,24 +151,24 @@ TEST(Light, AMovedLampAndARoomLightAreNoticedAndThePictureIsNamed) {
 }
 
 TEST(Light, ADarkPictureIsNamed) {
-  Bench bench(kNoiseOnly);
+  LitBench bench(kNoiseOnly);
   for (PanelSpot& spot : bench.seen.spots)
     if (spot.picture == 9) spot.radiance *= 0.05, spot.sigma *= 0.05;
   EXPECT_NE(bench.refusal().find("pose 10 is dark"), std::string::npos) << bench.refusal();
 }
 
 TEST(Light, PosesThatLeaveALightUndeterminedAreRefusedWithThePoseThatIsMissing) {
-  Bench one_pose(kNoiseOnly);
+  LitBench one_pose(kNoiseOnly);
   one_pose.keep([](const PanelSpot& spot) { return spot.light == 1 || spot.picture == 0; });
   EXPECT_NE(one_pose.refusal().find("front lamp the panel was seen in one direction"), std::string::npos)
       << one_pose.refusal();
 
-  Bench few(kNoiseOnly);
+  LitBench few(kNoiseOnly);
   few.keep([](const PanelSpot& spot) { return spot.light == 1 || spot.picture < 4; });
   EXPECT_NE(few.refusal().find("in 4 poses, at least 6"), std::string::npos) << few.refusal();
 
   // Turned by 6 degrees only, under either lamp: nearer looks like brighter.
-  Bench flat(kNoiseOnly);
+  LitBench flat(kNoiseOnly);
   for (std::size_t i = 0; i < flat.poses.size(); ++i) {
     const std::size_t light = i < 8 ? 0 : 1;
     Eigen::Isometry3d& pose = flat.poses[i].world_from_panel;
@@ -187,9 +187,9 @@ TEST(Light, PosesThatLeaveALightUndeterminedAreRefusedWithThePoseThatIsMissing) 
 }
 
 TEST(Light, MeasurementsThatMakeNoSenseAreRefused) {
-  const Bench good(kNoiseOnly);
+  const LitBench good(kNoiseOnly);
   const auto refused = [&](const auto& change, double albedo = 0.99) {
-    Bench bench = good;
+    LitBench bench = good;
     change(bench);
     LightOptions options = synthetic::panel_options();
     options.albedo = albedo;
@@ -200,18 +200,19 @@ TEST(Light, MeasurementsThatMakeNoSenseAreRefused) {
     }
     return std::string();
   };
-  EXPECT_NE(refused([](Bench& b) { b.seen.spots.clear(); }).find("front lamp lights 0"), std::string::npos);
-  EXPECT_NE(refused([](Bench& b) {
+  EXPECT_NE(refused([](LitBench& b) { b.seen.spots.clear(); }).find("front lamp lights 0"), std::string::npos);
+  EXPECT_NE(refused([](LitBench& b) {
               b.keep([](const PanelSpot& spot) { return spot.light == 0; });
             }).find("back lamp lights 0 spots"),
             std::string::npos);
-  EXPECT_NE(refused([](Bench&) {}, 0.0).find("albedo"), std::string::npos);
-  EXPECT_NE(
-      refused([](Bench& b) { b.seen.spots[5].radiance.y() = std::numeric_limits<double>::quiet_NaN(); }).find("finite"),
-      std::string::npos);
-  EXPECT_NE(refused([](Bench& b) { b.seen.spots[5].light = 2; }).find("light 2"), std::string::npos);
-  EXPECT_NE(refused([](Bench& b) { b.seen.spots[5].picture = 99; }).find("picture 99"), std::string::npos);
-  EXPECT_NE(refused([](Bench& b) { b.seen.pictures[3].output = -1; }).find("pose 4"), std::string::npos);
+  EXPECT_NE(refused([](LitBench&) {}, 0.0).find("albedo"), std::string::npos);
+  EXPECT_NE(refused([](LitBench& b) {
+              b.seen.spots[5].radiance.y() = std::numeric_limits<double>::quiet_NaN();
+            }).find("finite"),
+            std::string::npos);
+  EXPECT_NE(refused([](LitBench& b) { b.seen.spots[5].light = 2; }).find("light 2"), std::string::npos);
+  EXPECT_NE(refused([](LitBench& b) { b.seen.spots[5].picture = 99; }).find("picture 99"), std::string::npos);
+  EXPECT_NE(refused([](LitBench& b) { b.seen.pictures[3].output = -1; }).find("pose 4"), std::string::npos);
 }
 
 TEST(Light, VignettingIsOneInTheMiddleAndItsFormulaInTheCorner) {

@@ -14,16 +14,7 @@
 
 #include "rig/cameras/camera_process.h"
 #include "tests/rig/cameras/wired_camera.h"
-
-// What an action says when it is refused.
-inline std::string refusal(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "(accepted)";
-}
+#include "tests/support/refusal.h"
 
 // The factor by which programs with a sanitizer take longer; even under load none of their processes may be taken for
 // one that hangs.

@@ -4,6 +4,7 @@
 
 #include "rig/turntables/grbl_reply.h"
 #include "rig/turntables/line_frames.h"
+#include "tests/rig/turntables/grbl_lines.h"
 #include "tests/rig/turntables/wired_bench.h"
 
 namespace {
@@ -54,9 +55,6 @@ struct SimulatedGrbl : testing::Test {
 struct SimulatedGrblWithSwitch : SimulatedGrbl {
   SimulatedGrblWithSwitch() : SimulatedGrbl(rig::HomeBy::home_switch) {}
 };
-
-const char* const kBanner = "Grbl 1.1h ['$' for help]";
-const char* const kUnlock = "[MSG:'$H'|'$X' to unlock]";
 
 }  // namespace
 

@@ -8,15 +8,13 @@
 #include <random>
 
 #include "rig/turntables/line_frames.h"
+#include "tests/rig/turntables/grbl_lines.h"
 
 namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
 using Lines = std::vector<std::string>;
-
-const char* const kBanner = "Grbl 1.1h ['$' for help]";
-const char* const kUnlock = "[MSG:'$H'|'$X' to unlock]";
 
 // A board that has homing switched off unless a test says otherwise, so that it is not locked.
 struct Bench {

@@ -5,21 +5,13 @@
 #include "rig/turntables/grbl_settings.h"
 #include "tests/rig/turntables/documented_bench.h"
 #include "tests/rig/turntables/ended_program.h"
+#include "tests/support/refusal.h"
 
 namespace {
 
 using rig::kDegree;
 using testing::AllOf;
 using testing::HasSubstr;
-
-std::string refusal(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "(accepted)";
-}
 
 }  // namespace
 

@@ -6,14 +6,15 @@
 
 #include <functional>
 
+#include "tests/rig/turntables/grbl_lines.h"
+#include "tests/support/refusal.h"
+
 namespace {
 
 using rig::GrblFirmware;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-
-const std::string kBanner = "Grbl 1.1h ['$' for help]";
 
 rig::ControllerSetup setup(rig::HomeBy home_by = rig::HomeBy::home_switch) {
   rig::ControllerSetup setup;
@@ -38,15 +39,6 @@ rig::GrblSettings right() {
   for (const auto& [number, value] : rig::GrblSettings{{1, 255}, {22, 1}, {25, 480}, {100, 40}, {130, 360}})
     settings[number] = value;
   return settings;
-}
-
-std::string refusal(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "(accepted)";
 }
 
 std::string said(const rig::GrblSettings& settings, const rig::ControllerSetup& needs = setup(),

@@ -14,9 +14,9 @@ using rig::kDegree;
 
 constexpr int kStops = 1000, kHomings = 300;
 constexpr unsigned kSeed = 1126;
-constexpr double kStepRad = kDegree / 40;
+constexpr double kMotorStepRad = kDegree / 40;
 
-struct Bench {
+struct MovingBench {
   std::string name;
   EventfulClock& clock;
   std::unique_ptr<rig::Turntable> table;
@@ -24,7 +24,7 @@ struct Bench {
 };
 
 // Moves somewhere and stops on the way; the way that it went on for (radians), nothing when it had arrived.
-std::optional<double> stopped_way(Bench& bench, std::mt19937& random) {
+std::optional<double> stopped_way(MovingBench& bench, std::mt19937& random) {
   const double from_rad = bench.true_rad(), to_rad = std::uniform_real_distribution(-360.0, 360.0)(random) * kDegree,
                after_s =
                    std::uniform_real_distribution(0.0, 1.0)(random) * std::abs(to_rad - from_rad) / (22 * kDegree);
@@ -41,12 +41,12 @@ std::optional<double> stopped_way(Bench& bench, std::mt19937& random) {
     EXPECT_NE(std::string(error.what()).find("was stopped at"), std::string::npos) << error.what();
   }
   EXPECT_EQ(bench.table->state(), rig::TurntableState::stopped);
-  EXPECT_NEAR(bench.table->angle_rad(), bench.true_rad(), kStepRad / 2);
+  EXPECT_NEAR(bench.table->angle_rad(), bench.true_rad(), kMotorStepRad / 2);
   return std::abs(bench.true_rad() - told_rad.value_or(from_rad));
 }
 
 // The way that a stop of homing takes (radians), from somewhere; nothing when it had ended.
-std::optional<double> stopped_homing(Bench& bench, std::mt19937& random) {
+std::optional<double> stopped_homing(MovingBench& bench, std::mt19937& random) {
   bench.table->home();
   bench.table->move_to(std::uniform_real_distribution(-360.0, 360.0)(random) * kDegree);
   std::optional<double> told_rad;
@@ -72,7 +72,7 @@ struct ThreeBenches {
   WiredBench<EventfulClock> grbl{Protocol::grbl, rig::HomeBy::home_switch, {}, kFastDegS},
       zaber{Protocol::zaber, rig::HomeBy::home_switch, {}, kFastDegS};
   DocumentedBench documented;
-  std::vector<Bench> all;
+  std::vector<MovingBench> all;
 
   ThreeBenches() {
     all.push_back({"GRBL", grbl.clock, grbl.make_turntable(), [this] { return seen(grbl); }});
@@ -91,7 +91,7 @@ struct ThreeBenches {
 TEST(RandomStops, WhileItLooksForItsHomeEndWithinFiveDegreesToo) {
   std::mt19937 random(kSeed);
   ThreeBenches benches;
-  for (Bench& bench : benches.all) {
+  for (MovingBench& bench : benches.all) {
     double longest_rad = 0;
     int stops = 0;
     for (int homings = 0; homings < kHomings; ++homings) {
@@ -111,7 +111,7 @@ TEST(RandomStops, AThousandOfThemEndWithinFiveDegreesAndKeepThePosition) {
   std::cout << "seed " << kSeed << "\n";
   std::mt19937 random(kSeed);
   ThreeBenches benches;
-  for (Bench& bench : benches.all) {
+  for (MovingBench& bench : benches.all) {
     bench.table->home();
     double longest_rad = 0;
     int stops = 0;

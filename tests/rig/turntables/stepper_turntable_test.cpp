@@ -11,20 +11,12 @@
 #include "rig/turntables/stopping.h"
 #include "tests/rig/turntables/ended_program.h"
 #include "tests/rig/turntables/wired_bench.h"
+#include "tests/support/refusal.h"
 
 namespace {
 
 using rig::kDegree;
 using testing::HasSubstr;
-
-std::string refusal(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "(accepted)";
-}
 
 using Rig = WiredBench<EventfulClock>;
 

@@ -12,6 +12,7 @@
 #include "rig/simulated/pty_server.h"
 #include "rig/turntables/serial_line.h"
 #include "tests/rig/turntables/wired_bench.h"
+#include "tests/support/refusal.h"
 
 namespace {
 
@@ -23,15 +24,6 @@ enum class Line { pty, serial };
 
 std::unique_ptr<rig::ByteLine> open_line(Line kind, const std::string& path) {
   return kind == Line::pty ? rig::open_pty_line(path) : rig::open_serial_line({.port = path, .usb_serial = ""});
-}
-
-std::string refusal(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "(accepted)";
 }
 
 class FolderOfLinks {

@@ -9,20 +9,12 @@
 
 #include "station/documents/turntable_settings_file.h"
 #include "tests/support/documented_grbl.h"
+#include "tests/support/refusal.h"
 
 namespace {
 
 using namespace station;
 using testing::HasSubstr;
-
-std::string refusal(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "(accepted)";
-}
 
 struct TurntableSetUp : testing::Test {
   TurntableSetUp() {

@@ -24,7 +24,7 @@ using nlohmann::json;
 using station_test::ProgramResult;
 using station_test::run_threadstation;
 
-json ready(const std::string& name) {
+json ready_document(const std::string& name) {
   return station::read_json_file(std::string(DATA_DIR) + "/" + name + ".json");
 }
 
@@ -62,7 +62,7 @@ Difference difference(const calibration::SensorPicture& a, const calibration::Se
 
 struct WireCapture : testing::TestWithParam<const char*> {
   void SetUp() override {
-    json calibration = station_test::hasty_calibration(ready("calibrations/simulated"));
+    json calibration = station_test::hasty_calibration(ready_document("calibrations/simulated"));
     calibration["utc"] = rig::SystemClock().utc();  // it must not be too old
     std::filesystem::create_directory(folder / "calibration");
     station::write_json_file(folder / "calibration/calibration.json", calibration);
@@ -90,9 +90,9 @@ INSTANTIATE_TEST_SUITE_P(OverThe, WireCapture, testing::Values("grbl", "zaber"),
 }  // namespace
 
 TEST_P(WireCapture, GivesTheSessionOfTheDevicesInProcess) {
-  const json rig = station_test::hasty_rig(ready("rigs/simulated"));
+  const json rig = station_test::hasty_rig(ready_document("rigs/simulated"));
   const auto expected = capture("in-process", rig);
-  const json wire = ready("rigs/simulated_wire_" + std::string(GetParam()));
+  const json wire = ready_document("rigs/simulated_wire_" + std::string(GetParam()));
   json wired = rig;
   for (const char* key : {"camera", "camera_connection", "turntable", "turntable_setup"}) wired[key] = wire[key];
   const auto found = capture("wire", wired);

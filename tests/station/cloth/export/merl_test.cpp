@@ -65,15 +65,15 @@ Vector3d direction(double theta_deg, double phi_deg) {
 }
 
 Array3d mean_over_turns(const renderer::ClothReflectance& cloth, const Vector3d& a, const Vector3d& b) {
-  constexpr int kSamples = 1 << 15;
+  constexpr int kPlaces = 1 << 15;
   renderer::Sampler sampler(9, 9);
   Array3d sum = Array3d::Zero();
-  for (int s = 0; s < kSamples; ++s) {
+  for (int s = 0; s < kPlaces; ++s) {
     sampler.start_sample(static_cast<std::uint32_t>(s));
     const Eigen::AngleAxisd turn(2 * std::numbers::pi * static_cast<double>(sampler.next_1d()), Vector3d::UnitZ());
     sum += s % 2 == 0 ? cloth.sample(turn * a, turn * b, sampler) : cloth.sample(turn * b, turn * a, sampler);
   }
-  return sum / kSamples;
+  return sum / kPlaces;
 }
 
 TEST(MerlExport, ReadersFindTheClothsReflectance) {

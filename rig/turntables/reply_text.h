@@ -1,6 +1,7 @@
-// The reading of a number from a controller's reply.
+// What the readers of controllers' replies share.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -8,6 +9,11 @@
 #include <system_error>
 
 namespace rig {
+
+// Whether the text is of printable ASCII alone.
+inline bool is_plain(std::string_view text) {
+  return std::ranges::all_of(text, [](char c) { return c >= ' ' && c < '\x7f'; });
+}
 
 // The number that the whole text is; nothing when it holds anything else or the number is not finite.
 template <typename Number>
