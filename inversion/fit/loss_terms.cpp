@@ -32,7 +32,6 @@ namespace {
 constexpr double kTailDegrees = 4;  // nu
 constexpr double kAtMean = (kTailDegrees + renderer::kPriorUnknownCount) / kTailDegrees;
 
-
 // z, for Ceres.
 class WhitenedUnknowns
     : public ceres::SizedCostFunction<renderer::kPriorUnknownCount, renderer::kThreadParameterCount> {
@@ -88,10 +87,10 @@ ThreadPriorTerm::Rows ThreadPriorTerm::known_rows(const VectorXd& unknowns) cons
 }
 
 void ThreadPriorTerm::add_to(ceres::Problem& problem, double* unknowns) const {
-  problem.AddResidualBlock(new WhitenedUnknowns(whitening_, mean_),
-                           new ceres::ScaledLoss(new ceres::CauchyLoss(std::sqrt(kTailDegrees)), weight_ * kAtMean,
-                                                 ceres::TAKE_OWNERSHIP),
-                           unknowns);
+  problem.AddResidualBlock(
+      new WhitenedUnknowns(whitening_, mean_),
+      new ceres::ScaledLoss(new ceres::CauchyLoss(std::sqrt(kTailDegrees)), weight_ * kAtMean, ceres::TAKE_OWNERSHIP),
+      unknowns);
 }
 
 OtherTerms::OtherTerms(const ScatteringFamily& family, double prior_weight, bool with_energies)

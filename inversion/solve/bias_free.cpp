@@ -177,8 +177,9 @@ BiasFreeEnd minimise_bias_free(const BiasFreeLoss& loss, const BiasFreeOptions& 
     end.losses.push_back(here.loss + exact.loss + 0.5 * limits.values.cwiseMax(0).squaredNorm());
     mean.add(here, unknowns, step < options.approach_steps ? options.old : 1.0);
     MatrixXd hessian = mean.hessian() + exact.hessian;
-    const VectorXd damping = kDamping * hessian.diagonal().cwiseAbs() +
-                             VectorXd::Constant(unknowns.size(), mean.variance(here.variance) / (options.reach * options.reach));
+    const VectorXd damping =
+        kDamping * hessian.diagonal().cwiseAbs() +
+        VectorXd::Constant(unknowns.size(), mean.variance(here.variance) / (options.reach * options.reach));
     hessian.diagonal() += damping;
     hessian = made_positive(hessian);
     VectorXd moved;

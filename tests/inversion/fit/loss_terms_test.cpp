@@ -68,9 +68,8 @@ TEST_P(ThreadPriorTermTest, ItTellsAsMuchAsItsHessianWhereThatIsPositive) {
   // In z, where the Hessian has one direction of its own.
   const renderer::PriorMatrix root = renderer::simulated_thread_prior().covariance.llt().matrixL();
   const auto in_z = [&](const MatrixXd& of_all) {
-    return MatrixXd(root.transpose() * of_all.bottomRightCorner<renderer::kPriorUnknownCount,
-                                                                renderer::kPriorUnknownCount>() *
-                    root);
+    return MatrixXd(root.transpose() *
+                    of_all.bottomRightCorner<renderer::kPriorUnknownCount, renderer::kPriorUnknownCount>() * root);
   };
   const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(in_z(0.5 * (hessian + hessian.transpose())));
   const MatrixXd positive =
@@ -99,7 +98,7 @@ TEST(ThreadPriorTerm, DrawsAThreadUnlikeTheSimulatedOnesLessThanTheirGaussianWou
     std::mt19937 same(3);
     return term.at(drawn(same, unlike)).gradient.norm();
   };
-  EXPECT_LT(pull(4), pull(1));          // a Gaussian's is four times as strong
+  EXPECT_LT(pull(4), pull(1));                    // a Gaussian's is four times as strong
   EXPECT_NEAR(pull(0.02) / pull(0.01), 2, 0.01);  // near the mean it is the Gaussian
 }
 

@@ -118,7 +118,8 @@ TEST(BiasFreeTest, AStepBetweenLimitsIsTheLeast) {
   for (int i = 0; i < kProblems; ++i) {
     // As unlike in steepness as the fit's valleys and walls.
     const VectorXd scales = drawn(kUnknowns, 1).unaryExpr([](double x) { return std::pow(10, 2 * x); });
-    const MatrixXd root = scales.asDiagonal() * drawn(kUnknowns, kUnknowns), limit_rows = 1e3 * drawn(kLimits, kUnknowns);
+    const MatrixXd root = scales.asDiagonal() * drawn(kUnknowns, kUnknowns),
+                   limit_rows = 1e3 * drawn(kLimits, kUnknowns);
     const MatrixXd hessian = root.transpose() * root;
     const VectorXd gradient = hessian * drawn(kUnknowns, 1), limit_values = 300 * drawn(kLimits, 1);
     const auto loss = [&](const VectorXd& x) {
