@@ -43,8 +43,8 @@ class ThreadPriorTerm {
   double loss(const Eigen::VectorXd& unknowns) const;
   // The term and its gradient; its Hessian is that of the quadratic that touches it there and is nowhere below it.
   BiasFreeTerms at(const Eigen::VectorXd& unknowns) const;
-  // What the term tells: rows' rows is its own Hessian where that is positive. A thread unlike the simulated ones learns
-  // nothing from it along the way that leads to them.
+  // What the term tells: rows' rows is its own Hessian where that is positive. A thread unlike the simulated ones
+  // learns nothing from it along the way that leads to them.
   Rows known_rows(const Eigen::VectorXd& unknowns) const;
   void add_to(ceres::Problem& problem, double* unknowns) const;
 

@@ -6,8 +6,8 @@
 //   lambda_2 = n2 + d2 (1-c) / (1 - w2 (1-c))                  d2, n2 >= 0, 0 < w2 < 1
 //
 // d2 is how fast lambda_2 falls at c = 1, w2 how much faster it does at grazing angles: 0 is a straight line, 1 a pole.
-// That is eq. 5 with r2a = w2^2 / d2, r2b = w2 (1-w2) / d2, r2c = n2 - d2 / w2. Views tell n2 and d2 apart, while r2a and
-// r2b vary together over orders of magnitude where lambda_2 at the angles that are seen stays as it is.
+// That is eq. 5 with r2a = w2^2 / d2, r2b = w2 (1-w2) / d2, r2c = n2 - d2 / w2. Views tell n2 and d2 apart, while r2a
+// and r2b vary together over orders of magnitude where lambda_2 at the angles that are seen stays as it is.
 //
 // The paper instead clamps r0c and penalises r0a + r0b > 0, which fixes a trend but does not make the energies
 // positive.

@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <random>
+#include <vector>
 
 namespace inversion {
 namespace {
