@@ -1,13 +1,10 @@
 #include "inversion/fit/loss_terms.h"
 
 #include <ceres/crs_matrix.h>
-#include <ceres/loss_function.h>
-#include <ceres/sized_cost_function.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace inversion {
 
@@ -27,77 +24,33 @@ bool DataTerm::Evaluate(double const* const* parameters, double* residuals, doub
   return true;
 }
 
-namespace {
-
-constexpr double kTailDegrees = 4;  // nu
-constexpr double kAtMean = (kTailDegrees + renderer::kPriorUnknownCount) / kTailDegrees;
-
-// z, for Ceres.
-class WhitenedUnknowns
-    : public ceres::SizedCostFunction<renderer::kPriorUnknownCount, renderer::kThreadParameterCount> {
- public:
-  WhitenedUnknowns(ThreadPriorTerm::Rows whitening, ThreadUnknowns mean)
-      : whitening_(std::move(whitening)), mean_(std::move(mean)) {}
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    Eigen::Map<Eigen::Matrix<double, renderer::kPriorUnknownCount, 1>> z(residuals);
-    z = whitening_ * (Eigen::Map<const ThreadUnknowns>(parameters[0]) - mean_);
-    if (jacobians && jacobians[0]) std::copy_n(whitening_.data(), whitening_.size(), jacobians[0]);
-    return true;
-  }
-
- private:
-  ThreadPriorTerm::Rows whitening_;
-  ThreadUnknowns mean_;
-};
-
-}  // namespace
-
-ThreadPriorTerm::ThreadPriorTerm(double weight) : weight_(weight) {
+PriorTerm::PriorTerm(double weight) {
   const renderer::ThreadPrior& prior = renderer::simulated_thread_prior();
-  whitening_.setZero();
+  jacobian_.setZero();
   const renderer::PriorMatrix root = prior.covariance.llt().matrixL();
-  whitening_.rightCols<renderer::kPriorUnknownCount>() =
-      root.triangularView<Eigen::Lower>().solve(renderer::PriorMatrix::Identity());
+  jacobian_.rightCols<renderer::kPriorUnknownCount>() =
+      std::sqrt(weight) * root.triangularView<Eigen::Lower>().solve(renderer::PriorMatrix::Identity());
   mean_.setZero();
   mean_.tail<renderer::kPriorUnknownCount>() = prior.mean;
+  set_num_residuals(renderer::kPriorUnknownCount);
+  mutable_parameter_block_sizes()->push_back(renderer::kThreadParameterCount);
 }
 
-double ThreadPriorTerm::weight(double square) const {
-  return weight_ * kAtMean / (1 + square / kTailDegrees);
+double PriorTerm::loss(const VectorXd& unknowns) const {
+  return 0.5 * (jacobian_ * (unknowns - mean_)).squaredNorm();
 }
 
-double ThreadPriorTerm::loss(const VectorXd& unknowns) const {
-  return weight_ * kAtMean * kTailDegrees / 2 * std::log1p(whitened(unknowns).squaredNorm() / kTailDegrees);
+bool PriorTerm::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
+  Eigen::Map<Eigen::Matrix<double, renderer::kPriorUnknownCount, 1>> values(residuals);
+  values = jacobian_ * (Eigen::Map<const ThreadUnknowns>(parameters[0]) - mean_);
+  if (jacobians && jacobians[0]) std::copy_n(jacobian_.data(), jacobian_.size(), jacobians[0]);
+  return true;
 }
 
-BiasFreeTerms ThreadPriorTerm::at(const VectorXd& unknowns) const {
-  const Whitened z = whitened(unknowns);
-  const double weight_here = weight(z.squaredNorm());
-  return {.loss = loss(unknowns),
-          .gradient = weight_here * whitening_.transpose() * z,
-          .hessian = weight_here * whitening_.transpose() * whitening_};
-}
-
-ThreadPriorTerm::Rows ThreadPriorTerm::known_rows(const VectorXd& unknowns) const {
-  const Whitened z = whitened(unknowns);
-  const double square = z.squaredNorm(), along = std::max(0.0, 1 - 2 * square / (kTailDegrees + square));
-  const Rows rows = std::sqrt(weight(square)) * whitening_;
-  if (!(square > 0)) return rows;
-  return rows - (1 - std::sqrt(along)) / square * z * (z.transpose() * rows);
-}
-
-void ThreadPriorTerm::add_to(ceres::Problem& problem, double* unknowns) const {
-  problem.AddResidualBlock(
-      new WhitenedUnknowns(whitening_, mean_),
-      new ceres::ScaledLoss(new ceres::CauchyLoss(std::sqrt(kTailDegrees)), weight_ * kAtMean, ceres::TAKE_OWNERSHIP),
-      unknowns);
-}
-
-OtherTerms::OtherTerms(const ScatteringFamily& family, double prior_weight, bool with_energies)
-    : at_(unknowns_of(family).lower.size()) {
+OtherTerms::OtherTerms(const ScatteringFamily& family, double prior_weight) : at_(unknowns_of(family).lower.size()) {
   problem_.AddParameterBlock(at_.data(), static_cast<int>(at_.size()));
-  add_penalties(family, problem_, at_.data(), with_energies);
-  if (prior_weight > 0) prior_.emplace(prior_weight);
+  add_penalties(family, problem_, at_.data());
+  if (prior_weight > 0) problem_.AddResidualBlock(new PriorTerm(prior_weight), nullptr, at_.data());
 }
 
 BiasFreeTerms OtherTerms::at(const VectorXd& unknowns) {
@@ -105,23 +58,16 @@ BiasFreeTerms OtherTerms::at(const VectorXd& unknowns) {
   BiasFreeTerms terms;
   terms.gradient = VectorXd::Zero(unknowns.size());
   terms.hessian = Eigen::MatrixXd::Zero(unknowns.size(), unknowns.size());
-  if (problem_.NumResiduals() > 0) {
-    std::vector<double> gradient;
-    problem_.Evaluate({}, &terms.loss, nullptr, &gradient, nullptr);
-    terms.gradient = Eigen::Map<const VectorXd>(gradient.data(), unknowns.size());
-    const Eigen::MatrixXd rows = penalty_jacobian(unknowns);
-    terms.hessian = rows.transpose() * rows;
-  }
-  if (prior_) {
-    const BiasFreeTerms prior = prior_->at(unknowns);
-    terms.loss += prior.loss;
-    terms.gradient += prior.gradient;
-    terms.hessian += prior.hessian;
-  }
+  if (problem_.NumResiduals() == 0) return terms;
+  std::vector<double> gradient;
+  problem_.Evaluate({}, &terms.loss, nullptr, &gradient, nullptr);
+  terms.gradient = Eigen::Map<const VectorXd>(gradient.data(), unknowns.size());
+  const Eigen::MatrixXd rows = jacobian(unknowns);
+  terms.hessian = rows.transpose() * rows;
   return terms;
 }
 
-Eigen::MatrixXd OtherTerms::penalty_jacobian(const VectorXd& unknowns) {
+Eigen::MatrixXd OtherTerms::jacobian(const VectorXd& unknowns) {
   if (problem_.NumResiduals() == 0) return Eigen::MatrixXd(0, unknowns.size());
   at_ = unknowns;
   ceres::CRSMatrix sparse;

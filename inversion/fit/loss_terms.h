@@ -6,7 +6,6 @@
 #include <ceres/problem.h>
 
 #include <Eigen/Core>
-#include <optional>
 
 #include "inversion/fit/scattering_family.h"
 #include "inversion/fit/thread_unknowns.h"
@@ -27,52 +26,33 @@ class DataTerm : public ceres::CostFunction {
   int unknowns_;
 };
 
-// What simulated threads have in common as a term of the loss: their mean and covariance, as a density with the heavy
-// tails of Student's t [Lange 1989],
-//
-//   weight (nu + n) / 2 log(1 + z' z / nu),    z = covariance^(-1/2) (u - mean),    nu = 4
-//
-// n being the number of a thread's unknowns that it speaks of. Near the mean it is the Gaussian's z' z / 2; a thread as
-// a whole unlike the simulated ones (those of station/data have a z' z of 58 to 192, where n = 10 is usual) is drawn
-// towards them by a few percent of that.
-class ThreadPriorTerm {
+// The simulated threads' mean and covariance as terms of the loss: ||scale (u - mean)||^2 / 2.
+class PriorTerm : public ceres::CostFunction {
  public:
   using Rows = Eigen::Matrix<double, renderer::kPriorUnknownCount, renderer::kThreadParameterCount, Eigen::RowMajor>;
 
-  explicit ThreadPriorTerm(double weight);
+  explicit PriorTerm(double weight);  // factor of the prior's chi square in the loss
+  const Rows& jacobian() const { return jacobian_; }
   double loss(const Eigen::VectorXd& unknowns) const;
-  // The term and its gradient; its Hessian is that of the quadratic that touches it there and is nowhere below it.
-  BiasFreeTerms at(const Eigen::VectorXd& unknowns) const;
-  // What the term tells: rows' rows is its own Hessian where that is positive. A thread unlike the simulated ones
-  // learns nothing from it along the way that leads to them.
-  Rows known_rows(const Eigen::VectorXd& unknowns) const;
-  void add_to(ceres::Problem& problem, double* unknowns) const;
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
-  using Whitened = Eigen::Matrix<double, renderer::kPriorUnknownCount, 1>;
-  Whitened whitened(const Eigen::VectorXd& unknowns) const { return whitening_ * (unknowns - mean_); }
-  // Of the Gaussian, by z' z.
-  double weight(double square) const;
-
-  double weight_;
-  Rows whitening_;  // z by u
+  Rows jacobian_;
   ThreadUnknowns mean_;
 };
 
 // The family's penalties, and the prior unless its weight is 0.
 class OtherTerms {
  public:
-  // with_energies: what threads pay for energies beyond 1 (energy_limits) is among them.
-  OtherTerms(const ScatteringFamily& family, double prior_weight, bool with_energies = true);
+  OtherTerms(const ScatteringFamily& family, double prior_weight);
   // The terms at the unknowns, with the Gauss-Newton approximation of the Hessian.
   BiasFreeTerms at(const Eigen::VectorXd& unknowns);
-  // The penalties' jacobian, terms x unknowns; without rows where there are none.
-  Eigen::MatrixXd penalty_jacobian(const Eigen::VectorXd& unknowns);
+  // The terms' jacobian, terms x unknowns; without rows where there are no terms.
+  Eigen::MatrixXd jacobian(const Eigen::VectorXd& unknowns);
 
  private:
   Eigen::VectorXd at_;
-  ceres::Problem problem_;  // of the penalties
-  std::optional<ThreadPriorTerm> prior_;
+  ceres::Problem problem_;
 };
 
 }  // namespace inversion

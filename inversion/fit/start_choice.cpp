@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr int kApproachSteps = 7, kJointSteps = 5, kSteps = kApproachSteps + kJointSteps;
+constexpr int kApproachSteps = 10, kJointSteps = 4, kSteps = kApproachSteps + kJointSteps;
 constexpr int kComparedSets = 4, kComparedPaths = 2048;  // for each block
 constexpr int kMostStride = 3;                           // of blocks
 constexpr std::size_t kFewestBlocks = 150;               // that are left of them

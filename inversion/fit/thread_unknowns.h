@@ -20,8 +20,8 @@ enum Unknown {
   kL1,
   kConcavity,
   kR1a,
-  kD2,
-  kW2,
+  kLogR2a,
+  kLogR2b,
   kN2
 };  // from kL0 on: EnergyUnknown
 // The energies among a thread's parameters as printed (renderer::thread_parameters).

@@ -44,8 +44,8 @@ LinearisedFit linearised(const ViewObjective& objective, const Search& search, d
   for (int k : search.held) fit.held[static_cast<std::size_t>(k)] = true;
   fit.bounds = touched_bounds(search, unknowns);
   fit.scales = VectorXd::Ones(unknowns.size());
-  fit.penalty_jacobian = OtherTerms(*search.family, 0, false).penalty_jacobian(unknowns);
-  if (prior_scale > 0) fit.prior_jacobian = ThreadPriorTerm(prior_scale).known_rows(unknowns);
+  fit.penalty_jacobian = OtherTerms(*search.family, 0).jacobian(unknowns);
+  if (prior_scale > 0) fit.prior_jacobian = PriorTerm(prior_scale).jacobian();
   return fit;
 }
 
@@ -72,15 +72,8 @@ UnbiasedEnd remove_bias(ViewObjective& objective, const Search& search, int firs
                               .exact =
                                   [&](const VectorXd& at) {
                                     const VectorXd unknowns = coordinates.unknowns(at);
-                                    OtherTerms others(*search.family, end.prior_scale, false);
+                                    OtherTerms others(*search.family, end.prior_scale);
                                     return coordinates.of(others.at(unknowns), unknowns);
-                                  },
-                              .limits =
-                                  [&](const VectorXd& at) {
-                                    const VectorXd unknowns = coordinates.unknowns(at);
-                                    EnergyLimits limits = energy_limits(*search.family, unknowns);
-                                    limits.rows *= coordinates.slopes(unknowns).asDiagonal();
-                                    return BiasFreeOptions::Limits{std::move(limits.excess), std::move(limits.rows)};
                                   },
                               .approach_steps = search.effort.approach_steps,
                               .joint_steps = search.effort.joint_steps};

@@ -16,7 +16,7 @@ struct UnbiasedEnd {
   MeanTerms mean{};                    // of the sets of paths
   Eigen::VectorXd factors{};           // of the residuals of eq. 6, as in the last of them; empty: 1
   double variance = 0;                 // of the mean residual of all sets, as the steps weigh them
-  double prior_scale = 0;              // of ThreadPriorTerm
+  double prior_scale = 0;              // of PriorTerm
   Eigen::MatrixXd left{};              // BiasFreeEnd, of the unknowns
   Eigen::MatrixXd start_covariance{};  // of the unknowns
 };

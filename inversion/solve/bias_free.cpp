@@ -4,8 +4,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <tuple>
-#include <utility>
 
 namespace inversion {
 namespace {
@@ -13,7 +11,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kDamping = 1e-6;  // of the Hessian's diagonal
+constexpr double kDamping = 1e-3;  // of the Hessian's diagonal
 
 // The Hessian with eigenvalues that noise has made negative turned into positive ones.
 MatrixXd made_positive(const MatrixXd& hessian) {
@@ -26,9 +24,9 @@ MatrixXd made_positive(const MatrixXd& hessian) {
 
 // Where the quadratic model is least among the steps that keep the bounds and are not longer than the longest in any
 // unknown, by the active set method (Nocedal and Wright 2006, algorithm 16.3). The Hessian is positive.
-VectorXd bounded_step(const BiasFreeOptions& options, const VectorXd& at, const VectorXd& gradient,
-                      const MatrixXd& hessian) {
+VectorXd bounded_step(const BiasFreeOptions& options, const VectorXd& at, const VectorXd& gradient, MatrixXd hessian) {
   constexpr int kMostChanges = 200;  // of the set of free unknowns; a few are usual
+  hessian.diagonal() *= 1 + kDamping;
   VectorXd low = (options.lower - at).cwiseMax(-options.longest).cwiseMin(0),
            high = (options.upper - at).cwiseMin(options.longest).cwiseMax(0);
   for (int k : options.held) low[k] = high[k] = 0;
@@ -70,69 +68,16 @@ VectorXd bounded_step(const BiasFreeOptions& options, const VectorXd& at, const 
   return step;
 }
 
-// The limits' parts that a step meets.
-struct Wall {
-  MatrixXd hessian;
-  VectorXd gradient;  // at the step's beginning
-};
-
-Wall wall_of(const BiasFreeOptions::Limits& limits, const std::vector<bool>& met) {
-  Wall wall{.hessian = MatrixXd::Zero(limits.rows.cols(), limits.rows.cols()),
-            .gradient = VectorXd::Zero(limits.rows.cols())};
-  for (std::size_t i = 0; i < met.size(); ++i) {
-    if (!met[i]) continue;
-    const auto row = limits.rows.row(static_cast<Eigen::Index>(i));
-    wall.hessian += row.transpose() * row;
-    wall.gradient += limits.values[static_cast<Eigen::Index>(i)] * row.transpose();
-  }
-  return wall;
-}
-
-std::vector<bool> met_behind(const BiasFreeOptions::Limits& limits, const VectorXd& step) {
-  std::vector<bool> met;
-  for (const double value : VectorXd(limits.values + limits.rows * step)) met.push_back(value > 0);
-  return met;
-}
-
-// The step that keeps the bounds, and the Hessian of what it minimises: `gradient` and `hessian` are without the
-// limits, of which those count that are met behind the step. Newton's method for such convex piecewise quadratics, each
-// time as far as they fall.
-std::pair<VectorXd, MatrixXd> limited_step(const BiasFreeOptions& options, const BiasFreeOptions::Limits& limits,
-                                           const VectorXd& at, const VectorXd& gradient, const MatrixXd& hessian) {
-  constexpr int kMostChanges = 100, kHalvings = 40;
-  VectorXd step = VectorXd::Zero(at.size());
-  std::vector<bool> met = met_behind(limits, step);
-  for (int change = 0;; ++change) {
-    const Wall wall = wall_of(limits, met);
-    const VectorXd way = bounded_step(options, at, gradient + wall.gradient, hessian + wall.hessian) - step;
-    const auto falls_at = [&](double share) {
-      const VectorXd there = step + share * way;
-      const Wall behind = wall_of(limits, met_behind(limits, there));
-      return way.dot(gradient + behind.gradient + (hessian + behind.hessian) * there) <= 0;
-    };
-    double share = 1;
-    if (!falls_at(1)) {
-      double falls = 0;
-      for (int halving = 0; halving < kHalvings; ++halving)
-        (falls_at(0.5 * (falls + share)) ? falls : share) = 0.5 * (falls + share);
-      share = falls;
-    }
-    step += share * way;
-    std::vector<bool> then = met_behind(limits, step);
-    if ((share == 1 && then == met) || share == 0 || change == kMostChanges) return {step, hessian + wall.hessian};
-    met = std::move(then);
-  }
-}
-
 // What a step to `at` leaves of a deviation from the minimum. The Hessian contains `damping` in its diagonal.
-MatrixXd left_by_step(const BiasFreeOptions& options, const VectorXd& at, const MatrixXd& hessian,
-                      const VectorXd& damping) {
+MatrixXd left_by_step(const BiasFreeOptions& options, const VectorXd& at, MatrixXd hessian, double damping) {
   std::vector<Eigen::Index> free;
   for (Eigen::Index k = 0; k < at.size(); ++k)
     if (at[k] > options.lower[k] && at[k] < options.upper[k] &&
         std::find(options.held.begin(), options.held.end(), k) == options.held.end())
       free.push_back(k);
-  const MatrixXd kept_of_free = VectorXd(damping(free)).asDiagonal(),
+  const VectorXd kept = (kDamping * hessian.diagonal()).array() + damping;
+  hessian.diagonal() *= 1 + kDamping;
+  const MatrixXd kept_of_free = VectorXd(kept(free)).asDiagonal(),
                  left_of_free = MatrixXd(hessian(free, free)).ldlt().solve(kept_of_free);
   MatrixXd left = MatrixXd::Zero(at.size(), at.size());
   left(free, free) = left_of_free;
@@ -149,17 +94,14 @@ class MeanModel {
     hessian_ = old * hessian_ + terms.hessian;
     right_ = old * right_ + terms.hessian * traced_at - terms.gradient;
     sets_ = old * sets_ + 1;
-    squared_sets_ = old * old * squared_sets_ + 1;
   }
   MatrixXd hessian() const { return hessian_ / sets_; }
-  // Of the mean, by that of one set.
-  double variance(double of_one) const { return of_one * squared_sets_ / (sets_ * sets_); }
   VectorXd gradient(const VectorXd& unknowns) const { return (hessian_ * unknowns - right_) / sets_; }
 
  private:
   MatrixXd hessian_;
   VectorXd right_;
-  double sets_ = 0, squared_sets_ = 0;
+  double sets_ = 0;
 };
 
 }  // namespace
@@ -172,20 +114,13 @@ BiasFreeEnd minimise_bias_free(const BiasFreeLoss& loss, const BiasFreeOptions& 
     BiasFreeTerms exact{.gradient = VectorXd::Zero(unknowns.size()),
                         .hessian = MatrixXd::Zero(unknowns.size(), unknowns.size())};
     if (options.exact) exact = options.exact(unknowns);
-    BiasFreeOptions::Limits limits{.values = VectorXd(0), .rows = MatrixXd(0, unknowns.size())};
-    if (options.limits) limits = options.limits(unknowns);
-    end.losses.push_back(here.loss + exact.loss + 0.5 * limits.values.cwiseMax(0).squaredNorm());
+    end.losses.push_back(here.loss + exact.loss);
     mean.add(here, unknowns, step < options.approach_steps ? options.old : 1.0);
     MatrixXd hessian = mean.hessian() + exact.hessian;
-    const VectorXd damping =
-        kDamping * hessian.diagonal().cwiseAbs() +
-        VectorXd::Constant(unknowns.size(), mean.variance(here.variance) / (options.reach * options.reach));
-    hessian.diagonal() += damping;
+    const double damping = here.variance / (options.reach * options.reach);
+    hessian.diagonal().array() += damping;
     hessian = made_positive(hessian);
-    VectorXd moved;
-    std::tie(moved, hessian) =
-        limited_step(options, limits, unknowns, mean.gradient(unknowns) + exact.gradient, hessian);
-    unknowns += moved;
+    unknowns += bounded_step(options, unknowns, mean.gradient(unknowns) + exact.gradient, hessian);
     end.left = left_by_step(options, unknowns, hessian, damping) * end.left;
   }
   return end;

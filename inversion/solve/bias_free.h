@@ -44,16 +44,8 @@ struct BiasFreeOptions {
   // Terms that no paths estimate, such as penalties and a prior, at any unknowns; may be empty. Every step asks for
   // them where it begins.
   std::function<BiasFreeTerms(const Eigen::VectorXd& unknowns)> exact{};
-  // Half the square of each of these values that is positive is a term too. Steps know that such a wall begins at 0:
-  // a quadratic model of it would hold what touches it on both sides. They are asked for where a step begins; may be
-  // empty.
-  struct Limits {
-    Eigen::VectorXd values;
-    Eigen::MatrixXd rows;  // values x unknowns: their derivatives
-  };
-  std::function<Limits(const Eigen::VectorXd& unknowns)> limits{};
-  int approach_steps = 8;
-  int joint_steps = 12;
+  int approach_steps = 14;
+  int joint_steps = 6;
   double old = 0.5;      // on the approach, what a set counts of the next one
   double longest = 0.1;  // change of an unknown in one step
   double reach = 0.1;    // deviation of one set, in the unknowns' units, beyond which a direction is damped

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <cmath>
 #include <cstdio>
 #include <random>
 
@@ -98,71 +97,6 @@ TEST(BiasFreeTest, TermsThatAreExactCountWhereTheStepBegins) {
   VectorXd x = NoisyProblem::truth() + Vector3d(0, -0.3, 0);
   minimise_bias_free([&](int, const VectorXd& at) { return problem.terms_at(at); }, options, x);
   EXPECT_NEAR(x[1], kWall, 0.06);
-}
-
-double most(const VectorXd& values) {
-  return values.size() ? values.maxCoeff() : 0;
-}
-
-// A step is least among random ones near it that keep the bounds, in problems drawn at random whose limits cross.
-TEST(BiasFreeTest, AStepBetweenLimitsIsTheLeast) {
-  constexpr int kProblems = 300, kUnknowns = 6, kLimits = 9, kOthers = 200;
-  constexpr std::uint32_t kSeed = 20261127;
-  std::printf("seed %u\n", kSeed);
-  std::mt19937 random(kSeed);
-  std::normal_distribution<double> normal;
-  const auto drawn = [&](Eigen::Index rows, Eigen::Index columns) {
-    return MatrixXd(MatrixXd::NullaryExpr(rows, columns, [&] { return normal(random); }));
-  };
-  int held_back = 0;
-  for (int i = 0; i < kProblems; ++i) {
-    // As unlike in steepness as the fit's valleys and walls.
-    const VectorXd scales = drawn(kUnknowns, 1).unaryExpr([](double x) { return std::pow(10, 2 * x); });
-    const MatrixXd root = scales.asDiagonal() * drawn(kUnknowns, kUnknowns),
-                   limit_rows = 1e3 * drawn(kLimits, kUnknowns);
-    const MatrixXd hessian = root.transpose() * root;
-    const VectorXd gradient = hessian * drawn(kUnknowns, 1), limit_values = 300 * drawn(kLimits, 1);
-    const auto loss = [&](const VectorXd& x) {
-      return gradient.dot(x) + 0.5 * x.dot(hessian * x) +
-             0.5 * (limit_values + limit_rows * x).cwiseMax(0).squaredNorm();
-    };
-    BiasFreeOptions options{.lower = VectorXd::Constant(kUnknowns, -1), .upper = VectorXd::Constant(kUnknowns, 0.5)};
-    options.limits = [&](const VectorXd& at) {
-      return BiasFreeOptions::Limits{limit_values + limit_rows * at, limit_rows};
-    };
-    options.approach_steps = 1, options.joint_steps = 0, options.longest = 2;
-    VectorXd x = VectorXd::Zero(kUnknowns);
-    minimise_bias_free(
-        [&](int, const VectorXd& at) {
-          return BiasFreeTerms{.loss = 0, .gradient = gradient + hessian * at, .hessian = hessian};
-        },
-        options, x);
-    held_back += most(limit_values + limit_rows * x) > -1;
-    const double least = loss(x), scale = std::max(1e-9, std::abs(least));
-    ASSERT_LE(least, loss(VectorXd::Zero(kUnknowns))) << i;
-    for (int k = 0; k < kOthers; ++k) {
-      const double near = std::pow(10, -1 - 3.0 * k / kOthers);
-      const VectorXd other = (x + near * drawn(kUnknowns, 1)).cwiseMax(options.lower).cwiseMin(options.upper);
-      ASSERT_GE(loss(other), least - 1e-4 * scale) << i;
-    }
-  }
-  EXPECT_GT(held_back, kProblems / 2);
-}
-
-TEST(BiasFreeTest, ALimitLetsGoOfWhatBeganBeyondIt) {
-  constexpr double kSteepness = 1e6;
-  BiasFreeOptions options = wide();
-  options.limits = [=](const VectorXd& x) {
-    return BiasFreeOptions::Limits{VectorXd::Constant(1, kSteepness * (x[0] - 0.5)),
-                                   kSteepness * Eigen::RowVector3d::UnitX()};
-  };
-  options.approach_steps = 1, options.joint_steps = 0, options.longest = 2;
-  VectorXd x = Vector3d(0.6, 0, 0);
-  const auto towards_zero = [](int, const VectorXd& at) {
-    return BiasFreeTerms{.gradient = at, .hessian = MatrixXd::Identity(3, 3)};
-  };
-  minimise_bias_free(towards_zero, options, x);
-  EXPECT_NEAR(x[0], 0, 1e-5);
 }
 
 TEST(BiasFreeTest, WhatIsLeftOfTheStartIsWhatAnotherStartChanges) {
