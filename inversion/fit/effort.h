@@ -11,7 +11,7 @@ struct Effort {
   bool robust = true;    // false: no robust weights, whatever the options say
   int approach_steps = BiasFreeOptions{}.approach_steps;  // of bias_free.h, as the next
   int joint_steps = BiasFreeOptions{}.joint_steps;
-  bool by_whole_hessian = false;  // mean_terms.h
+  bool by_whole_hessian = false;  // JoinedSets::whole_hessian
 };
 
 // With fewer paths the product of two halves' errors is larger than the bias that those steps are to remove.

@@ -49,8 +49,8 @@ FitRound solve(const ViewObjective& objective, const Search& search, double prio
   ceres::Problem problem;
   problem.AddResidualBlock(new DataTerm(objective, static_cast<int>(unknowns.size())), nullptr, unknowns.data());
   add_penalties(*search.family, problem, unknowns.data());
-  const PriorTerm prior(prior_scale);
-  if (prior_scale > 0) problem.AddResidualBlock(new PriorTerm(prior_scale), nullptr, unknowns.data());
+  const ThreadPriorTerm prior(prior_scale);
+  if (prior_scale > 0) prior.add_to(problem, unknowns.data());
   set_bounds(problem, search, unknowns);
 
   FitRound round;

@@ -20,10 +20,10 @@ constexpr double kEnergyPenalty = 30;
 constexpr double kMostFiberAbsorption = 50;  // per radius: black
 constexpr double kLeastRoughness = 0.02;
 
-// Energy beyond 1 in the channel that R sends most of, at evenly spaced c, both ends included: it is there that fits
-// exceed it first. Of a thread with `count` unknowns.
+// Energy beyond 1, below 0 where there is less, in the channel that R sends most of, at evenly spaced c, both ends
+// included: it is there that fits exceed it first. Of a thread with `count` unknowns.
 template <int count>
-struct EnergyTerm {
+struct EnergyExcess {
   template <class S>
   bool operator()(const S* u, S* residuals) const {
     renderer::BasicThreadParameters<S> p;
@@ -37,12 +37,34 @@ struct EnergyTerm {
     for (int i = 0; i < kEnergyAngles; ++i) {
       const double c = i / (kEnergyAngles - 1.0);
       const auto lambda = renderer::thread_lobe_energies<S>(p, c);
-      const S excess = tint * lambda[0] + lambda[1] + lambda[2] - S(1.0);
-      residuals[i] = excess > S(0.0) ? S(weight) * excess : S(0.0);
+      residuals[i] = S(weight) * (tint * lambda[0] + lambda[1] + lambda[2] - S(1.0));
     }
     return true;
   }
 };
+
+template <int count>
+struct EnergyTerm {
+  template <class S>
+  bool operator()(const S* u, S* residuals) const {
+    EnergyExcess<count>()(u, residuals);
+    for (int i = 0; i < kEnergyAngles; ++i)
+      if (!(residuals[i] > S(0.0))) residuals[i] = S(0.0);
+    return true;
+  }
+};
+
+template <int count>
+EnergyLimits limits_at(const VectorXd& unknowns) {
+  EnergyLimits limits{.excess = VectorXd(kEnergyAngles), .rows = Eigen::MatrixXd(kEnergyAngles, count)};
+  Eigen::Matrix<double, kEnergyAngles, count, Eigen::RowMajor> rows;
+  const double* parameters = unknowns.data();
+  double* jacobian = rows.data();
+  ceres::AutoDiffCostFunction<EnergyExcess<count>, kEnergyAngles, count>(new EnergyExcess<count>)
+      .Evaluate(&parameters, limits.excess.data(), &jacobian);
+  limits.rows = rows;
+  return limits;
+}
 
 // The weighted sum of unknowns where positive, as in eq. 6.
 struct Hinge {
@@ -67,10 +89,11 @@ void add_hinge(ceres::Problem& problem, double* unknowns, Hinge hinge) {
 }
 
 template <int count>
-void add_thread_penalties(ceres::Problem& problem, double* unknowns) {
-  problem.AddResidualBlock(
-      new ceres::AutoDiffCostFunction<EnergyTerm<count>, kEnergyAngles, count>(new EnergyTerm<count>), nullptr,
-      unknowns);
+void add_thread_penalties(ceres::Problem& problem, double* unknowns, bool with_energies) {
+  if (with_energies)
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<EnergyTerm<count>, kEnergyAngles, count>(new EnergyTerm<count>), nullptr,
+        unknowns);
   add_hinge<count>(problem, unknowns, {{{kL1, 1}, {kL0, -1}}});  // lambda_0(1) - lambda_0(0)
 }
 
@@ -98,7 +121,7 @@ FamilyUnknowns thread_unknowns() {
   std::vector<VectorXd> starts{unknowns_of(starting_thread())};
   for (const renderer::ThreadParameters& start : other_starting_threads()) starts.emplace_back(unknowns_of(start));
   return {.names = {"sigma_a_r", "sigma_a_g", "sigma_a_b", "alpha_r", "alpha_tt", "alpha_trt", "beta_r", "beta_tt",
-                    "beta_trt", "l0", "l1", "kappa", "r1a", "log_r2a", "log_r2b", "n2"},
+                    "beta_trt", "l0", "l1", "kappa", "r1a", "d2", "w2", "n2"},
           .lower = lower_bounds(),
           .upper = upper_bounds(),
           .starts = std::move(starts),
@@ -134,12 +157,13 @@ FamilyUnknowns unknowns(const BundleFamily&) {
 // The unknowns are the thread's parameters. The paper clamps r0c and r1a to be non-negative and roughnesses and
 // absorption have a range of their own; the other energies are free.
 FamilyUnknowns unknowns(const PaperFamily&) {
+  constexpr double kMostPrinted = 1e4;  // energy, which the paper leaves free
   const renderer::ThreadParameters p = starting_thread();
   VectorXd lower = lower_bounds(), upper = upper_bounds(), start(kThreadParameterCount);
   start << p.sigma_a, p.alpha[0], p.alpha[1], p.alpha[2], p.beta[0], p.beta[1], p.beta[2], p.r0a, p.r0b, p.r0c, p.r1a,
       p.r2a, p.r2b, p.r2c;
-  lower.tail(kThreadParameterCount - kR0a).setConstant(-renderer::kMostR2);
-  upper.tail(kThreadParameterCount - kR0a).setConstant(renderer::kMostR2);
+  lower.tail(kThreadParameterCount - kR0a).setConstant(-kMostPrinted);
+  upper.tail(kThreadParameterCount - kR0a).setConstant(kMostPrinted);
   lower[kR0c] = lower[kR1] = 0;
   return {.names = {"sigma_a_r", "sigma_a_g", "sigma_a_b", "alpha_r", "alpha_tt", "alpha_trt", "beta_r", "beta_tt",
                     "beta_trt", "r0a", "r0b", "r0c", "r1a", "r2a", "r2b", "r2c"},
@@ -261,7 +285,7 @@ renderer::ScatteringModel model_at(const ScatteringFamily& family, const VectorX
   return std::visit([&](const auto& of) { return renderer::ScatteringModel(parameters(of, u)); }, family);
 }
 
-void add_penalties(const ScatteringFamily& family, ceres::Problem& problem, double* unknowns) {
+void add_penalties(const ScatteringFamily& family, ceres::Problem& problem, double* unknowns, bool with_energies) {
   if (std::holds_alternative<PaperFamily>(family)) {
     add_hinge<kThreadParameterCount>(problem, unknowns, {{{kR0a, 1}, {kR0b, 1}}});
     add_hinge<kThreadParameterCount>(problem, unknowns, {{{kR2b, -1}}});
@@ -269,8 +293,14 @@ void add_penalties(const ScatteringFamily& family, ceres::Problem& problem, doub
     return;
   }
   if (const auto* thread = std::get_if<ThreadFamily>(&family))
-    thread->tinted ? add_thread_penalties<kTintedCount>(problem, unknowns)
-                   : add_thread_penalties<kThreadParameterCount>(problem, unknowns);
+    thread->tinted ? add_thread_penalties<kTintedCount>(problem, unknowns, with_energies)
+                   : add_thread_penalties<kThreadParameterCount>(problem, unknowns, with_energies);
+}
+
+EnergyLimits energy_limits(const ScatteringFamily& family, const VectorXd& u) {
+  const auto* thread = std::get_if<ThreadFamily>(&family);
+  if (!thread) return {.excess = VectorXd(0), .rows = Eigen::MatrixXd(0, u.size())};
+  return thread->tinted ? limits_at<kTintedCount>(u) : limits_at<kThreadParameterCount>(u);
 }
 
 BlockShader shader_at(const ScatteringFamily& family, const VectorXd& u) {

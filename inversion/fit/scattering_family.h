@@ -59,7 +59,15 @@ renderer::ScatteringModel model_at(const ScatteringFamily& family, const Eigen::
 // Adds what the loss asks for besides agreement with the views; `unknowns` is the problem's only parameter block.
 // Threads pay for lobes' energies whose sum exceeds 1 at some angle, and for lambda_0(1) > lambda_0(0) [Xia 2025,
 // eq. 6]; the paper's thread pays the three hinges of eq. 6 alone.
-void add_penalties(const ScatteringFamily& family, ceres::Problem& problem, double* unknowns);
+void add_penalties(const ScatteringFamily& family, ceres::Problem& problem, double* unknowns,
+                   bool with_energies = true);
+
+// What threads pay for energies: half the square of each `excess` that is positive.
+struct EnergyLimits {
+  Eigen::VectorXd excess;  // of the sum over 1 at some angles, times the root of what it costs; other families: none
+  Eigen::MatrixXd rows;    // angles x unknowns: its derivatives
+};
+EnergyLimits energy_limits(const ScatteringFamily& family, const Eigen::VectorXd& unknowns);
 
 // A family's model at some unknowns, prepared to shade blocks.
 struct ThreadShader {

@@ -29,7 +29,7 @@ struct Attempt {
   int start = 0;  // its number
   Eigen::VectorXd unknowns;
   std::vector<FitRound> rounds{};
-  double prior_scale = 0;              // of PriorTerm, in the last round
+  double prior_scale = 0;              // of ThreadPriorTerm, in the last round
   std::vector<double> view_weights{};  // robust_weights.h; empty: 1
   // How the unknowns would spread over other noise; empty: as Levenberg-Marquardt's last round says.
   Eigen::MatrixXd covariance{};

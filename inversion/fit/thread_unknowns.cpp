@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kMostAbsorption = 50;  // per thread radius: black
 constexpr double kLeastRoughness = 0.02, kLeastTint = 1e-3;
-using renderer::kLeastR2a, renderer::kLeastR2b, renderer::kMostR2, renderer::kMostEnergyTerm;
+using renderer::kLeastD2, renderer::kLeastW2, renderer::kMostW2, renderer::kMostEnergyTerm;
 
 }  // namespace
 
@@ -15,9 +15,9 @@ using Eigen::VectorXd;
 
 ThreadUnknowns unknowns_of(const renderer::ThreadParameters& p) {
   ThreadUnknowns u;
-  const double l1 = p.r0a + p.r0b + p.r0c;
+  const double l1 = p.r0a + p.r0b + p.r0c, sum2 = p.r2a + p.r2b;
   u << p.sigma_a, p.alpha[0], p.alpha[1], p.alpha[2], p.beta[0], p.beta[1], p.beta[2], p.r0c, l1, -p.r0a, p.r1a,
-      std::log(std::max(p.r2a, kLeastR2a)), std::log(std::max(p.r2b, kLeastR2b)), p.r2c + 1 / (p.r2a + p.r2b);
+      p.r2a / (sum2 * sum2), p.r2a / sum2, p.r2c + 1 / sum2;
   return u.cwiseMax(lower_bounds()).cwiseMin(upper_bounds());
 }
 
@@ -61,18 +61,18 @@ ThreadJacobian parameters_by_unknowns(const ThreadUnknowns& u) {
   j(kR0b, kL0) = -1, j(kR0b, kL1) = 1, j(kR0b, kConcavity) = 1;
   j(kR0c, kL0) = 1;
   j(kR1, kR1a) = 1;
-  const double a = std::exp(u[kLogR2a]), b = std::exp(u[kLogR2b]), sum2 = (a + b) * (a + b);
-  j(kR2a, kLogR2a) = a;
-  j(kR2b, kLogR2b) = b;
-  j(kR2c, kLogR2a) = a / sum2, j(kR2c, kLogR2b) = b / sum2, j(kR2c, kN2) = 1;
+  const double d = u[kD2], w = u[kW2];
+  j(kR2a, kD2) = -w * w / (d * d), j(kR2a, kW2) = 2 * w / d;
+  j(kR2b, kD2) = -w * (1 - w) / (d * d), j(kR2b, kW2) = (1 - 2 * w) / d;
+  j(kR2c, kD2) = -1 / w, j(kR2c, kW2) = d / (w * w), j(kR2c, kN2) = 1;
   return j;
 }
 
 ThreadUnknowns lower_bounds() {
   ThreadUnknowns low = ThreadUnknowns::Zero();
   low.segment<6>(kAlpha).setConstant(kLeastRoughness);
-  low[kLogR2a] = std::log(kLeastR2a);
-  low[kLogR2b] = std::log(kLeastR2b);
+  low[kD2] = kLeastD2;
+  low[kW2] = kLeastW2;
   return low;
 }
 
@@ -80,7 +80,7 @@ ThreadUnknowns upper_bounds() {
   ThreadUnknowns high = ThreadUnknowns::Constant(kMostEnergyTerm);
   high.head<3>().setConstant(kMostAbsorption);
   high.segment<6>(kAlpha).setOnes();
-  high[kLogR2a] = high[kLogR2b] = std::log(kMostR2);
+  high[kW2] = kMostW2;
   return high;
 }
 

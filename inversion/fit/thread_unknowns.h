@@ -20,8 +20,8 @@ enum Unknown {
   kL1,
   kConcavity,
   kR1a,
-  kLogR2a,
-  kLogR2b,
+  kD2,
+  kW2,
   kN2
 };  // from kL0 on: EnergyUnknown
 // The energies among a thread's parameters as printed (renderer::thread_parameters).

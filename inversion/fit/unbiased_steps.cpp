@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "inversion/fit/block_covariance.h"
 #include "inversion/fit/loss_terms.h"
 #include "inversion/fit/noise_weights.h"
 #include "inversion/fit/step_coordinates.h"
@@ -16,9 +17,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// What a set of paths counts of the next one in `UnbiasedEnd::mean`, on the approach: the Hessian changes less there
+// What a set of paths counts of the next one in `UnbiasedEnd::sets`, on the approach: the Hessian changes less there
 // than by its noise.
-constexpr double kOldInMean = 0.8;
+constexpr double kOldInCertainty = 0.8;
 
 // LinearisedFit::bounds.
 std::vector<int> touched_bounds(const Search& search, const VectorXd& unknowns) {
@@ -44,9 +45,19 @@ LinearisedFit linearised(const ViewObjective& objective, const Search& search, d
   for (int k : search.held) fit.held[static_cast<std::size_t>(k)] = true;
   fit.bounds = touched_bounds(search, unknowns);
   fit.scales = VectorXd::Ones(unknowns.size());
-  fit.penalty_jacobian = OtherTerms(*search.family, 0).jacobian(unknowns);
-  if (prior_scale > 0) fit.prior_jacobian = PriorTerm(prior_scale).jacobian();
+  fit.penalty_jacobian = OtherTerms(*search.family, 0, false).penalty_jacobian(unknowns);
+  if (prior_scale > 0) fit.prior_jacobian = ThreadPriorTerm(prior_scale).known_rows(unknowns);
   return fit;
+}
+
+// Adds a set of paths traced at these coordinates, by the unknowns' slopes there, its residuals times their factors.
+void add_set(JoinedSets& sets, ViewObjective::Halves both, const VectorXd& factors, const VectorXd& at,
+             const VectorXd& slopes, double old) {
+  for (std::size_t h = 0; h < 2; ++h) {
+    both.residuals[h].array() *= factors.array();
+    both.jacobians[h] = factors.asDiagonal() * both.jacobians[h] * slopes.asDiagonal();
+  }
+  sets.add(both.residuals, both.jacobians, at, old);
 }
 
 }  // namespace
@@ -65,35 +76,42 @@ UnbiasedEnd remove_bias(ViewObjective& objective, const Search& search, int firs
   const auto count = attempt.unknowns.size();
   UnbiasedEnd end{.start_covariance =
                       attempt.covariance.size() > 0 ? attempt.covariance : MatrixXd::Zero(count, count)};
-  double sets = 0, squared_sets = 0;
+  JoinedSets sets;
   const BiasFreeOptions steps{.lower = coordinates.of(search.unknowns.lower),
                               .upper = coordinates.of(search.unknowns.upper),
                               .held = search.held,
                               .exact =
                                   [&](const VectorXd& at) {
                                     const VectorXd unknowns = coordinates.unknowns(at);
-                                    OtherTerms others(*search.family, end.prior_scale);
+                                    OtherTerms others(*search.family, end.prior_scale, false);
                                     return coordinates.of(others.at(unknowns), unknowns);
+                                  },
+                              .limits =
+                                  [&](const VectorXd& at) {
+                                    const VectorXd unknowns = coordinates.unknowns(at);
+                                    EnergyLimits limits = energy_limits(*search.family, unknowns);
+                                    limits.rows *= coordinates.slopes(unknowns).asDiagonal();
+                                    return BiasFreeOptions::Limits{std::move(limits.excess), std::move(limits.rows)};
                                   },
                               .approach_steps = search.effort.approach_steps,
                               .joint_steps = search.effort.joint_steps};
-  const auto loss = [&](int step, const VectorXd& at) {
-    const VectorXd unknowns = coordinates.unknowns(at);
+  const auto loss = [&](int step, const VectorXd& at, double old) {
+    const VectorXd unknowns = coordinates.unknowns(at), slopes = coordinates.slopes(unknowns);
     objective.trace(unknowns, paths, seed_of_trace(options, first_trace + step), [&](int, int) { show(step); });
-    ViewObjective::Halves both = objective.halves(unknowns);
+    const ViewObjective::Halves both = objective.halves(unknowns);
     end.factors = weights.factors();
     const double variance = weights.weighted_variance(), alike = weights.variance_alike(photographs);
     learn_noise(both);
-    scale_rows(both, end.factors);
-    const double old = step < steps.approach_steps ? steps.old : 1.0;
-    end.mean.add(both, unknowns, std::max(old, kOldInMean));
-    sets = old * sets + 1, squared_sets = old * old * squared_sets + 1;
-    end.variance = alike + (variance - alike) * squared_sets / (sets * sets);
+    add_set(sets, both, end.factors, at, slopes, old);
+    add_set(end.sets, both, end.factors, at, slopes, std::max(old, kOldInCertainty));
+    end.variance = alike + (variance - alike) * sets.variance_of_mean();
     if (with_prior) end.prior_scale = options.prior_weight * end.variance;
-    BiasFreeTerms terms = data_terms(both);
-    if (search.effort.by_whole_hessian) terms.hessian = whole_hessian(both);
+    BiasFreeTerms terms = sets.at(at);
+    if (search.effort.by_whole_hessian) terms.hessian = sets.whole_hessian();
     terms.variance = variance;
-    return coordinates.of(std::move(terms), unknowns);
+    terms.curvature_deviation = [&](const VectorXd& direction) { return sets.curvature_deviation(direction); };
+    end.damping = variance / (steps.reach * steps.reach);
+    return terms;
   };
   if (options.robust && search.effort.robust && attempt.view_weights.empty())
     attempt.view_weights = objective.weigh_robustly(attempt.unknowns);
@@ -103,7 +121,9 @@ UnbiasedEnd remove_bias(ViewObjective& objective, const Search& search, int firs
   const VectorXd slopes = coordinates.slopes(attempt.unknowns);
   BiasFreeEnd reached = minimise_bias_free(loss, steps, at);
   attempt.unknowns = coordinates.unknowns(at);
-  end.left = coordinates.slopes(attempt.unknowns).asDiagonal() * reached.left * slopes.cwiseInverse().asDiagonal();
+  const VectorXd slopes_there = coordinates.slopes(attempt.unknowns);
+  end.left = slopes_there.asDiagonal() * reached.left * slopes.cwiseInverse().asDiagonal();
+  end.gain = slopes_there.asDiagonal() * reached.gain * slopes_there.asDiagonal();
   round.losses = std::move(reached.losses);
   round.steps = static_cast<int>(round.losses.size());
   round.loss_before = round.losses.front(), round.loss_after = round.losses.back();
@@ -120,19 +140,29 @@ Certainty certainty_at(const ViewObjective& objective, const Search& search, dou
     fit.jacobian = end.factors.asDiagonal() * fit.jacobian;
     fit.variances.array() *= end.factors.array().square();
   }
-  if (end.mean.empty()) end.mean.add(objective.halves(unknowns), unknowns);
-  fit.hessian = end.mean.hessian();
-  fit.gradient_covariance = end.mean.gradient_covariance(unknowns);
-  fit.gradient = end.mean.gradient(unknowns) + OtherTerms(*search.family, prior_scale).at(unknowns).gradient;
+  const StepCoordinates coordinates(search.unknowns);
+  const VectorXd at = coordinates.of(unknowns), slopes = coordinates.slopes(unknowns);
+  if (end.sets.empty())
+    add_set(end.sets, objective.halves(unknowns), VectorXd::Ones(objective.residual_count()), at, slopes, 1);
+  const VectorXd inverse = slopes.cwiseInverse();
+  const MatrixXd gradients = inverse.asDiagonal() * end.sets.gradients(at);
+  fit.hessian = inverse.asDiagonal() * end.sets.hessian() * inverse.asDiagonal();
+  fit.curvature_deviation = [&](const VectorXd& direction) {
+    return end.sets.curvature_deviation(inverse.cwiseProduct(direction));
+  };
+  fit.gradient_covariance = block_covariance(gradients);
+  fit.gradient = gradients.rowwise().sum() + OtherTerms(*search.family, prior_scale).at(unknowns).gradient;
   fit.mean_variance = end.variance;
   fit.left = std::move(end.left);
+  fit.gain = std::move(end.gain);
+  fit.damping = end.damping;
   fit.start_covariance = std::move(end.start_covariance);
   return certainty_of(fit);
 }
 
 MatrixXd covariance_of_round(const ViewObjective& objective, const Search& search, const Attempt& attempt) {
   LinearisedFit fit = linearised(objective, search, attempt.prior_scale, attempt.unknowns);
-  fit.gradient_covariance = gradient_covariance(fit.jacobian, fit.residuals);
+  fit.gradient_covariance = block_covariance(fit.jacobian.transpose() * fit.residuals.asDiagonal());
   return certainty_of(fit).noise_covariance;
 }
 

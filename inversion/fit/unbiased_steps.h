@@ -5,19 +5,20 @@
 #include <Eigen/Core>
 #include <functional>
 
-#include "inversion/fit/mean_terms.h"
 #include "inversion/fit/search.h"
 #include "inversion/fit/view_objective.h"
+#include "inversion/solve/joined_sets.h"
 
 namespace inversion {
 
 // What the steps have met.
 struct UnbiasedEnd {
-  MeanTerms mean{};                    // of the sets of paths
+  JoinedSets sets{};                   // of paths, by StepCoordinates
   Eigen::VectorXd factors{};           // of the residuals of eq. 6, as in the last of them; empty: 1
   double variance = 0;                 // of the mean residual of all sets, as the steps weigh them
-  double prior_scale = 0;              // of PriorTerm
-  Eigen::MatrixXd left{};              // BiasFreeEnd, of the unknowns
+  double prior_scale = 0;              // of ThreadPriorTerm
+  Eigen::MatrixXd left{}, gain{};      // BiasFreeEnd, of the unknowns
+  double damping = 0;                  // of the last step
   Eigen::MatrixXd start_covariance{};  // of the unknowns
 };
 

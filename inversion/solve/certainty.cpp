@@ -59,20 +59,39 @@ MatrixXd in_chosen(const LinearisedFit& fit, const MatrixXd& matrix, const std::
 MatrixXd data_hessian(const LinearisedFit& fit, const MatrixXd& jacobian, const std::vector<int>& chosen) {
   if (fit.hessian.size() == 0) return jacobian.transpose() * jacobian;
   const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(in_chosen(fit, fit.hessian, chosen));
-  return axes.eigenvectors() * axes.eigenvalues().cwiseAbs().asDiagonal() * axes.eigenvectors().transpose();
+  VectorXd curvatures = axes.eigenvalues().cwiseAbs();
+  for (Eigen::Index k = 0; fit.curvature_deviation && k < curvatures.size(); ++k) {
+    VectorXd direction = VectorXd::Zero(fit.scales.size());
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+      direction[chosen[i]] = fit.scales[chosen[i]] * axes.eigenvectors()(static_cast<Eigen::Index>(i), k);
+    curvatures[k] = std::max(curvatures[k], fit.curvature_deviation(direction));
+  }
+  return axes.eigenvectors() * curvatures.asDiagonal() * axes.eigenvectors().transpose();
 }
 
-// The covariance of where the steps end, by that of the minimum.
-MatrixXd of_the_end(const LinearisedFit& fit, const MatrixXd& of_minimum, const std::vector<int>& chosen) {
-  if (fit.left.size() == 0) return of_minimum;
-  const VectorXd scales = columns(fit.scales.transpose(), chosen).transpose(), inverse = scales.cwiseInverse();
-  const auto of_chosen = [&](const MatrixXd& matrix) { return columns(columns(matrix, chosen).transpose(), chosen); };
-  const MatrixXd left = inverse.asDiagonal() * of_chosen(fit.left).transpose() * scales.asDiagonal();
-  const MatrixXd gone = MatrixXd::Identity(left.rows(), left.cols()) - left;
-  MatrixXd end = gone * of_minimum * gone.transpose();
-  if (fit.start_covariance.size() > 0)
-    end += left * (inverse.asDiagonal() * of_chosen(fit.start_covariance) * inverse.asDiagonal()) * left.transpose();
-  return end;
+// The spread of where the steps end, by the gradient's covariance, in the scaled chosen unknowns; `inverse` is that of
+// their Hessian. Unknowns at a bound have no gain: their spread is that without the bound.
+MatrixXd spread_of_end(const LinearisedFit& fit, const MatrixXd& noise, const MatrixXd& inverse,
+                       const std::vector<int>& chosen) {
+  const bool bounded =
+      std::ranges::any_of(chosen, [&](int k) { return fit.bounds[static_cast<std::size_t>(k)] != 0; });
+  if (fit.gain.size() == 0 || bounded) return inverse * noise * inverse;
+  const VectorXd scales = columns(fit.scales.transpose(), chosen).transpose(), by_scales = scales.cwiseInverse();
+  const auto of_chosen = [&](const MatrixXd& matrix) {
+    return MatrixXd(columns(columns(matrix, chosen).transpose(), chosen).transpose());
+  };
+  const MatrixXd gain = by_scales.asDiagonal() * of_chosen(fit.gain) * by_scales.asDiagonal();
+  MatrixXd end = gain * noise * gain.transpose();
+  if (fit.start_covariance.size() == 0) return end;
+  const MatrixXd left = by_scales.asDiagonal() * of_chosen(fit.left) * scales.asDiagonal(),
+                 start = by_scales.asDiagonal() * of_chosen(fit.start_covariance) * by_scales.asDiagonal();
+  return end + left * start * left.transpose();
+}
+
+// No direction is less certain than by a deviation of 1: where noise has made the Hessian too flat it would be.
+MatrixXd at_most_one(const MatrixXd& covariance) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(0.5 * (covariance + covariance.transpose()));
+  return axes.eigenvectors() * axes.eigenvalues().cwiseMin(1).asDiagonal() * axes.eigenvectors().transpose();
 }
 
 // What is known of some of the unknowns while the others stay where they are, in units of the scales.
@@ -98,12 +117,17 @@ Known known_of(const LinearisedFit& fit, const std::vector<int>& chosen) {
   const MatrixXd noise = fit.gradient_covariance.size() > 0
                              ? in_chosen(fit, fit.gradient_covariance, chosen)
                              : MatrixXd(jacobian.transpose() * fit.variances.asDiagonal() * jacobian);
-  const MatrixXd inverse = (hessian + floor * identity).ldlt().solve(identity);
+  const auto inverse_with = [&](double more) {
+    return MatrixXd((hessian + (floor + more) * identity).ldlt().solve(identity));
+  };
   // The deviation of 1 is one more piece of information on each unknown.
-  const MatrixXd weak = (hessian + (variance + floor) * identity).ldlt().solve(identity);
+  const MatrixXd weak = inverse_with(variance);
   const MatrixXd total =
       weak * (noise + misfit_part(fit, jacobian) + variance * prior + variance * variance * identity) * weak;
-  return {chosen, hessian, of_the_end(fit, inverse * noise * inverse, chosen), total};
+  return {.chosen = chosen,
+          .hessian = hessian,
+          .by_noise = spread_of_end(fit, noise, inverse_with(fit.damping), chosen),
+          .total = at_most_one(total)};
 }
 
 // Moments of a distance t from the bound, over the variance without the bound.

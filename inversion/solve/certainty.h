@@ -9,9 +9,9 @@
 // colours of a block share the paths and J is as noisy as the residuals. Where the model cannot explain a block, its
 // misfit counts in G as noise.
 //
-// Steps that damp directions which the data hardly tell do not go all the way to the minimum. Where they leave L of
-// what separates it from their start, whose covariance is C_0, the spread is (1 - L) C (1 - L)' + L C_0 L'. The total
-// is that of the minimum.
+// Steps that damp directions which the data hardly tell do not go all the way to the minimum. Where a gradient greater by
+// one moves their end by K, and they leave L of what separates the minimum from their start, whose covariance is C_0,
+// the spread is K G K' + L C_0 L'. The total is that of the minimum.
 //
 // The total covariance contains besides: what the model cannot explain, which is a view's mean squared residual beyond
 // its noise, taken as common to all its blocks, because misfit is smooth over a view; the prior's own uncertainty; and
@@ -25,6 +25,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 namespace inversion {
@@ -46,12 +47,16 @@ struct Certainty {
 struct LinearisedFit {
   Eigen::MatrixXd jacobian;             // residuals x unknowns
   Eigen::MatrixXd hessian;              // of the data, without the noise of J itself; may be empty: J' J
+  // How far noise leaves the data's Hessian uncertain along a direction, of the unknowns. Curvatures that it hides count
+  // as large as it. May be empty: not at all.
+  std::function<double(const Eigen::VectorXd& direction)> curvature_deviation{};
   Eigen::MatrixXd gradient_covariance;  // G; may be empty: J' S J
   Eigen::VectorXd residuals, variances;
   // Of a residual in the loss that was minimised, if that is the mean over more paths than `residuals` are of; 0: the
   // mean square of `residuals`.
   double mean_variance = 0;
-  Eigen::MatrixXd left, start_covariance;  // L and C_0; may be empty: 0
+  Eigen::MatrixXd gain, left, start_covariance;  // K, L and C_0; may be empty: H^-1, 0 and 0
+  double damping = 0;                            // of the last step, for the spread of what is at a bound
   std::vector<int> views;                  // the view of each residual, from 0
   Eigen::MatrixXd penalty_jacobian;        // penalties x unknowns; may have no rows
   Eigen::MatrixXd prior_jacobian;          // the prior's terms, of variance `mean_variance`; may be empty

@@ -85,8 +85,8 @@ std::array<ArrayXd, 3> add_lobes(const AzimuthalData& data, const VectorXd& u, c
 // Where fits start: the solutions for white and for dyed bundles, of coarse and fine fibers, lie near one of them.
 constexpr std::array<std::array<double, 3>, 4> kStartBetas{
     {{0.6, 0.6, 0.1}, {0.5, 0.85, 0.2}, {0.5, 0.8, 0.3}, {0.8, 0.4, 0.05}}};
-const std::array<std::vector<double>, 2> kStartEnergies{std::vector<double>{0.6, 0.3, 0.4, 0.6, 2.5, -1, 0.03},
-                                                        std::vector<double>{0.4, 0.02, 0.05, 0.9, 2.4, -1.8, 0.1}};
+const std::array<std::vector<double>, 2> kStartEnergies{std::vector<double>{0.6, 0.3, 0.4, 0.6, 0.08, 0.97, 0.03},
+                                                        std::vector<double>{0.4, 0.02, 0.05, 0.9, 0.09, 0.985, 0.1}};
 
 VectorXd start_of(const std::array<double, 3>& beta, const std::vector<double>& energies, std::size_t sigmas) {
   VectorXd start(3 + static_cast<Eigen::Index>(energies.size() + sigmas));
@@ -166,8 +166,8 @@ JointThreadFit fit_thread_jointly(const std::vector<AzimuthalData>& data) {
   DensityModel model;
   model.unknowns.assign(kBetas.begin(), kBetas.end());
   for (const char* name : {"L0", "L1", "concavity", "r1a"}) model.unknowns.push_back({name, 0, kMostEnergyTerm});
-  model.unknowns.push_back({"log r2a", std::log(kLeastR2a), std::log(kMostR2)});
-  model.unknowns.push_back({"log r2b", std::log(kLeastR2b), std::log(kMostR2)});
+  model.unknowns.push_back({"d2", kLeastD2, kMostEnergyTerm});
+  model.unknowns.push_back({"w2", kLeastW2, kMostW2});
   model.unknowns.push_back({"n2", 0, kMostEnergyTerm});
   const std::vector<FitUnknown> sigmas = sigma_unknowns(fit.absorptions);
   model.unknowns.insert(model.unknowns.end(), sigmas.begin(), sigmas.end());

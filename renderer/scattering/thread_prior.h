@@ -2,7 +2,7 @@
 // colourless parameters over a library of multi-fiber simulations. Fits lean on it where their views say little.
 //
 // Unknowns, in this order: beta (3, roughness 0.02..1), then the energies of thread_energies.h (L0, L1, concavity, r1a,
-// log r2a, log r2b, n2). Longitudinal roughness alpha is not among them: the simulated fibers are smooth, so that the
+// d2, w2, n2). Longitudinal roughness alpha is not among them: the simulated fibers are smooth, so that the
 // simulation says nothing about it. Lobe centres are those of kThreadEta, as in the renderer.
 #pragma once
 

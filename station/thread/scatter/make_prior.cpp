@@ -42,13 +42,12 @@ json make_prior(const std::filesystem::path& out, std::uint64_t seed, ProgressSt
                        {"absorptions_per_fiber_radius", fit.thread.absorptions},
                        {"relative_l2_error", rounded(fit.error)},
                        {"unknowns", numbers(fit.unknowns)}});
-  const json document{
-      {"made_by", "threadstation scatter prior --seed " + std::to_string(seed)},
-      {"unknowns", {"beta_R", "beta_TT", "beta_TRT", "L0", "L1", "concavity", "r1a", "log r2a", "log r2b", "n2"}},
-      {"threads", prior.threads},
-      {"mean", numbers(prior.mean)},
-      {"covariance", covariance},
-      {"library", library}};
+  const json document{{"made_by", "threadstation scatter prior --seed " + std::to_string(seed)},
+                      {"unknowns", {"beta_R", "beta_TT", "beta_TRT", "L0", "L1", "concavity", "r1a", "d2", "w2", "n2"}},
+                      {"threads", prior.threads},
+                      {"mean", numbers(prior.mean)},
+                      {"covariance", covariance},
+                      {"library", library}};
   write_json_file(out, document);
   return document;
 }

@@ -72,8 +72,11 @@ TEST(CertaintyTest, StepsThatDoNotReachTheMinimumSpreadByWhatTheyLeaveOfTheirSta
   const MatrixXd hessian = fit.jacobian.transpose() * fit.jacobian, identity = MatrixXd::Identity(3, 3);
   const Certainty minimum = certainty_of(fit);
   const auto solver = MatrixXd(hessian + damping).ldlt();
-  fit.left = identity;
-  for (int step = 0; step < kSteps; ++step) fit.left = solver.solve(MatrixXd(damping * fit.left));
+  fit.left = identity, fit.gain = MatrixXd::Zero(3, 3);
+  for (int step = 0; step < kSteps; ++step) {
+    fit.left = solver.solve(MatrixXd(damping * fit.left));
+    fit.gain = solver.solve(MatrixXd(damping * fit.gain + identity));
+  }
   fit.start_covariance = kStartDeviation * kStartDeviation * identity;
   std::mt19937 random(3);
   std::normal_distribution<double> normal(0, 0.1), start(0, kStartDeviation);

@@ -42,11 +42,10 @@ renderer::ThreadParameters random_thread(std::mt19937& random) {
   u[kBeta] = between(0.35, 0.8), u[kBeta + 1] = between(0.35, 0.8), u[kBeta + 2] = between(0.12, 0.5);
   u[kL0] = between(0.3, 0.7), u[kL1] = between(0.1, 0.3), u[kConcavity] = between(0, 0.4);
   u[kR1a] = between(0.35, 0.65);
-  u[kLogR2a] = std::log(between(3, 15)), u[kLogR2b] = std::log(between(2, 6)), u[kN2] = between(0.05, 0.2);
-  if (const double share = kMostEnergy / most_energy(parameters_of(u)); share < 1) {
-    for (const int k : std::initializer_list<int>{kL0, kL1, kConcavity, kR1a, kN2}) u[k] *= share;
-    for (const int k : std::initializer_list<int>{kLogR2a, kLogR2b}) u[k] -= std::log(share);
-  }
+  const double r2a = between(3, 15), r2b = between(2, 6);
+  u[kD2] = r2a / ((r2a + r2b) * (r2a + r2b)), u[kW2] = r2a / (r2a + r2b), u[kN2] = between(0.05, 0.2);
+  if (const double share = kMostEnergy / most_energy(parameters_of(u)); share < 1)
+    for (const int k : std::initializer_list<int>{kL0, kL1, kConcavity, kR1a, kD2, kN2}) u[k] *= share;
   return parameters_of(u);
 }
 
