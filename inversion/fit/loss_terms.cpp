@@ -84,10 +84,10 @@ ThreadPriorTerm::Rows ThreadPriorTerm::known_rows(const VectorXd& unknowns) cons
 
 void ThreadPriorTerm::add_to(ceres::Problem& problem, double* unknowns) const {
   for (Eigen::Index k = 0; k < whitening_.rows(); ++k)
-    problem.AddResidualBlock(new WhitenedUnknown(whitening_.row(k), mean_),
-                             new ceres::ScaledLoss(new ceres::CauchyLoss(std::sqrt(kTailDegrees)), weight_ * kAtMean,
-                                                   ceres::TAKE_OWNERSHIP),
-                             unknowns);
+    problem.AddResidualBlock(
+        new WhitenedUnknown(whitening_.row(k), mean_),
+        new ceres::ScaledLoss(new ceres::CauchyLoss(std::sqrt(kTailDegrees)), weight_ * kAtMean, ceres::TAKE_OWNERSHIP),
+        unknowns);
 }
 
 OtherTerms::OtherTerms(const ScatteringFamily& family, double prior_weight, bool with_energies)

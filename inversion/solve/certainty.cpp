@@ -73,8 +73,7 @@ MatrixXd data_hessian(const LinearisedFit& fit, const MatrixXd& jacobian, const 
 // their Hessian. Unknowns at a bound have no gain: their spread is that without the bound.
 MatrixXd spread_of_end(const LinearisedFit& fit, const MatrixXd& noise, const MatrixXd& inverse,
                        const std::vector<int>& chosen) {
-  const bool bounded =
-      std::ranges::any_of(chosen, [&](int k) { return fit.bounds[static_cast<std::size_t>(k)] != 0; });
+  const bool bounded = std::ranges::any_of(chosen, [&](int k) { return fit.bounds[static_cast<std::size_t>(k)] != 0; });
   if (fit.gain.size() == 0 || bounded) return inverse * noise * inverse;
   const VectorXd scales = columns(fit.scales.transpose(), chosen).transpose(), by_scales = scales.cwiseInverse();
   const auto of_chosen = [&](const MatrixXd& matrix) {

@@ -45,8 +45,8 @@ struct Certainty {
 };
 
 struct LinearisedFit {
-  Eigen::MatrixXd jacobian;             // residuals x unknowns
-  Eigen::MatrixXd hessian;              // of the data, without the noise of J itself; may be empty: J' J
+  Eigen::MatrixXd jacobian;  // residuals x unknowns
+  Eigen::MatrixXd hessian;   // of the data, without the noise of J itself; may be empty: J' J
   // How far noise leaves the data's Hessian uncertain along a direction, of the unknowns. Curvatures that it hides count
   // as large as it. May be empty: not at all.
   std::function<double(const Eigen::VectorXd& direction)> curvature_deviation{};
@@ -57,10 +57,10 @@ struct LinearisedFit {
   double mean_variance = 0;
   Eigen::MatrixXd gain, left, start_covariance;  // K, L and C_0; may be empty: H^-1, 0 and 0
   double damping = 0;                            // of the last step, for the spread of what is at a bound
-  std::vector<int> views;                  // the view of each residual, from 0
-  Eigen::MatrixXd penalty_jacobian;        // penalties x unknowns; may have no rows
-  Eigen::MatrixXd prior_jacobian;          // the prior's terms, of variance `mean_variance`; may be empty
-  std::vector<bool> held;                  // unknowns that were not varied: no variance
+  std::vector<int> views;                        // the view of each residual, from 0
+  Eigen::MatrixXd penalty_jacobian;              // penalties x unknowns; may have no rows
+  Eigen::MatrixXd prior_jacobian;                // the prior's terms, of variance `mean_variance`; may be empty
+  std::vector<bool> held;                        // unknowns that were not varied: no variance
   // -1: at its lower bound, 1: at its upper one, 0: neither.
   std::vector<int> bounds;
   // The gradient of the whole loss at the end of the fit. It may be empty: unknowns at a bound then count as if the

@@ -51,8 +51,7 @@ MatrixXd JoinedSets::gradients(const VectorXd& unknowns) const {
 MatrixXd JoinedSets::hessian() const {
   const Eigen::Index count = sums_.rows() - 1;
   const VectorXd noise = noise_.rowwise().sum();
-  return whole_hessian() -
-         noise.reshaped(count + 1, count + 1).topLeftCorner(count, count) / (weights_ * weights_);
+  return whole_hessian() - noise.reshaped(count + 1, count + 1).topLeftCorner(count, count) / (weights_ * weights_);
 }
 
 // For each residual v' H v contains s^2 - n, with s = J v of the sets' sum and n the variance of s; s^2 varies by
@@ -63,8 +62,8 @@ double JoinedSets::curvature_deviation(const VectorXd& direction) const {
   double variance = 0;
   for (Eigen::Index row = 0; row < slopes.size(); ++row) {
     const double square = slopes[row] * slopes[row],
-                 noise = direction.dot(
-                     noise_.col(row).reshaped(count + 1, count + 1).topLeftCorner(count, count) * direction);
+                 noise = direction.dot(noise_.col(row).reshaped(count + 1, count + 1).topLeftCorner(count, count) *
+                                       direction);
     variance += 4 * std::max(0.0, square - noise) * noise + 2 * noise * noise;
   }
   return std::sqrt(variance) / (weights_ * weights_);

@@ -3,14 +3,14 @@
 //
 //   r_k(x) = r_k(x_k) + J_k (x - x_k),    by its halves a_k(x) and b_k(x) with r_k = (a_k + b_k) / 2
 //
-// with errors in residuals and Jacobians that are independent of those of all other halves. The square of the sets' mean
-// contains the mean's variance, which the halves' differences tell:
+// with errors in residuals and Jacobians that are independent of those of all other halves. The square of the sets'
+// mean contains the mean's variance, which the halves' differences tell:
 //
 //   L(x) = |sum_k w_k r_k(x)|^2 / 2 - sum_k w_k^2 |a_k(x) - b_k(x)|^2 / 8    over    (sum_k w_k)^2
 //
-// has the misfit of the mean alone for its mean. Of one set that is a' b / 2. Gradient and Hessian are those of L. Where
-// unknowns make up for each other J v is nearly 0 along them, and the noise of J decides how well their sum is told: in
-// the mean of each set's own a' b it falls with the root of the number of sets, in L with the number itself
+// has the misfit of the mean alone for its mean. Of one set that is a' b / 2. Gradient and Hessian are those of L.
+// Where unknowns make up for each other J v is nearly 0 along them, and the noise of J decides how well their sum is
+// told: in the mean of each set's own a' b it falls with the root of the number of sets, in L with the number itself
 // (JoinedSetsTest). Products over all pairs of halves would do so too, but take for noise, and so reward, that sets
 // traced at other places disagree.
 #pragma once
@@ -44,8 +44,8 @@ class JoinedSets {
 
  private:
   double weights_ = 0, squares_ = 0;  // sums of w_k and w_k^2
-  Eigen::MatrixXd sums_;   // (unknowns + 1) x residuals: sums of w_k (J_k, r_k(0))
-  Eigen::MatrixXd noise_;  // (unknowns + 1)^2 x residuals: the same numbers' covariance
+  Eigen::MatrixXd sums_;              // (unknowns + 1) x residuals: sums of w_k (J_k, r_k(0))
+  Eigen::MatrixXd noise_;             // (unknowns + 1)^2 x residuals: the same numbers' covariance
 };
 
 }  // namespace inversion

@@ -91,15 +91,16 @@ void set_straight_segments(RTCGeometry geometry, const CurveSet& curves) {
   auto* flags = static_cast<std::uint8_t*>(buffer(RTC_BUFFER_TYPE_FLAGS, RTC_FORMAT_UCHAR, sizeof(std::uint8_t)));
   if (!index || !flags) return;  // out of memory, which the device then says
   std::ranges::transform(curves.segments, index, [](std::uint32_t first) { return first + 1; });
-  std::fill_n(flags, curves.segments.size(), std::uint8_t{RTC_CURVE_FLAG_NEIGHBOR_LEFT | RTC_CURVE_FLAG_NEIGHBOR_RIGHT});
+  std::fill_n(flags, curves.segments.size(),
+              std::uint8_t{RTC_CURVE_FLAG_NEIGHBOR_LEFT | RTC_CURVE_FLAG_NEIGHBOR_RIGHT});
 }
 
 // Straight curves are cylinders to Embree, whose hits are solved for and not searched as those of splines. Their
 // parameter u is that of the splines.
 void add_round_curves(RTCDevice device, RTCScene scene, const CurveSet& curves) {
   const bool straight = are_straight(curves);
-  const RTCGeometry geometry = rtcNewGeometry(
-      device, straight ? RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE : RTC_GEOMETRY_TYPE_ROUND_BSPLINE_CURVE);
+  const RTCGeometry geometry =
+      rtcNewGeometry(device, straight ? RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE : RTC_GEOMETRY_TYPE_ROUND_BSPLINE_CURVE);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, curves.control_points.data(), 0,
                              sizeof(Eigen::Vector4f), curves.control_points.size());
   (straight ? set_straight_segments : set_spline_segments)(geometry, curves);

@@ -76,8 +76,8 @@ TEST(FitCertaintyTest, PredictedDeviationsMatchTheSpreadOverFiftyDrawsOfNoise) {
   for (const int k : {0, 1, 2}) EXPECT_NEAR(mean[k], truth[k], 0.08) << names[static_cast<std::size_t>(k)];
   EXPECT_NEAR(mean[kAlpha + 2], truth[kAlpha + 2], 0.01);
   EXPECT_NEAR(mean[kBeta + 1], truth[kBeta + 1], 0.005);
-  // beta_R is hardly told by these six views, and l0 and the concavity with it: they wander as far as their bounds, as no
-  // linearised covariance does. alpha_TRT and r2's shape are near the limits above. All of them are open.
+  // beta_R is hardly told by these six views, and l0 and the concavity with it: they wander as far as their bounds, as
+  // no linearised covariance does. alpha_TRT and r2's shape are near the limits above. All of them are open.
 }
 
 }  // namespace

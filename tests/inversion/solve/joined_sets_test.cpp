@@ -28,9 +28,9 @@ struct Halves {
 struct Problem {
   VectorXd truth;
   MatrixXd jacobian;
-  double photographs;          // deviations of a residual
-  double paths;                // those of a half of the paths, alike in the three colours of a block
-  double jacobian_noise = 0;   // of an entry of a half's Jacobian
+  double photographs;         // deviations of a residual
+  double paths;               // those of a half of the paths, alike in the three colours of a block
+  double jacobian_noise = 0;  // of an entry of a half's Jacobian
   std::mt19937 random;
 
   Problem(double photographs_in, double paths_in, std::uint32_t seed)
