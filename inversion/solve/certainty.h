@@ -9,9 +9,9 @@
 // colours of a block share the paths and J is as noisy as the residuals. Where the model cannot explain a block, its
 // misfit counts in G as noise.
 //
-// Steps that damp directions which the data hardly tell do not go all the way to the minimum. Where a gradient greater by
-// one moves their end by K, and they leave L of what separates the minimum from their start, whose covariance is C_0,
-// the spread is K G K' + L C_0 L'. The total is that of the minimum.
+// Steps that damp directions which the data hardly tell do not go all the way to the minimum. Where a gradient greater
+// by one moves their end by K, and they leave L of what separates the minimum from their start, whose covariance is
+// C_0, the spread is K G K' + L C_0 L'. The total is that of the minimum.
 //
 // The total covariance contains besides: what the model cannot explain, which is a view's mean squared residual beyond
 // its noise, taken as common to all its blocks, because misfit is smooth over a view; the prior's own uncertainty; and
@@ -47,8 +47,8 @@ struct Certainty {
 struct LinearisedFit {
   Eigen::MatrixXd jacobian;  // residuals x unknowns
   Eigen::MatrixXd hessian;   // of the data, without the noise of J itself; may be empty: J' J
-  // How far noise leaves the data's Hessian uncertain along a direction, of the unknowns. Curvatures that it hides count
-  // as large as it. May be empty: not at all.
+  // How far noise leaves the data's Hessian uncertain along a direction, of the unknowns. Curvatures that it hides
+  // count as large as it. May be empty: not at all.
   std::function<double(const Eigen::VectorXd& direction)> curvature_deviation{};
   Eigen::MatrixXd gradient_covariance;  // G; may be empty: J' S J
   Eigen::VectorXd residuals, variances;
