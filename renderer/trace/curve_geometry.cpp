@@ -65,14 +65,17 @@ bool is_in_place(const CurveSet& curves) {
   return curves.placed.matrix() == Eigen::Matrix4f::Identity();
 }
 
-// Whether every segment is a cylinder: it then runs from its second control point to its third.
-bool are_straight(const CurveSet& curves) {
-  constexpr float kBent = 1e-3f;  // of the radius: what rounding of coordinates may bend
+// Whether every segment is a short cylinder: it then runs from its second control point to its third. Embree's hits of
+// long ones are too rough: thin threads of one segment had a third less light on one side.
+bool are_short_cylinders(const CurveSet& curves) {
+  constexpr float kBent = 1e-3f;     // of the radius: what rounding of coordinates may bend
+  constexpr float kLongest = 30.0f;  // radii
   return std::ranges::all_of(curves.segments, [&](std::uint32_t first) {
     const Eigen::Vector4f* p = &curves.control_points[first];
     const float most = kBent * p[1].w();
     return (p[0] - 2 * p[1] + p[2]).cwiseAbs().maxCoeff() <= most &&
-           (p[1] - 2 * p[2] + p[3]).cwiseAbs().maxCoeff() <= most && std::abs(p[2].w() - p[1].w()) <= most;
+           (p[1] - 2 * p[2] + p[3]).cwiseAbs().maxCoeff() <= most && std::abs(p[2].w() - p[1].w()) <= most &&
+           (p[2] - p[1]).head<3>().norm() <= kLongest * p[1].w();
   });
 }
 
@@ -83,7 +86,7 @@ void set_spline_segments(RTCGeometry geometry, const CurveSet& curves) {
 
 // As if every segment had neighbours, which Embree takes from the control points beside it: ends are open, as those of
 // splines are.
-void set_straight_segments(RTCGeometry geometry, const CurveSet& curves) {
+void set_cylinders(RTCGeometry geometry, const CurveSet& curves) {
   const auto buffer = [&](RTCBufferType type, RTCFormat format, std::size_t bytes) {
     return rtcSetNewGeometryBuffer(geometry, type, 0, format, bytes, curves.segments.size());
   };
@@ -95,15 +98,14 @@ void set_straight_segments(RTCGeometry geometry, const CurveSet& curves) {
               std::uint8_t{RTC_CURVE_FLAG_NEIGHBOR_LEFT | RTC_CURVE_FLAG_NEIGHBOR_RIGHT});
 }
 
-// Straight curves are cylinders to Embree, whose hits are solved for and not searched as those of splines. Their
-// parameter u is that of the splines.
+// Cylinders' hits are solved for and not searched as those of splines. Their parameter u is that of the splines.
 void add_round_curves(RTCDevice device, RTCScene scene, const CurveSet& curves) {
-  const bool straight = are_straight(curves);
+  const bool cylinders = are_short_cylinders(curves);
   const RTCGeometry geometry =
-      rtcNewGeometry(device, straight ? RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE : RTC_GEOMETRY_TYPE_ROUND_BSPLINE_CURVE);
+      rtcNewGeometry(device, cylinders ? RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE : RTC_GEOMETRY_TYPE_ROUND_BSPLINE_CURVE);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, curves.control_points.data(), 0,
                              sizeof(Eigen::Vector4f), curves.control_points.size());
-  (straight ? set_straight_segments : set_spline_segments)(geometry, curves);
+  (cylinders ? set_cylinders : set_spline_segments)(geometry, curves);
   rtcSetGeometryUserData(geometry, const_cast<CurveSet*>(&curves));
   rtcSetGeometryIntersectFilterFunction(geometry, refuse_back_sides_and_what_is_cut_off);
   rtcSetGeometryOccludedFilterFunction(geometry, refuse_back_sides_and_what_is_cut_off);
