@@ -14,10 +14,10 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr int kApproachSteps = 10, kJointSteps = 4, kSteps = kApproachSteps + kJointSteps;
+constexpr int kApproachSteps = 8, kJointSteps = 2, kSteps = kApproachSteps + kJointSteps;
 constexpr int kComparedSets = 4, kComparedPaths = 2048;  // for each block
 constexpr int kMostStride = 3;                           // of blocks
-constexpr std::size_t kFewestBlocks = 150;               // that are left of them
+constexpr std::size_t kFewestBlocks = 100;               // that are left of them
 constexpr int kFirstTrace = 1000;                        // of the steps, apart from those of the fit's end
 
 bool is_thread(const Search& search) {

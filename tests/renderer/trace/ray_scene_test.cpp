@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <limits>
+#include <random>
 
 namespace renderer {
 namespace {
@@ -33,6 +36,72 @@ TEST(RaySceneTest, CurvesAreHitWhereTheirCylinderIs) {
   }
   for (const Vector3f& origin : {Vector3f(0, 0.51f, 10), Vector3f(30.1f, 0, 10), Vector3f(-30.1f, 0, 10)})
     EXPECT_FALSE(scene.intersect({origin, {0, 0, -1}}));
+}
+
+// A sheet of touching threads as wrapped spools have it, whose segments Embree takes for cylinders.
+class SheetTest : public testing::Test {
+ protected:
+  static constexpr int kThreads = 40, kSegments = 10;
+  static constexpr float kRadius = 0.25f, kLength = 6.8f;
+
+  static Scene sheet() {
+    CurveSet set;
+    for (int thread = 0; thread < kThreads; ++thread) {
+      const auto first = static_cast<std::uint32_t>(set.control_points.size());
+      for (int i = -1; i <= kSegments + 1; ++i)
+        set.control_points.emplace_back(0.0f, kLength * (static_cast<float>(i) - 0.5f * kSegments), middle(thread),
+                                        kRadius);
+      for (std::uint32_t i = 0; i < kSegments; ++i) set.segments.push_back(first + i);
+    }
+    return {.curves = {set}};
+  }
+  static float middle(int thread) { return 2 * kRadius * (static_cast<float>(thread) - 0.5f * kThreads); }
+  // The least distance at which the ray enters an endless cylinder.
+  static double entry(const Ray& ray) {
+    double nearest = std::numeric_limits<double>::infinity();
+    const Eigen::Vector2d d(static_cast<double>(ray.direction.x()), static_cast<double>(ray.direction.z()));
+    for (int thread = 0; thread < kThreads; ++thread) {
+      const Eigen::Vector2d o(static_cast<double>(ray.origin.x()),
+                              static_cast<double>(ray.origin.z()) - static_cast<double>(middle(thread)));
+      const double a = d.squaredNorm(), b = o.dot(d), c = o.squaredNorm() - 0.0625, root2 = b * b - a * c;
+      const double distance = (-b - std::sqrt(std::max(0.0, root2))) / a;
+      if (root2 > 0 && distance > 0) nearest = std::min(nearest, distance);
+    }
+    return nearest;
+  }
+  Vector3f random_direction() { return Vector3f(normal_(random_), normal_(random_), normal_(random_)).normalized(); }
+
+  RayScene scene_{sheet()};
+  std::mt19937 random_{7};
+  std::normal_distribution<float> normal_;
+  std::uniform_real_distribution<float> uniform_{-1, 1};
+};
+
+TEST_F(SheetTest, RaysFromTheCameraAndFromHitsMeetTheCylinders) {
+  constexpr int kRays = 200'000;
+  int wrong = 0, met = 0, second = 0;
+  const auto compare = [&](const Ray& ray) {
+    const auto hit = scene_.intersect(ray);
+    const double expected = entry(ray);
+    const bool far = !(expected < 20);  // what lies there may be an end
+    if (far) return hit;
+    met += hit.has_value();
+    wrong += !hit || std::abs(static_cast<double>(hit->distance) - expected) > 2e-3 || !scene_.occluded(ray, 100);
+    return hit;
+  };
+  for (int i = 0; i < kRays; ++i) {
+    const Vector3f from(4 + 3 * uniform_(random_), 10 * uniform_(random_), 6 * uniform_(random_)),
+        to(0, 10 * uniform_(random_), 6 * uniform_(random_));
+    const auto hit = compare({from, (to - from).normalized()});
+    if (!hit) continue;
+    const auto& point = std::get<CurvePoint>(hit->point);
+    Vector3f onwards = random_direction();
+    if (onwards.dot(point.normal) < 0) onwards = -onwards;
+    second += compare({point.position, onwards}).has_value();
+  }
+  std::printf("%d of %d rays meet something else, %d of them from hits\n", wrong, met, second);
+  EXPECT_GT(met, 250'000);
+  EXPECT_LT(wrong, 1e-4 * met);
 }
 
 TEST(RaySceneTest, ARayInsideACurveLeavesItUnseen) {
