@@ -181,5 +181,23 @@ TEST(JoinedSetsTest, TheNoiseOfJacobiansFallsWithTheNumberOfSets) {
   EXPECT_LT(eight, 1.2 * one / 8);
 }
 
+TEST(JoinedSetsTest, CurvaturesSpreadAsTheySay) {
+  constexpr int kDraws = 400;
+  Problem problem(0, 0, 8);
+  problem.jacobian.col(0) *= 0.1;  // hardly told
+  problem.jacobian_noise = 0.3;
+  for (int k : {0, 1}) {
+    const VectorXd direction = VectorXd::Unit(kUnknowns, k);
+    double sum = 0, squares = 0, predicted = 0;
+    for (int draw = 0; draw < kDraws; ++draw) {
+      const JoinedSets sets = problem.sets(4);
+      const double curvature = direction.dot(sets.hessian() * direction);
+      sum += curvature / kDraws, squares += curvature * curvature / kDraws;
+      predicted += std::pow(sets.curvature_deviation(direction), 2) / kDraws;
+    }
+    EXPECT_NEAR(std::sqrt(predicted / (squares - sum * sum)), 1, 0.25) << k;
+  }
+}
+
 }  // namespace
 }  // namespace inversion
