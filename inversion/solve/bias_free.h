@@ -15,7 +15,7 @@
 // of the next one, as models of far places are wrong here; in the joint steps behind it all sets count alike.
 //
 // No unknown moves by more than `longest` in a step, and what the others do is solved with it there; bounds are kept
-// likewise. Directions that the sets tell to no better than `reach` are damped: they would wander as far as they are
+// likewise. Directions that one set tells to no better than `reach` are damped: they would wander as far as they are
 // uncertain, and lead the others astray.
 #pragma once
 
@@ -56,7 +56,7 @@ struct BiasFreeOptions {
   int joint_steps = 12;
   double old = 0.5;      // on the approach, what a set counts of the next one
   double longest = 0.1;  // change of an unknown in one step
-  double reach = 0.1;    // deviation of the sets, in the unknowns' units, beyond which a direction is damped
+  double reach = 0.1;    // deviation of one set, in the unknowns' units, beyond which a direction is damped
 };
 
 struct BiasFreeEnd {
