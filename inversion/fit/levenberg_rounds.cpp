@@ -97,10 +97,10 @@ void run_round(ViewObjective& objective, const Search& search, int round, bool r
   // though the paths part where they are traced with other parameters.
   objective.trace(attempt.unknowns, paths, seed_of_trace(options, round),
                   [&](int done, int total) { work.show(name + ", tracing", kTracingShare * paths * done / total); });
-  // The prior counts from the last round but one on. If that is the first, or there is but one, it counts as much as
-  // the paths' noise: what they say nothing of stays near the prior.
-  const bool prior_counts = round + 2 >= std::ssize(options.paths_per_block);
-  const double first_scale = prior_counts && search.has_prior()
+  // The prior counts from the last short round on. If that is the first, it counts as much as the paths' noise: what
+  // they say nothing of stays near the prior.
+  const bool last_short = round + 2 == std::ssize(options.paths_per_block);
+  const double first_scale = last_short && search.has_prior()
                                  ? options.prior_weight * objective.residual_variances(attempt.unknowns).mean()
                                  : 0;
   const auto search_on = [&] {
@@ -115,6 +115,8 @@ void run_round(ViewObjective& objective, const Search& search, int round, bool r
   };
   if (robustly) attempt.view_weights = objective.weigh_robustly(attempt.unknowns);
   attempt.rounds.push_back(search_on());
+  // A single round has no other whose loss says what the prior counts.
+  if (options.paths_per_block.size() == 1 && search.has_prior()) attempt.rounds.back() = search_on();
   // A bad view has pulled the fit towards itself before it is told from the others: as it loses weight, it stands out
   // more.
   for (int again = 0; robustly && again < kMostReweighings; ++again) {
