@@ -24,8 +24,8 @@ bool is_thread(const Search& search) {
   return std::holds_alternative<ThreadFamily>(*search.family);
 }
 
-int stride_of(const Search& search, std::size_t blocks) {
-  return is_thread(search) ? std::clamp(static_cast<int>(blocks / kFewestBlocks), 1, kMostStride) : 1;
+int stride_of(std::size_t blocks) {
+  return std::clamp(static_cast<int>(blocks / kFewestBlocks), 1, kMostStride);
 }
 
 int paths_of_step(const FitOptions& options) {
@@ -108,7 +108,7 @@ class StartChoice {
 
 Attempt nearest_search(const WrappedSpool& spool, const std::vector<View>& views, std::size_t blocks,
                        const Search& search, std::vector<Attempt> attempts, Work& work) {
-  StartChoice choice(spool, views, search, stride_of(search, blocks), work);
+  StartChoice choice(spool, views, search, stride_of(blocks), work);
   if (!is_thread(search)) return std::move(attempts[choice.nearest(attempts)]);
   for (Attempt& attempt : attempts) choice.go_on(attempt, "start " + std::to_string(attempt.start + 1));
   Attempt exchanged = attempts[choice.nearest(attempts)];
@@ -121,7 +121,7 @@ Attempt nearest_search(const WrappedSpool& spool, const std::vector<View>& views
 double work_of_choice(const Search& search, std::size_t blocks, std::size_t attempts) {
   const double compared = kComparedSets * kComparedPaths, steps = kSteps * paths_of_step(*search.options);
   const auto searches = static_cast<double>(attempts);
-  return (is_thread(search) ? (searches + 1) * (steps + compared) : searches * compared) / stride_of(search, blocks);
+  return (is_thread(search) ? (searches + 1) * (steps + compared) : searches * compared) / stride_of(blocks);
 }
 
 }  // namespace inversion

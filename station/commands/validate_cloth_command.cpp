@@ -31,6 +31,10 @@ void add_validate_cloth_command(CLI::App& app) {
   command->add_option("--exit", request.exit, "where light leaves the thread, in the thread model's fits and pictures")
       ->transform(CLI::CheckedTransformer(thread_exits()));
   command
+      ->add_option("--paths", request.paths_per_block,
+                   "light paths per block in the fits, one number a round; without this each model's own")
+      ->check(CLI::Range(1, 100000));
+  command
       ->add_option("--spp", request.samples_per_pixel, "samples per pixel of each of the two renderings of a picture")
       ->check(CLI::Range(1, 65536))
       ->capture_default_str();

@@ -198,6 +198,8 @@ class Study {
     for (int number : {request_.samples_per_pixel, request_.photograph_samples, request_.width_px, request_.height_px})
       words += "/" + std::to_string(number);
     words += "/" + std::to_string(kReferenceYarns);
+    if (!request_.paths_per_block.empty()) words += "/paths";
+    for (const int paths : request_.paths_per_block) words += "/" + std::to_string(paths);
     if (what == name_of(ModelKind::thread)) words += "/" + std::to_string(static_cast<int>(request_.exit));
     return words + "/" + std::to_string(request_.seed);
   }
@@ -225,6 +227,7 @@ class Study {
     inversion::FitOptions options{.model = model, .seed = request_.seed};
     options.start.exit = request_.exit;
     if (model == ModelKind::yarn) options.paths_per_block = {128, 512};
+    if (!request_.paths_per_block.empty()) options.paths_per_block = request_.paths_per_block;
     options.progress = [&](const std::string& what, double share) {
       step(name_of(model) + ", " + what, share);
       return !interrupted();

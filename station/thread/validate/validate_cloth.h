@@ -30,6 +30,7 @@ struct ValidateClothRequest {
                                            inversion::ModelKind::yarn};
   bool true_fibers = false;  // besides, predict with each spool's own fibers as a bundle: what no fit can better
   renderer::ThreadExit exit = renderer::ThreadParameters{}.exit;  // of the thread model
+  std::vector<int> paths_per_block{};                             // of fits (FitOptions); empty: each model's own
   int samples_per_pixel = 64;                                     // in each of the two renderings of every picture
   int photograph_samples = 96;                                    // in each of the two photographs of a spool's view
   int width_px = 256, height_px = 192;

@@ -33,9 +33,18 @@ double difference(const char* what, const cv::Mat3f& a, const cv::Mat3f& b) {
   return found.mean_delta_e;
 }
 
-// All pictures stay in the folder THREADSTATION_PICTURES names, where there is one.
-void keep(const std::string& name, const cv::Mat3f& picture) {
-  if (const char* folder = std::getenv("THREADSTATION_PICTURES")) renderer::write_exr(fs::path(folder) / name, picture);
+// Of the thread too, for a person to look at: all pictures stay in the folder that THREADSTATION_PICTURES names.
+void keep_pictures(const std::string& name, const fs::path& thread, const renderer::CurveScene& scene,
+                   const cv::Mat3f& of_fiber, const cv::Mat3f& of_cycles) {
+  const char* named = std::getenv("THREADSTATION_PICTURES");
+  if (named == nullptr) return;
+  const fs::path folder = named;
+  const cv::Mat3f of_thread = picture(scene, station::read_thread(thread).parameters);
+  difference("ours, thread and fiber", of_thread, of_fiber);
+  difference("thread ours, fiber Cycles", of_thread, of_cycles);
+  renderer::write_exr(folder / (name + "_thread.exr"), of_thread);
+  renderer::write_exr(folder / (name + "_fiber.exr"), of_fiber);
+  renderer::write_exr(folder / (name + "_cycles.exr"), of_cycles);
 }
 
 void expect_cycles_to_show_the_fiber(const std::string& thread, const std::string& scene) {
@@ -53,16 +62,11 @@ void expect_cycles_to_show_the_fiber(const std::string& thread, const std::strin
   EXPECT_EQ(drawn.out.find("Error"), std::string::npos) << drawn.out;
 
   const renderer::CurveScene curves = scene == "a" ? renderer::parallel_threads_scene() : renderer::plain_weave_scene();
-  const cv::Mat3f of_thread = picture(curves, station::read_thread(file).parameters),
-                  of_fiber = picture(curves, station::read_fiber(out / "fiber.json")),
+  const cv::Mat3f of_fiber = picture(curves, station::read_fiber(out / "fiber.json")),
                   of_cycles = renderer::read_exr(cycles_file);
-  keep(thread + "_" + scene + "_thread.exr", of_thread);
-  keep(thread + "_" + scene + "_fiber.exr", of_fiber);
-  keep(thread + "_" + scene + "_cycles.exr", of_cycles);
   std::printf("%s, scene %s\n", thread.c_str(), scene.c_str());
   const double by_cycles = difference("fiber, ours and Cycles", of_fiber, of_cycles);
-  difference("ours, thread and fiber", of_thread, of_fiber);
-  difference("thread ours, fiber Cycles", of_thread, of_cycles);
+  keep_pictures(thread + "_" + scene, file, curves, of_fiber, of_cycles);
   EXPECT_LT(by_cycles, 2.0);  // Cycles is a few per cent dark (fixtures/reference/README.md)
 }
 
