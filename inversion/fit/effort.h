@@ -9,7 +9,6 @@ struct Effort {
   int block_stride = 1;  // ViewObjective
   bool rounds = true;    // false: the steps, if the options allow them, begin at the first start
   bool robust = true;    // false: no robust weights, whatever the options say
-  int most_steps = 40;   // of Levenberg-Marquardt, in a round
   int approach_steps = BiasFreeOptions{}.approach_steps;  // of bias_free.h, as the next
   int joint_steps = BiasFreeOptions{}.joint_steps;
   bool by_whole_hessian = false;  // JoinedSets::whole_hessian

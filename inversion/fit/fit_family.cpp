@@ -75,9 +75,6 @@ Attempt search_by_pixels(const PixelLoss& pixels, ViewObjective& objective, cons
   return attempt;
 }
 
-// Of Levenberg-Marquardt, in the round that only tells bad views.
-constexpr int kStepsThatTellBadViews = 8;
-
 // Levenberg-Marquardt, and if asked for the steps without bias behind it.
 class LevenbergFit {
  public:
@@ -144,9 +141,7 @@ class LevenbergFit {
     Attempt best = nearest_search(spool_, views_, objective_.block_count(), search_, std::move(attempts), work_);
     // The round tells which views and blocks are bad. The nearest search is nearer than where it ends.
     const VectorXd nearest = best.unknowns;
-    Search brief = search_;
-    if (std::holds_alternative<ThreadFamily>(*search_.family)) brief.effort.most_steps = kStepsThatTellBadViews;
-    run_round(objective_, brief, last, robustly, work_, best);
+    run_round(objective_, search_, last, robustly, work_, best);
     best.unknowns = nearest;
     return best;
   }

@@ -18,6 +18,7 @@ namespace {
 
 using Eigen::VectorXd;
 
+constexpr int kMostSteps = 40;
 constexpr int kMostReweighings = 4;
 constexpr double kSettledWeight = 0.1;
 constexpr double kTracingShare = 0.4;  // of a round's work
@@ -58,7 +59,7 @@ FitRound solve(const ViewObjective& objective, const Search& search, double prio
   callback.losses = &round.losses;
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = search.effort.most_steps;
+  options.max_num_iterations = kMostSteps;
   options.function_tolerance = 1e-6;
   options.initial_trust_region_radius = 1;  // the start is far: full Gauss-Newton steps end at the bounds
   options.logging_type = ceres::SILENT;
@@ -107,7 +108,7 @@ void run_round(ViewObjective& objective, const Search& search, int round, bool r
     return solve(
         objective, search, attempt.prior_scale,
         [&](int step) {
-          const double share = kTracingShare + (1 - kTracingShare) * step / search.effort.most_steps;
+          const double share = kTracingShare + (1 - kTracingShare) * step / kMostSteps;
           return work.goes_on(name + ", step " + std::to_string(step), share * paths);
         },
         attempt.unknowns);
