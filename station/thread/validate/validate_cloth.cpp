@@ -32,7 +32,7 @@ using inversion::View;
 namespace fs = std::filesystem;
 
 constexpr int kWarp = 0, kWeft = 1;  // of the cloth's threads
-constexpr const char* kTrueFibers = "true fibers";
+constexpr const char *kReference = "reference", *kTrueFibers = "true fibers";
 // Warp ends and weft picks of the reference's patch, at least. Bundles of ten fibers differ in brightness by some ten
 // percent; of so many the mean is within about 1 %.
 constexpr int kReferenceYarns = 40;
@@ -134,7 +134,7 @@ class Study {
                            .models = {}};
     const std::string name = draft + "-" + sample.warp + "-" + view.id;
     const CompareOptions options{.fit_scale = false, .block_px = sample.block_px};
-    const PictureHalves reference = pictures(name, "reference", warp, view, [&] {
+    const PictureHalves reference = pictures(name, kReference, warp, view, [&] {
       return Woven{.patch = with_fibers_of(of_many_yarns(patch), {warp.spool, weft_.spool}),
                    .threads = {simulated_fibers(warp.spool).scattering, simulated_fibers(weft_.spool).scattering}};
     });
@@ -198,8 +198,8 @@ class Study {
     for (int number : {request_.samples_per_pixel, request_.photograph_samples, request_.width_px, request_.height_px})
       words += "/" + std::to_string(number);
     words += "/" + std::to_string(kReferenceYarns);
-    if (!request_.paths_per_block.empty()) words += "/paths";
-    for (const int paths : request_.paths_per_block) words += "/" + std::to_string(paths);
+    if (what != kReference && what != kTrueFibers)  // fitted
+      for (const int paths : request_.paths_per_block) words += "/" + std::to_string(paths);
     if (what == name_of(ModelKind::thread)) words += "/" + std::to_string(static_cast<int>(request_.exit));
     return words + "/" + std::to_string(request_.seed);
   }
