@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numbers>
 #include <stdexcept>
@@ -17,7 +18,7 @@
 namespace station {
 namespace {
 
-constexpr int kPiecesPerFiber = 10;
+constexpr double kPieceRadii = 29;  // length of a fiber's pieces, short enough for rays to meet them as cylinders
 constexpr int kPackingAttempts = 3000, kPackingTries = 40;
 constexpr std::uint64_t kPictureSeedStep = 7919;  // between the seeds of two pictures
 constexpr double kRoomLampRadius_mm = 250;
@@ -160,10 +161,11 @@ renderer::CurveSet spool_fibers(const Spool& spool) {
   curves.scattering = fibers.scattering;
   std::uint64_t seed = fibers.seed * kSeedsPerSpool;  // a stream of its own for every thread of every spool
   for (const inversion::Segment3& line : inversion::thread_lines(spool.wrapping)) {
+    const int pieces =
+        static_cast<int>(std::ceil((line.to - line.from).norm() / (kPieceRadii * fibers.fiber_radius_mm)));
     for (const Eigen::Vector2d& centre : fiber_centres(spool, ++seed * kFiberSeedStep)) {
       const Eigen::Vector3d offset(centre.x(), 0, centre.y());  // threads run along y
-      inversion::add_straight_curve(curves, {line.from + offset, line.to + offset}, fibers.fiber_radius_mm,
-                                    kPiecesPerFiber);
+      inversion::add_straight_curve(curves, {line.from + offset, line.to + offset}, fibers.fiber_radius_mm, pieces);
     }
   }
   return curves;

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
@@ -106,12 +108,15 @@ TEST_F(Examples, OfHelpAllRunInTheOrderOfTheWork) {
     if (example.empty() || name == kWholeJob || kTakeMinutes.contains(name)) continue;
     SCOPED_TRACE(example);
     if (const auto needs = before_.find(name); needs != before_.end()) needs->second();
+    const auto begun = std::chrono::steady_clock::now();
     const auto endless = kUntilInterrupted.find(name);
     const ProgramResult result = endless == kUntilInterrupted.end()
                                      ? run(example)
                                      : run(example + " >ready & until grep -q '" + endless->second +
                                            "' ready; do kill -0 $! || break; sleep 0.1; done; kill -INT $!; wait $!");
     EXPECT_EQ(result.status, 0) << result.error;
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+    std::printf("%6.1f s  %s\n", took.count(), name.c_str()), std::fflush(stdout);
     ++run_of_them;
   }
   EXPECT_GT(run_of_them, 35);

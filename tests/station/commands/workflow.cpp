@@ -1,5 +1,6 @@
 #include "tests/station/commands/workflow.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 
@@ -10,9 +11,17 @@
 namespace station_test {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 
 std::unique_ptr<TemporaryFolder> folder;
+
+std::vector<std::string> capture_of(const std::string& spool, const fs::path& rig, const fs::path& calibration,
+                                    const fs::path& session) {
+  const std::string spool_file = std::string(DATA_DIR) + "/spools/" + spool + ".json";
+  return {"capture",  "--rig", rig,     "--calibration", calibration, "--spool",
+          spool_file, "--out", session, "--unattended",  "--quiet"};
+}
 
 }  // namespace
 
@@ -26,20 +35,28 @@ void expect_one_line(const ProgramResult& result, const std::string& must_name) 
   EXPECT_NE(result.error.find(must_name), std::string::npos) << result.error;
 }
 
-void Workflow::SetUpTestSuite() {
-  folder = std::make_unique<TemporaryFolder>();
+void make_calibrated_bench(const fs::path& made) {
   json rig = station::read_json_file(std::string(DATA_DIR) + "/rigs/simulated.json");
   rig["simulation"]["samples_per_pixel"] = 1;
   rig["simulation"]["target_samples_per_pixel"] = 4;
-  station::write_json_file(path("rig.json"), rig);
-  expect_success(run_threadstation({"calibrate", "--rig", path("rig.json"), "--out", path("calibration"), "--quiet"}));
-  expect_success(capture(path("session")));
-  expect_success(run_threadstation({"develop", path("session"), "--quiet"}));
+  station::write_json_file(made / "rig.json", rig);
+  expect_success(
+      run_threadstation({"calibrate", "--rig", made / "rig.json", "--out", made / "calibration", "--quiet"}));
+  expect_success(run_threadstation(capture_of("silk_red", made / "rig.json", made / "calibration", made / "session")));
+  expect_success(run_threadstation({"develop", made / "session", "--quiet"}));
 
-  station::write_json_file(path("hasty_rig.json"), hasty_rig(rig));
-  std::filesystem::create_directory(path("hasty_calibration"));
-  station::write_json_file(path("hasty_calibration/calibration.json"),
-                           hasty_calibration(station::read_json_file(path("calibration/calibration.json"))));
+  station::write_json_file(made / "hasty_rig.json", hasty_rig(rig));
+  fs::create_directory(made / "hasty_calibration");
+  station::write_json_file(made / "hasty_calibration/calibration.json",
+                           hasty_calibration(station::read_json_file(made / "calibration/calibration.json")));
+}
+
+void Workflow::SetUpTestSuite() {
+  folder = std::make_unique<TemporaryFolder>();
+  if (const char* made = std::getenv(kCalibratedBench))
+    fs::copy(made, folder->path(), fs::copy_options::recursive);
+  else
+    make_calibrated_bench(folder->path());
 }
 
 void Workflow::TearDownTestSuite() {
@@ -52,17 +69,7 @@ std::string Workflow::path(const std::string& name) {
 
 std::vector<std::string> Workflow::capture_arguments(const std::string& session, const std::string& rig,
                                                      const std::string& spool, const std::string& calibration) {
-  return {"capture",
-          "--rig",
-          path(rig),
-          "--calibration",
-          path(calibration),
-          "--spool",
-          std::string(DATA_DIR) + "/spools/" + spool + ".json",
-          "--out",
-          session,
-          "--unattended",
-          "--quiet"};
+  return capture_of(spool, path(rig), path(calibration), session);
 }
 
 std::vector<std::string> Workflow::hasty_capture_arguments(const std::string& session) {
