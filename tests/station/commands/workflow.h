@@ -1,6 +1,6 @@
 // A test fixture with one calibrated simulated rig and one captured and developed session, for all tests that run the
-// program's commands one after the other; few samples a pixel, so that drawing takes little time. Each suite has a copy of
-// its own.
+// program's commands one after the other; few samples a pixel, so that drawing takes little time. Each suite has a copy
+// of its own.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ void expect_success(const ProgramResult& result);
 // Expects exit status 1 and one line on standard error that contains `must_name`.
 void expect_one_line(const ProgramResult& result, const std::string& must_name);
 
-// The rig's file, its calibration and the session, made in an empty folder. ctest makes them once for all suites, in the
-// folder that this variable of the environment names; a suite that is run by hand makes its own.
+// The rig's file, its calibration and the session, made in an empty folder. ctest makes them once for all suites, in
+// the folder that this variable of the environment names; a suite that is run by hand makes its own.
 void make_calibrated_bench(const std::filesystem::path& folder);
 inline constexpr const char* kCalibratedBench = "THREADSTATION_CALIBRATED_BENCH";
 
