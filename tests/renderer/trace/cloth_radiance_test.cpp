@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 
 #include "renderer/trace/path_tracer.h"
 #include "renderer/weave/patch_measures.h"
@@ -72,16 +73,17 @@ TEST(ClothRadianceTest, OnAFlatSwatchItIsThatOfTheExplicitYarns) {
 }
 
 TEST(ClothRadianceTest, OnABlackCylinderItIsNearlyThatOfTheBentYarns) {
-  for (const auto& [patch, radius_mm] :
-       {std::pair(plain_patch(), 12.0), std::pair(plain_patch(), 41.0), std::pair(satin_patch(), 41.0),
-        std::pair(irregular_patch(), 12.0), std::pair(irregular_patch(), 41.0)}) {
+  // Samples, so that the standard error is below a third of what is asked of the ratio: open cloth is the noisiest.
+  for (const auto& [patch, radius_mm, samples] :
+       {std::tuple(plain_patch(), 12.0, 256), std::tuple(plain_patch(), 41.0, 256), std::tuple(satin_patch(), 41.0, 96),
+        std::tuple(irregular_patch(), 12.0, 96), std::tuple(irregular_patch(), 41.0, 160)}) {
     const double height_mm = 5 * radius_mm, middle_mm = height_mm / 2;
     const CylinderShape cylinder{.radius_mm = radius_mm, .height_mm = height_mm};
     const CylinderShape inside{.radius_mm = radius_mm + surface_range(patch).low_mm - 0.05, .height_mm = height_mm};
     const Comparison found =
         compare(cylinder, patch, {lamp({400, -300, middle_mm + 90})},
                 {body_of(inside, Eigen::Isometry3d::Identity(), {0, 0, 0})},
-                camera_on({500, 0, middle_mm}, {0, 0, middle_mm}, {0, 0, 1}, 2.2 * radius_mm, 40, 20), 256);
+                camera_on({500, 0, middle_mm}, {0, 0, middle_mm}, {0, 0, 1}, 2.2 * radius_mm, 40, 20), samples);
     print(patch.name + " round a cylinder of " + std::to_string(static_cast<int>(radius_mm)) + " mm", found);
     EXPECT_LT(found.standard_error.maxCoeff(), 0.002);
     // Facets are flat; where the cloth is thick and open that shows. Yarns that are stretched with their surface make

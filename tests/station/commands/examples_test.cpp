@@ -1,6 +1,7 @@
 // The example that each command's --help gives, run as a person would type it, in the order of --help and in one
 // folder, so that it takes what those before it made. What a person has there beforehand is put there: small pictures
-// of a coarse bench, and the recorded session in place of one that would take minutes to draw.
+// of a coarse bench, a calibration that was interrupted near its end, and the recorded session in place of one that
+// would take minutes to draw.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,6 +18,7 @@
 #include "tests/places.h"
 #include "tests/station/commands/help.h"
 #include "tests/station/commands/program.h"
+#include "tests/station/commands/workflow.h"
 #include "tests/station/session/hasty_bench.h"
 
 namespace station_test {
@@ -48,6 +50,18 @@ class Examples : public testing::Test {
   void copy(const fs::path& from, const std::string& name) {
     fs::remove_all(folder_ / name);
     fs::copy(from, folder_ / name, fs::copy_options::recursive);
+  }
+  // What ctest has made for Workflow's suites; without it the example takes all pictures itself.
+  void interrupted_calibration() {
+    write("rig.json", rig(1, 4));
+    const char* made = std::getenv(kCalibratedBench);
+    if (made == nullptr) return;
+    copy(fs::path(made) / "calibration", "calibration");
+    fs::remove(folder_ / "calibration/calibration.json");
+    json list = station::read_json_file(folder_ / "calibration/pictures.json");
+    constexpr std::size_t kMissing = 5;
+    list["pictures"].erase(list["pictures"].end() - kMissing, list["pictures"].end());
+    write("calibration/pictures.json", list);
   }
   void photographs_of_a_chessboard() {
     fs::create_directories(folder_ / "photographs");
@@ -81,7 +95,7 @@ class Examples : public testing::Test {
 
   // What is there before an example is run.
   const std::map<std::string, std::function<void()>> before_{
-      {"calibrate", [this] { write("rig.json", rig(1, 4)); }},
+      {"calibrate", [this] { interrupted_calibration(); }},
       {"calibrate camera", [this] { photographs_of_a_chessboard(); }},
       {"capture", [this] { coarse_bench(); }},
       {"import", [this] { pictures_by_hand(); }},
