@@ -43,7 +43,7 @@ std::optional<LightHit> Lights::intersect(const Vector3d& origin, const Vector3d
 }
 
 std::optional<Vector3d> Lights::sample(const Vector3d& origin, float u_light, const Eigen::Vector2f& u) const {
-  double left = static_cast<double>(u_light) * power(origin);
+  double left = size() > 1 ? static_cast<double>(u_light) * power(origin) : 0;
   const Light* chosen = nullptr;
   for (const Light& light : lights_) {
     const double share = power_of(light, origin);

@@ -50,12 +50,12 @@ struct PathTracer::Impl {
 Array3f PathTracer::Impl::direct_light(const PathVertex& vertex, const SceneWalk& walk, Sampler& sampler) const {
   const Eigen::Vector2f u = sampler.next_2d();
   const float u_light = lights.size() > 1 ? sampler.next_1d() : 0.0f;
-  const std::optional<Vector3d> about = lights.sample(vertex.position().cast<double>(), u_light, u);
-  if (!about) return Array3f::Zero();
-  const LightExit exit = lights.at_infinity() ? vertex.exit_toward(about->cast<float>(), sampler)
-                                              : vertex.exit_near(about->cast<float>(), sampler);
+  std::optional<Vector3d> direction = lights.sample(vertex.position().cast<double>(), u_light, u);
+  if (!direction) return Array3f::Zero();
+  const LightExit exit = lights.at_infinity() ? vertex.exit_toward(direction->cast<float>(), sampler)
+                                              : vertex.exit_near(direction->cast<float>(), sampler);
   const Vector3d origin = exit.place.cast<double>();
-  const std::optional<Vector3d> direction = lights.sample(origin, u_light, u);
+  if (exit.place != vertex.position()) direction = lights.sample(origin, u_light, u);
   if (!direction) return Array3f::Zero();  // seen from the vertex, not from the place of exit
   const std::optional<LightHit> light = lights.intersect(origin, *direction, false);
   if (!light) return Array3f::Zero();  // rounding at the rim of the cone

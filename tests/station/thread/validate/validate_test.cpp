@@ -72,7 +72,7 @@ class Validate : public ::testing::Test {
  protected:
   ProgramResult validate(const std::string& spool) {
     return run_threadstation({"validate", "--rig", kRig, "--spool", spool, "--out", folder_ / "out", "--folds", "0",
-                              "--spp", "8", "--model", "thread", "--json"});
+                              "--spp", "32", "--model", "thread", "--json"});
   }
   TemporaryFolder folder_;
 };
@@ -85,7 +85,8 @@ TEST_F(Validate, PhotographsAreTakenOnceAndTwoDrawsOfTheFibersDiffer) {
   ASSERT_EQ(found.at("spools").size(), 1U);
   const json& of_spool = found.at("spools")[0];
   EXPECT_EQ(of_spool.at("fibers_per_thread"), 20);
-  EXPECT_GT(of_spool.at("draw").get<double>(), 0);
+  EXPECT_GT(of_spool.at("draw").get<double>(), 0);  // 0.07; without the noise, so that few samples may say less than 0
+  EXPECT_LT(of_spool.at("draw").get<double>(), 0.2);
   EXPECT_EQ(station::read_json_file(folder_ / "out/validation.json"), found);
   std::map<fs::path, fs::file_time_type> written;
   for (const auto& entry : fs::recursive_directory_iterator(folder_ / "out"))
