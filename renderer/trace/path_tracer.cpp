@@ -56,7 +56,7 @@ Array3f PathTracer::Impl::direct_light(const PathVertex& vertex, const SceneWalk
                                               : vertex.exit_near(direction->cast<float>(), sampler);
   const Vector3d origin = exit.place.cast<double>();
   if (exit.place != vertex.position()) direction = lights.sample(origin, u_light, u);
-  if (!direction) return Array3f::Zero();  // seen from the vertex, not from the place of exit
+  if (!direction) return Array3f::Zero();  // a light that only the vertex sees
   const std::optional<LightHit> light = lights.intersect(origin, *direction, false);
   if (!light) return Array3f::Zero();  // rounding at the rim of the cone
   const Vector3f wi = direction->cast<float>();

@@ -18,7 +18,8 @@
 namespace station {
 namespace {
 
-constexpr double kPieceRadii = 29;  // length of a fiber's pieces, short enough for rays to meet them as cylinders
+// Length of a fiber's pieces in radii: below the 30 up to which curve_geometry.cpp has rays meet cylinders.
+constexpr double kPieceRadii = 29;
 constexpr int kPackingAttempts = 3000, kPackingTries = 40;
 constexpr std::uint64_t kPictureSeedStep = 7919;  // between the seeds of two pictures
 constexpr double kRoomLampRadius_mm = 250;
