@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -10,6 +11,7 @@
 
 #include "inversion/fit/levenberg_rounds.h"
 #include "inversion/fit/loss_terms.h"
+#include "inversion/fit/misfit_comparison.h"
 #include "inversion/fit/pixel_loss.h"
 #include "inversion/fit/search.h"
 #include "inversion/fit/start_choice.h"
@@ -75,6 +77,8 @@ Attempt search_by_pixels(const PixelLoss& pixels, ViewObjective& objective, cons
   return attempt;
 }
 
+constexpr int kComparedEnds = 8;  // sets of paths
+
 // Levenberg-Marquardt, and if asked for the steps without bias behind it.
 class LevenbergFit {
  public:
@@ -88,26 +92,44 @@ class LevenbergFit {
         without_bias_(without_bias),
         work_(*search.options, whole_work()) {}
 
-  // The attempt, and its certainty.
-  std::pair<Attempt, Certainty> run() {
+  struct Ended {
+    Attempt attempt;
+    Certainty certainty;
+  };
+
+  Ended run() {
     Attempt best = search_.effort.rounds || !without_bias_ ? by_rounds() : at_first_start();
-    UnbiasedEnd end;
-    if (without_bias_)
-      end = remove_bias(
-          objective_, search_, rounds(),
-          [&](int step) { work_.show("without bias, step " + std::to_string(step + 1), step * last_paths()); }, best);
-    Certainty certainty = certainty_at(objective_, search_, best.prior_scale, best.unknowns, std::move(end));
-    return {std::move(best), std::move(certainty)};
+    if (!without_bias_) {
+      Certainty certainty = certainty_at(objective_, search_, best.prior_scale, best.unknowns, {});
+      return {std::move(best), std::move(certainty)};
+    }
+    Ended end = without_bias(std::move(best), "without bias");
+    work_.finish(work_of_steps());
+    if (!exchanged_) return end;
+    trace_at(exchanged_->unknowns);
+    Ended other = without_bias(*std::move(exchanged_), "R and TRT exchanged");
+    work_.finish(work_of_steps());
+    MisfitComparison comparison(objective_, *search_.options, kComparedEnds);
+    for (const Ended* one : {&end, &other})
+      comparison.add(one->attempt.unknowns, [&] {
+        work_.finish(MisfitComparison::kPaths);
+        work_.show("comparing ends", 0);
+      });
+    return comparison.nearest() == 0 ? end : other;
   }
 
  private:
   int rounds() const { return static_cast<int>(search_.options->paths_per_block.size()); }
   double last_paths() const { return search_.options->paths_per_block.back(); }
   bool chooses() const { return without_bias_ && starts_.size() > 1; }
+  bool exchanges() const { return chooses() && std::holds_alternative<ThreadFamily>(*search_.family); }
+  double work_of_exchange() const { return work_of_steps() + 2 * kComparedEnds * MisfitComparison::kPaths; }
+  double work_of_steps() const { return last_paths() * (search_.effort.approach_steps + search_.effort.joint_steps); }
 
   double whole_work() const {
     const std::vector<int>& paths = search_.options->paths_per_block;
-    double work = without_bias_ ? last_paths() * (search_.effort.approach_steps + search_.effort.joint_steps) : 0;
+    double work = without_bias_ ? work_of_steps() : 0;
+    if (exchanges()) work += work_of_exchange();
     if (!search_.effort.rounds && without_bias_) return work;
     work += last_paths() + static_cast<double>(starts_.size()) * std::accumulate(paths.begin(), paths.end() - 1, 0.0);
     return chooses() ? work + work_of_choice(search_, objective_.block_count(), starts_.size()) : work;
@@ -115,9 +137,21 @@ class LevenbergFit {
 
   Attempt at_first_start() {
     Attempt attempt{.unknowns = starts_.front()};
-    objective_.trace(attempt.unknowns, static_cast<int>(last_paths()), search_.options->seed,
-                     [&](int, int) { work_.show("without bias", 0); });
+    trace_at(attempt.unknowns);
     return attempt;
+  }
+
+  void trace_at(const VectorXd& unknowns) {
+    objective_.trace(unknowns, static_cast<int>(last_paths()), search_.options->seed,
+                     [&](int, int) { work_.show("without bias", 0); });
+  }
+
+  Ended without_bias(Attempt attempt, const std::string& name) {
+    UnbiasedEnd end = remove_bias(
+        objective_, search_, rounds(),
+        [&](int step) { work_.show(name + ", step " + std::to_string(step + 1), step * last_paths()); }, attempt);
+    Certainty certainty = certainty_at(objective_, search_, attempt.prior_scale, attempt.unknowns, std::move(end));
+    return {std::move(attempt), std::move(certainty)};
   }
 
   // Every start goes through all rounds but the last, which is for the nearest.
@@ -138,12 +172,18 @@ class LevenbergFit {
       best.covariance = covariance_of_round(objective_, search_, best);
       return best;
     }
-    Attempt best = nearest_search(spool_, views_, objective_.block_count(), search_, std::move(attempts), work_);
+    auto [best, exchanged] =
+        nearest_search(spool_, views_, objective_.block_count(), search_, std::move(attempts), work_);
     // The round tells which views and blocks are bad. The nearest search is nearer than where it ends.
     const VectorXd nearest = best.unknowns;
     run_round(objective_, search_, last, robustly, work_, best);
     best.unknowns = nearest;
-    return best;
+    exchanged_ = std::move(exchanged);
+    if (exchanged_)
+      exchanged_->rounds = best.rounds, exchanged_->view_weights = best.view_weights;
+    else if (exchanges())
+      work_.drop(work_of_exchange());
+    return std::move(best);
   }
 
   const WrappedSpool& spool_;
@@ -153,6 +193,7 @@ class LevenbergFit {
   const std::vector<VectorXd>& starts_;
   bool without_bias_;
   Work work_;
+  std::optional<Attempt> exchanged_;  // NearestSearch
 };
 
 }  // namespace
@@ -165,7 +206,7 @@ ViewFit fit_family(const WrappedSpool& spool, const std::vector<View>& views, co
     for (int k = 0; k < static_cast<int>(search.unknowns.names.size()); ++k)
       if (std::find(options.held.begin(), options.held.end(), group_of(k)) != options.held.end())
         search.held.push_back(k);
-  const auto [best, certainty] = [&]() -> std::pair<Attempt, Certainty> {
+  const auto [best, certainty] = [&]() -> LevenbergFit::Ended {
     const bool by_pixels = options.model == ModelKind::paper;
     if (by_pixels || options.solver == Solver::adam) {
       Attempt attempt = by_pixels ? search_by_pixels(PixelLoss(spool, views, family), objective, search, starts.front())

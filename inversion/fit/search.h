@@ -50,6 +50,7 @@ class Work {
   // The same; throws std::runtime_error when the fit is to stop.
   void show(const std::string& what, double part) const;
   void finish(double piece) { done_ += piece; }
+  void drop(double piece) { whole_ -= piece; }  // that needs not be done
 
  private:
   const FitOptions& options_;

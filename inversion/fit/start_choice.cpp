@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include "inversion/fit/noise_weights.h"
+#include "inversion/fit/misfit_comparison.h"
 #include "inversion/fit/thread_unknowns.h"
 #include "inversion/fit/unbiased_steps.h"
 
@@ -15,10 +15,10 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int kApproachSteps = 8, kJointSteps = 2, kSteps = kApproachSteps + kJointSteps;
-constexpr int kComparedSets = 4, kComparedPaths = 2048;  // for each block
-constexpr int kMostStride = 3;                           // of blocks
-constexpr std::size_t kFewestBlocks = 100;               // that are left of them
-constexpr int kFirstTrace = 1000;                        // of the steps, apart from those of the fit's end
+constexpr int kComparedSets = 4;
+constexpr int kMostStride = 3;              // of blocks
+constexpr std::size_t kFewestBlocks = 100;  // that are left of them
+constexpr int kFirstTrace = 1000;           // of the steps, apart from those of the fit's end
 
 bool is_thread(const Search& search) {
   return std::holds_alternative<ThreadFamily>(*search.family);
@@ -60,68 +60,53 @@ class StartChoice {
     work_.finish(kSteps * work_of_step);
   }
 
-  // The number of the attempt whose misfit is least.
   std::size_t nearest(const std::vector<Attempt>& attempts) {
-    for (std::size_t i = seen_.size(); i < attempts.size(); ++i) seen_.push_back(seen(attempts[i].unknowns));
-    NoiseWeights weights(views_and_colours(objective_));
-    for (const Seen& one : seen_) weights.add(one.variances, one.products);
-    const VectorXd squares = weights.factors().cwiseAbs2();
-    const auto misfit = [&](const Seen& one) { return one.products.dot(squares); };
-    const auto nearest = std::min_element(seen_.begin(), seen_.end(),
-                                          [&](const Seen& a, const Seen& b) { return misfit(a) < misfit(b); });
-    return static_cast<std::size_t>(nearest - seen_.begin());
+    MisfitComparison comparison(objective_, options_, kComparedSets);
+    const auto show = [&] { work_.show("comparing starts", 0); };
+    show();
+    for (const Attempt& attempt : attempts)
+      comparison.add(attempt.unknowns, [&] {
+        work_.finish(MisfitComparison::kPaths * work_of_path_);
+        show();
+      });
+    return comparison.nearest();
   }
 
  private:
-  // An attempt by paths that none has seen, as NoiseWeights takes it.
-  struct Seen {
-    VectorXd variances, products;
-  };
-
-  // The products are those of all pairs of halves of all sets of paths, whose noise falls with the number of sets, and
-  // not with its root as that of each set's own halves.
-  Seen seen(const VectorXd& unknowns) {
-    const VectorXd zero = VectorXd::Zero(objective_.residual_count());
-    VectorXd variances = zero, sum = zero, squares = zero;
-    for (int set = 1; set <= kComparedSets; ++set) {
-      objective_.trace(unknowns, kComparedPaths, seed_of_trace(options_, -set),
-                       [&](int, int) { work_.show("comparing starts", 0); });
-      const ViewObjective::Halves both = objective_.halves(unknowns, false);
-      variances += both.variances / kComparedSets;
-      for (const VectorXd& half : both.residuals) sum += half, squares += half.cwiseAbs2();
-      work_.finish(kComparedPaths * work_of_path_);
-    }
-    constexpr double kHalves = 2.0 * kComparedSets;
-    return {.variances = variances,
-            .products = (sum.cwiseAbs2() - squares) / (kHalves * (kHalves - 1)) - objective_.photograph_variances()};
-  }
-
   ViewObjective objective_;
   FitOptions options_;
   Search brief_;
   double work_of_path_;
   Work& work_;
-  std::vector<Seen> seen_;
 };
+
+// Whether a search that began where R and TRT had changed places, of which `before` says how they were, has kept them
+// so.
+bool keeps_exchanged(const VectorXd& unknowns, const VectorXd& before) {
+  const Eigen::Vector2d now(unknowns[kAlpha], unknowns[kAlpha + 2]), was(before[kAlpha], before[kAlpha + 2]);
+  return (now - was.reverse()).norm() < (now - was).norm();
+}
 
 }  // namespace
 
-Attempt nearest_search(const WrappedSpool& spool, const std::vector<View>& views, std::size_t blocks,
-                       const Search& search, std::vector<Attempt> attempts, Work& work) {
+NearestSearch nearest_search(const WrappedSpool& spool, const std::vector<View>& views, std::size_t blocks,
+                             const Search& search, std::vector<Attempt> attempts, Work& work) {
   StartChoice choice(spool, views, search, stride_of(blocks), work);
-  if (!is_thread(search)) return std::move(attempts[choice.nearest(attempts)]);
-  for (Attempt& attempt : attempts) choice.go_on(attempt, "start " + std::to_string(attempt.start + 1));
-  Attempt exchanged = attempts[choice.nearest(attempts)];
+  if (is_thread(search))
+    for (Attempt& attempt : attempts) choice.go_on(attempt, "start " + std::to_string(attempt.start + 1));
+  NearestSearch found{.nearest = std::move(attempts[choice.nearest(attempts)])};
+  if (!is_thread(search)) return found;
+  Attempt exchanged = found.nearest;
   std::swap(exchanged.unknowns[kAlpha], exchanged.unknowns[kAlpha + 2]);
   choice.go_on(exchanged, "R and TRT exchanged");
-  attempts.push_back(std::move(exchanged));
-  return std::move(attempts[choice.nearest(attempts)]);
+  if (keeps_exchanged(exchanged.unknowns, found.nearest.unknowns)) found.exchanged = std::move(exchanged);
+  return found;
 }
 
 double work_of_choice(const Search& search, std::size_t blocks, std::size_t attempts) {
-  const double compared = kComparedSets * kComparedPaths, steps = kSteps * paths_of_step(*search.options);
+  const double compared = kComparedSets * MisfitComparison::kPaths, steps = kSteps * paths_of_step(*search.options);
   const auto searches = static_cast<double>(attempts);
-  return (is_thread(search) ? (searches + 1) * (steps + compared) : searches * compared) / stride_of(blocks);
+  return (searches * compared + (is_thread(search) ? (searches + 1) * steps : 0)) / stride_of(blocks);
 }
 
 }  // namespace inversion

@@ -40,7 +40,6 @@ LinearisedFit linearised(const ViewObjective& objective, const Search& search, d
   objective.residuals(unknowns, fit.residuals.data(), jacobian.data());
   fit.jacobian = jacobian;
   fit.variances = objective.residual_variances(unknowns);
-  fit.views = objective.residual_views();
   fit.held.assign(static_cast<std::size_t>(unknowns.size()), false);
   for (int k : search.held) fit.held[static_cast<std::size_t>(k)] = true;
   fit.bounds = touched_bounds(search, unknowns);
@@ -151,6 +150,12 @@ Certainty certainty_at(const ViewObjective& objective, const Search& search, dou
     return end.sets.curvature_deviation(inverse.cwiseProduct(direction));
   };
   fit.gradient_covariance = block_covariance(gradients);
+  // Each colour of a view errs as a whole, because misfit is smooth over a view.
+  VectorXd photographs = objective.photograph_variances();
+  if (end.factors.size() > 0) photographs.array() *= end.factors.array().square();
+  fit.misfit_covariance = inverse.asDiagonal() *
+                          end.sets.misfit_covariance(at, views_and_colours(objective), photographs) *
+                          inverse.asDiagonal();
   fit.gradient = gradients.rowwise().sum() + OtherTerms(*search.family, prior_scale).at(unknowns).gradient;
   fit.mean_variance = end.variance;
   fit.left = std::move(end.left);

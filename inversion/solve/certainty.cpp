@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace inversion {
@@ -11,28 +12,6 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-// Residuals are stored RGB, so that every third row has the same colour.
-constexpr int kColours = 3;
-
-// The part that the misfit of views adds to J' S J: each colour of a view errs as a whole.
-MatrixXd misfit_part(const LinearisedFit& fit, const MatrixXd& jacobian) {
-  const int views = 1 + *std::max_element(fit.views.begin(), fit.views.end());
-  const Eigen::Index unknowns = jacobian.cols();
-  MatrixXd sums = MatrixXd::Zero(views * kColours, unknowns);
-  VectorXd excess = VectorXd::Zero(views * kColours), counts = excess;
-  for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
-    const Eigen::Index group = fit.views[static_cast<std::size_t>(row)] * kColours + row % kColours;
-    sums.row(group) += jacobian.row(row);
-    excess[group] += fit.residuals[row] * fit.residuals[row] - fit.variances[row];
-    counts[group] += 1;
-  }
-  MatrixXd part = MatrixXd::Zero(unknowns, unknowns);
-  for (Eigen::Index group = 0; group < sums.rows(); ++group)
-    if (counts[group] > 0)
-      part += std::max(0.0, excess[group] / counts[group]) * sums.row(group).transpose() * sums.row(group);
-  return part;
-}
 
 MatrixXd columns(const MatrixXd& matrix, const std::vector<int>& chosen) {
   MatrixXd kept(matrix.rows(), static_cast<Eigen::Index>(chosen.size()));
@@ -87,10 +66,11 @@ MatrixXd spread_of_end(const LinearisedFit& fit, const MatrixXd& noise, const Ma
   return end + left * start * left.transpose();
 }
 
-// No direction is less certain than by a deviation of 1: where noise has made the Hessian too flat it would be.
-MatrixXd at_most_one(const MatrixXd& covariance) {
+// A covariance that noise has left with variances beyond these.
+MatrixXd clamped(const MatrixXd& covariance, double least, double most) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(0.5 * (covariance + covariance.transpose()));
-  return axes.eigenvectors() * axes.eigenvalues().cwiseMin(1).asDiagonal() * axes.eigenvectors().transpose();
+  return axes.eigenvectors() * axes.eigenvalues().cwiseMax(least).cwiseMin(most).asDiagonal() *
+         axes.eigenvectors().transpose();
 }
 
 // What is known of some of the unknowns while the others stay where they are, in units of the scales.
@@ -116,17 +96,21 @@ Known known_of(const LinearisedFit& fit, const std::vector<int>& chosen) {
   const MatrixXd noise = fit.gradient_covariance.size() > 0
                              ? in_chosen(fit, fit.gradient_covariance, chosen)
                              : MatrixXd(jacobian.transpose() * fit.variances.asDiagonal() * jacobian);
+  const MatrixXd misfit = fit.misfit_covariance.size() > 0 ? in_chosen(fit, fit.misfit_covariance, chosen)
+                                                           : MatrixXd::Zero(jacobian.cols(), jacobian.cols());
   const auto inverse_with = [&](double more) {
     return MatrixXd((hessian + (floor + more) * identity).ldlt().solve(identity));
   };
   // The deviation of 1 is one more piece of information on each unknown.
   const MatrixXd weak = inverse_with(variance);
-  const MatrixXd total =
-      weak * (noise + misfit_part(fit, jacobian) + variance * prior + variance * variance * identity) * weak;
-  return {.chosen = chosen,
-          .hessian = hessian,
-          .by_noise = spread_of_end(fit, noise, inverse_with(fit.damping), chosen),
-          .total = at_most_one(total)};
+  const MatrixXd by_misfit = clamped(weak * misfit * weak, 0, std::numeric_limits<double>::infinity()),
+                 total = weak * (noise + variance * prior + variance * variance * identity) * weak + by_misfit;
+  return {
+      .chosen = chosen,
+      .hessian = hessian,
+      .by_noise = spread_of_end(fit, noise, inverse_with(fit.damping), chosen),
+      // No direction is less certain than by a deviation of 1: where noise has made the Hessian too flat it would be.
+      .total = clamped(total, 0, 1)};
 }
 
 // Moments of a distance t from the bound, over the variance without the bound.

@@ -13,9 +13,8 @@
 // by one moves their end by K, and they leave L of what separates the minimum from their start, whose covariance is
 // C_0, the spread is K G K' + L C_0 L'. The total is that of the minimum.
 //
-// The total covariance contains besides: what the model cannot explain, which is a view's mean squared residual beyond
-// its noise, taken as common to all its blocks, because misfit is smooth over a view; the prior's own uncertainty; and
-// a deviation of 1 in the scales for directions that nothing speaks of.
+// The total covariance contains besides: what the model cannot explain (JoinedSets::misfit_covariance), the prior's own
+// uncertainty, and a deviation of 1 in the scales for directions that nothing speaks of.
 //
 // At a bound the truth lies on one side. What the unknown's distance t from its bound may be follows a normal density
 // around the minimum that the loss would have without the bound, cut off there; its deviation is the root of E[t^2].
@@ -51,13 +50,14 @@ struct LinearisedFit {
   // count as large as it. May be empty: not at all.
   std::function<double(const Eigen::VectorXd& direction)> curvature_deviation{};
   Eigen::MatrixXd gradient_covariance;  // G; may be empty: J' S J
+  Eigen::MatrixXd
+      misfit_covariance;  // what the views' misfit adds to G in the total; may be empty, and need not be positive
   Eigen::VectorXd residuals, variances;
   // Of a residual in the loss that was minimised, if that is the mean over more paths than `residuals` are of; 0: the
   // mean square of `residuals`.
   double mean_variance = 0;
   Eigen::MatrixXd gain, left, start_covariance;  // K, L and C_0; may be empty: H^-1, 0 and 0
   double damping = 0;                            // of the last step, for the spread of what is at a bound
-  std::vector<int> views;                        // the view of each residual, from 0
   Eigen::MatrixXd penalty_jacobian;              // penalties x unknowns; may have no rows
   Eigen::MatrixXd prior_jacobian;                // the prior's terms, of variance `mean_variance`; may be empty
   std::vector<bool> held;                        // unknowns that were not varied: no variance

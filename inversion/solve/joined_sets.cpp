@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace inversion {
 
@@ -67,6 +68,31 @@ double JoinedSets::curvature_deviation(const VectorXd& direction) const {
     variance += 4 * std::max(0.0, square - noise) * noise + 2 * noise * noise;
   }
   return std::sqrt(variance) / (weights_ * weights_);
+}
+
+MatrixXd JoinedSets::misfit_covariance(const VectorXd& unknowns, const std::vector<int>& groups,
+                                       const VectorXd& variances) const {
+  struct Group {
+    double excess = 0;
+    int count = 0;
+    VectorXd rows;
+    MatrixXd noise;  // of `rows`
+  };
+  const Eigen::Index count = unknowns.size();
+  const VectorXd at = unknowns.homogeneous(), residuals = sums_.transpose() * at / weights_;
+  std::map<int, Group> sums;
+  for (Eigen::Index row = 0; row < residuals.size(); ++row) {
+    Group& group = sums[groups[static_cast<std::size_t>(row)]];
+    if (group.count++ == 0) group.rows = VectorXd::Zero(count), group.noise = MatrixXd::Zero(count, count);
+    const auto noise = noise_.col(row).reshaped(count + 1, count + 1);
+    group.excess += residuals[row] * residuals[row] - at.dot(noise * at) / (weights_ * weights_) - variances[row];
+    group.rows += sums_.col(row).head(count) / weights_;
+    group.noise += noise.topLeftCorner(count, count) / (weights_ * weights_);
+  }
+  MatrixXd part = MatrixXd::Zero(count, count);
+  for (const auto& [number, group] : sums)
+    part += std::max(0.0, group.excess / group.count) * (group.rows * group.rows.transpose() - group.noise);
+  return part;
 }
 
 MatrixXd JoinedSets::whole_hessian() const {

@@ -17,6 +17,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <vector>
 
 #include "inversion/solve/bias_free.h"
 
@@ -36,6 +37,12 @@ class JoinedSets {
   Eigen::MatrixXd hessian() const;
   // The standard deviation of the Hessian's curvature v' H v along a direction, which noise leaves it.
   double curvature_deviation(const Eigen::VectorXd& direction) const;
+  // What misfit adds to the gradient's covariance if each group of residuals errs as a whole: the sum of v s s' over
+  // the groups, s being the sum of their J's rows and v the mean square of their residuals beyond `variances`, which
+  // all sets share (photographs' noise), and beyond the paths' noise, which is not in s s' either, so that the sum need
+  // not be positive. groups: the number of each residual's group, from 0.
+  Eigen::MatrixXd misfit_covariance(const Eigen::VectorXd& unknowns, const std::vector<int>& groups,
+                                    const Eigen::VectorXd& variances) const;
   // J' J of the sets' mean: positive, and larger than the Hessian by the noise of J, so that steps by it are on average
   // too short, but none is long because noise has left a direction flat.
   Eigen::MatrixXd whole_hessian() const;

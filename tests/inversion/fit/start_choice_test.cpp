@@ -27,7 +27,7 @@ class StartChoiceTest : public testing::Test {
     options_.robust = false;
   }
 
-  Attempt nearest(const std::vector<VectorXd>& starts) {
+  NearestSearch nearest(const std::vector<VectorXd>& starts) {
     std::vector<Attempt> attempts;
     for (const VectorXd& start : starts)
       attempts.push_back({.start = static_cast<int>(attempts.size()), .unknowns = start});
@@ -46,7 +46,7 @@ class StartChoiceTest : public testing::Test {
 TEST_F(StartChoiceTest, TheSearchThatIsNearestIsTakenWithHowUncertainItIs) {
   VectorXd far = unknowns_of(known_thread());
   far.segment<3>(kBeta).setConstant(0.1);
-  const Attempt found = nearest({far, unknowns_of(known_thread())});
+  const Attempt found = nearest({far, unknowns_of(known_thread())}).nearest;
   EXPECT_EQ(found.start, 1);
   ASSERT_EQ(found.covariance.rows(), far.size());
   EXPECT_GT(found.covariance.diagonal().minCoeff(), 0);
@@ -65,6 +65,10 @@ TEST_F(StartChoiceTest, ItTriesTheNearestOnceMoreWithRAndTRTExchangedAndItsProgr
   EXPECT_THAT(searches, testing::ElementsAre("R and TRT exchanged", "comparing starts", "start 1"));
   EXPECT_GT(last, 0.9);
   EXPECT_LE(last, 1);
+}
+
+TEST_F(StartChoiceTest, AnExchangeOfRAndTRTThatGoesBackIsNotPursued) {
+  EXPECT_FALSE(nearest({unknowns_of(known_thread())}).exchanged);
 }
 
 TEST_F(StartChoiceTest, ItIsStoppedOnRequest) {

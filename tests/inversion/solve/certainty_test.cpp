@@ -15,7 +15,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Rows RGB by block, two views.
+// Rows RGB by block.
 LinearisedFit random_fit(int unknowns, double sigma) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
@@ -24,7 +24,6 @@ LinearisedFit random_fit(int unknowns, double sigma) {
   fit.jacobian = MatrixXd::NullaryExpr(kRows, unknowns, [&] { return normal(random); });
   fit.residuals = VectorXd::NullaryExpr(kRows, [&] { return sigma * normal(random); });
   fit.variances = VectorXd::Constant(kRows, sigma * sigma);
-  for (int row = 0; row < kRows; ++row) fit.views.push_back(row < kRows / 2 ? 0 : 1);
   fit.held.assign(static_cast<std::size_t>(unknowns), false);
   fit.bounds.assign(static_cast<std::size_t>(unknowns), 0);
   fit.scales = VectorXd::Ones(unknowns);
@@ -94,14 +93,16 @@ TEST(CertaintyTest, StepsThatDoNotReachTheMinimumSpreadByWhatTheyLeaveOfTheirSta
   EXPECT_TRUE(certainty.covariance.isApprox(minimum.covariance)) << "of the minimum itself";
 }
 
-TEST(CertaintyTest, MisfitCommonToAViewAddsToTheTotalOnly) {
+TEST(CertaintyTest, MisfitAddsWhatItMovesTheMinimumByToTheTotalOnly) {
   LinearisedFit fit = random_fit(3, 0.1);
   const Certainty before = certainty_of(fit);
-  fit.residuals.head(120).array() += 1;
+  const VectorXd pull = 2 * fit.jacobian.topRows(120).colwise().sum();
+  fit.misfit_covariance = pull * pull.transpose();
   const Certainty after = certainty_of(fit);
+  const VectorXd moved = (fit.jacobian.transpose() * fit.jacobian).ldlt().solve(pull);
   EXPECT_TRUE(after.noise_covariance.isApprox(before.noise_covariance));
-  EXPECT_GT(after.covariance.trace(), 5 * after.noise_covariance.trace());
-  EXPECT_GT(after.misfit, 5);
+  const MatrixXd added = after.covariance - before.covariance;
+  EXPECT_TRUE(added.isApprox(moved * moved.transpose(), 1e-3)) << added << "\n" << moved * moved.transpose();
 }
 
 TEST(CertaintyTest, HeldUnknownsHaveNoVarianceAndDoNotWidenTheOthers) {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <random>
+#include <vector>
 
 #include "inversion/fit/block_covariance.h"
 
@@ -117,6 +118,33 @@ TEST(JoinedSetsTest, OneSetIsTheProductOfItsHalves) {
   EXPECT_NEAR(terms.loss, a.dot(b) / 2, 1e-9 * std::abs(a.dot(b)));
   EXPECT_TRUE(terms.gradient.isApprox((jacobians[0].transpose() * b + jacobians[1].transpose() * a) / 2, 1e-9));
   EXPECT_TRUE(terms.hessian.isApprox((product + product.transpose()) / 2, 1e-9));
+}
+
+// Two unknowns make up for each other, so that all that J v holds along them is noise.
+TEST(JoinedSetsTest, MisfitOfAGroupPullsAsItsRowsDoTogetherAndTheirNoiseDoesNot) {
+  constexpr int kDraws = 200, kGroup = kRows / 2;
+  constexpr double kMisfit = 0.5;
+  Problem problem(0, 0.3, 7);
+  problem.jacobian.col(1) = problem.jacobian.col(0);
+  problem.jacobian_noise = 0.2;
+  VectorXd misfit = VectorXd::Zero(kRows), direction = VectorXd::Zero(kUnknowns);
+  misfit.head(kGroup).setConstant(kMisfit);
+  direction.head<2>() << std::sqrt(0.5), -std::sqrt(0.5);
+  std::vector<int> groups(kRows);
+  for (int row = 0; row < kRows; ++row) groups[static_cast<std::size_t>(row)] = row < kGroup ? 0 : 1;
+  MatrixXd mean = MatrixXd::Zero(kUnknowns, kUnknowns);
+  for (int draw = 0; draw < kDraws; ++draw) {
+    JoinedSets sets;
+    for (int k = 0; k < kSets; ++k) {
+      const Halves both = problem.set(problem.truth, misfit);
+      sets.add(both.residuals, both.jacobians, problem.truth);
+    }
+    mean += sets.misfit_covariance(problem.truth, groups, VectorXd::Zero(kRows)) / kDraws;
+  }
+  const VectorXd pull = kMisfit * problem.jacobian.topRows(kGroup).colwise().sum();
+  EXPECT_TRUE(mean.isApprox(pull * pull.transpose(), 0.05)) << mean << "\n" << pull * pull.transpose();
+  const double of_noise = kMisfit * kMisfit * kGroup * problem.jacobian_noise * problem.jacobian_noise / (2 * kSets);
+  EXPECT_NEAR(direction.dot(mean * direction), 0, 0.2 * of_noise);
 }
 
 // The loss without noise, whatever the sets count.
