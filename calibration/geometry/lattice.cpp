@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "calibration/geometry/correspondences.h"
+#include "calibration/sensor/median.h"
 
 namespace calibration {
 namespace {
@@ -110,6 +111,38 @@ std::string displaced_tags(const TagLattice& tags, const TagLayout& board, const
   std::string names;
   for (const auto& [id, times] : displaced)
     if (times >= 2 && 2 * times > seen[id]) names += (names.empty() ? "tags " : ", ") + std::to_string(id);
+  return names;
+}
+
+std::string tags_beside(const TagLayout& board, const std::vector<TagObservation>& pictures) {
+  std::map<int, std::vector<cv::Point2d>> places;  // of unknown tags' middles in the board's plane, mm
+  for (const TagObservation& picture : pictures) {
+    std::vector<cv::Point2d> pixels, plane;
+    for (const Corner& corner : match_corners(board, picture)) {
+      pixels.emplace_back(corner.pixel.x(), corner.pixel.y());
+      plane.emplace_back(corner.point.x(), corner.point.y());
+    }
+    if (pixels.size() < 8) continue;
+    const cv::Mat1d map = cv::findHomography(pixels, plane, cv::RANSAC, 0.1 * board.tags.front().size_mm);
+    if (map.empty()) continue;
+    for (const TagDetection& tag : picture) {
+      if (std::ranges::any_of(board.tags, [&](const Tag& known) { return known.id == tag.id; })) continue;
+      Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+      for (const Eigen::Vector2d& corner : tag.corners_px) middle += 0.25 * corner;
+      std::vector<cv::Point2d> place;
+      cv::perspectiveTransform(std::vector<cv::Point2d>{{middle.x(), middle.y()}}, place, map);
+      places[tag.id].push_back(place.front());
+    }
+  }
+  std::string names;
+  for (const auto& [id, seen] : places) {
+    std::vector<double> x, y;
+    for (const cv::Point2d& place : seen) x.push_back(place.x), y.push_back(place.y);
+    const cv::Point2d middle(median(x), median(y));
+    const auto alike = std::ranges::count_if(
+        seen, [&](const cv::Point2d& place) { return cv::norm(place - middle) < 0.25 * board.tags.front().size_mm; });
+    if (alike >= 3 && 2 * alike > std::ssize(seen)) names += (names.empty() ? "tags " : ", ") + std::to_string(id);
+  }
   return names;
 }
 

@@ -56,4 +56,8 @@ std::optional<BoardCheck> check_board(const BoardPicture& picture);
 // empty when there are none.
 std::string displaced_tags(const TagLattice& tags, const TagLayout& board, const std::vector<BoardPicture>& pictures);
 
+// The tags, as "tags 12, 13", that the layout does not have but that lie on its print: at the same place of its plane,
+// to a quarter of a tag, in at least three pictures and in most that show them. Empty when there are none.
+std::string tags_beside(const TagLayout& board, const std::vector<TagObservation>& pictures);
+
 }  // namespace calibration

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <opencv2/calib3d.hpp>
 #include <set>
@@ -196,18 +197,42 @@ double median_distance_mm(const LensBundle& bundle) {
   return median(std::move(distances));
 }
 
-// The difference of the lenses from even and from odd pictures, each fitted from the solution of the whole set. Its
-// sigma is about twice that of the whole set's lens.
-std::optional<LensDifference> compare_halves(const LensBundle& whole, bool regularised, double distance_mm) {
-  if (static_cast<int>(whole.pictures.size()) < kFewestPicturesToHalve) return std::nullopt;
+struct HalvesCompared {
+  LensDifference difference;
+  double focal_change_percent = 0;  // LensFit
+};
+
+// The lenses from those pictures that are `chosen` and from the others, each fitted from the solution of the whole set.
+// The sigma of their difference is about twice that of the whole set's lens.
+std::optional<HalvesCompared> compare_halves(const LensBundle& whole, bool regularised, double distance_mm,
+                                             const std::function<bool(std::size_t)>& chosen) {
+  constexpr double kSurely = 5;  // standard errors
+  const BundleFreedom freedom{.regularised = regularised, .reject_outliers = false};
   std::array<LensBundle, 2> halves{whole, whole};
+  double variance = 0;
   for (std::size_t h = 0; h < 2; ++h) {
     halves[h].pictures.clear();
-    for (std::size_t v = h; v < whole.pictures.size(); v += 2) halves[h].pictures.push_back(whole.pictures[v]);
-    if (!sane(halves[h], solve_bundle(halves[h], {.regularised = regularised, .reject_outliers = false})))
-      return std::nullopt;
+    for (std::size_t v = 0; v < whole.pictures.size(); ++v)
+      if (chosen(v) == (h == 0)) halves[h].pictures.push_back(whole.pictures[v]);
+    if (!sane(halves[h], solve_bundle(halves[h], freedom))) return std::nullopt;
+    variance += linearise(halves[h], freedom).covariance(0, 0);
   }
-  return summary(projection_differences(halves[0].lens, halves[1].lens, distance_mm));
+  const double f = halves[0].lens.intrinsics[0], other = halves[1].lens.intrinsics[0];
+  return HalvesCompared{
+      .difference = summary(projection_differences(halves[0].lens, halves[1].lens, distance_mm)),
+      .focal_change_percent = 100 * std::max(0.0, std::abs(f - other) - kSurely * std::sqrt(variance)) / f};
+}
+
+void compare_halves(const LensBundle& whole, LensFit& fit) {
+  const std::size_t count = whole.pictures.size();
+  if (static_cast<int>(count) < kFewestPicturesToHalve) return;
+  const auto compared = [&](const std::function<bool(std::size_t)>& chosen) {
+    const auto halves = compare_halves(whole, fit.regularised, fit.working_distance_mm, chosen);
+    if (halves) fit.focal_change_percent = std::max(fit.focal_change_percent.value_or(0), halves->focal_change_percent);
+    return halves;
+  };
+  if (const auto halves = compared([](std::size_t v) { return v % 2 == 0; })) fit.halves = halves->difference;
+  compared([&](std::size_t v) { return 2 * v < count; });
 }
 
 // The model that the field of view can determine: without k3 in a narrow picture. There k3 moves nothing that k2 does
@@ -312,6 +337,10 @@ void judge(const LensBundle& bundle, double focal_guess_px, const LensOptions& o
   if (fit.halves)
     add(at_most("half of the pictures against the other half, median px", fit.halves->median_px, 0.3,
                 "the two halves saw different lenses: focus, zoom or stabiliser moved between pictures"));
+  if (fit.focal_change_percent)
+    add(at_most("focal length of half of the pictures against the other half, beyond its uncertainty, %",
+                *fit.focal_change_percent, 0.5,
+                "two cameras' pictures in one folder, or focus or zoom moved between pictures: sort them"));
   add(at_most("richer lens model (OPENCV8) against this one, median px", fit.opencv8.median_px, 0.3,
               "the lens bends in a way that five coefficients do not describe"));
   if (options.taped_distance_mm > 0.0) {
@@ -368,7 +397,7 @@ LensFit fit_lens(const std::vector<BoardPicture>& pictures, const Lattice& board
   BundleUncertainty uncertainty;
   let_go_of_regularisation(bundle, uncertainty, fit);
   compare_with_opencv8(bundle, fit);
-  fit.halves = compare_halves(bundle, fit.regularised, fit.working_distance_mm);
+  compare_halves(bundle, fit);
   report(gathered, uncertainty, pictures.size(), fit);
   judge(bundle, focal_guess_px, options, fit);
   return fit;

@@ -39,7 +39,9 @@ struct LensFit {
                                // the residuals show
   // One per picture; 0 for a picture with fewer than eight corners, which is left out.
   std::vector<double> picture_rms_px;
-  // How far the board's middle stands out of the plane of its edges, along its x and its y, mm, with standard errors.
+  // How far the board's middle stands out of the plane of its edges, along its x and its y, mm, with standard errors;
+  // positive: towards the viewer. (mrcal's own tools count a board's rows downwards, so that its z points away from the
+  // viewer: their calobject_warp of the same board has the other sign.)
   Eigen::Vector2d board_warp_mm = Eigen::Vector2d::Zero(), board_warp_sigma_mm = Eigen::Vector2d::Zero();
   int corners_used = 0;
   int corners_rejected = 0;  // off by more than a lattice spacing, or by mrcal's rule: 5 sigma, then 4 sigma
@@ -61,8 +63,11 @@ struct LensFit {
   double regularisation_sigmas = 0.0;    // above 3, regularisation would have bent the lens
   LensDifference opencv8;                // difference from a fit of a lens with twelve parameters to the same pictures
   std::optional<LensDifference> halves;  // difference of fits to even and to odd pictures; absent for fewer than ten
-  std::vector<Gate> gates;               // the lens is accepted when all passed
-  std::string messages;                  // what the solver printed
+  // Part of the focal length, in %, by which halves of the pictures differ beyond what five of its standard errors
+  // explain: the worse of even and odd pictures and of the first and the second half. Absent likewise.
+  std::optional<double> focal_change_percent;
+  std::vector<Gate> gates;  // the lens is accepted when all passed
+  std::string messages;     // what the solver printed
 };
 
 // The rms of projection_sigma_px over the inner two thirds of rows and columns, where spools stand. At the picture's

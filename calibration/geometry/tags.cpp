@@ -152,18 +152,24 @@ std::array<Eigen::Vector3d, 4> corners_in_object(const Tag& tag) {
           tag.object_from_tag * Eigen::Vector3d(h, h, 0.0), tag.object_from_tag * Eigen::Vector3d(-h, h, 0.0)};
 }
 
-TagObservation detect_tags(const cv::Mat1f& grey) {
+TagsSeen see_tags(const cv::Mat1f& grey) {
   if (grey.empty()) return {};
   thread_local Detector detector;
   const TagObservation found = detector.detect(encode(grey));
   std::map<int, int> times_seen;
   for (const TagDetection& tag : found) ++times_seen[tag.id];
-  TagObservation unique;
+  TagsSeen seen;
   for (const TagDetection& tag : found)
     if (times_seen[tag.id] == 1 && inside(tag, grey.size()))
-      unique.push_back({.id = tag.id, .corners_px = refined_corners(grey, tag.corners_px)});
-  std::sort(unique.begin(), unique.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
-  return unique;
+      seen.tags.push_back({.id = tag.id, .corners_px = refined_corners(grey, tag.corners_px)});
+  std::sort(seen.tags.begin(), seen.tags.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  for (const auto& [id, times] : times_seen)
+    if (times > 1) seen.repeated.push_back(id);
+  return seen;
+}
+
+TagObservation detect_tags(const cv::Mat1f& grey) {
+  return see_tags(grey).tags;
 }
 
 cv::Mat1b tag_bitmap(int id) {

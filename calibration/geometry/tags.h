@@ -42,6 +42,12 @@ using TagObservation = std::vector<TagDetection>;  // one picture's tags
 // empty. An id that is seen twice is ambiguous and dropped, and so is a tag that the picture's edge cuts. Corners of
 // tags of 35-110 px are good to about 0.05 px per axis. Method: AprilTag 3.3, then calibration/geometry/tag_corners.h.
 TagObservation detect_tags(const cv::Mat1f& grey);
+// The same, and the ids that were dropped because they are seen twice.
+struct TagsSeen {
+  TagObservation tags;
+  std::vector<int> repeated;
+};
+TagsSeen see_tags(const cv::Mat1f& grey);
 
 // The printed bitmap of a tag: 10 x 10 cells (black square of 8 x 8 cells inside a white border), 0 or 255, top row
 // first as seen. Throws std::runtime_error for an id that the family does not have.

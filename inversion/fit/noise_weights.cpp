@@ -10,11 +10,12 @@ using Eigen::VectorXd;
 
 void NoiseWeights::add(const VectorXd& variances, const VectorXd& products) {
   const VectorXd pooled = mean_of_groups(variances);
-  variances_ = empty() ? pooled : VectorXd((sets_ * variances_ + pooled) / (sets_ + 1.0));
+  variances_ = empty() ? pooled : VectorXd((old_ * sets_ * variances_ + pooled) / (old_ * sets_ + 1.0));
   const double misfit = misfit_of(products);
   misfit_ = empty() ? misfit : std::min(misfit, last_misfit_);
   last_misfit_ = misfit;
-  ++sets_;
+  if (empty()) reference_ = variances_.mean() + misfit_;
+  sets_ = old_ * sets_ + 1;
 }
 
 double NoiseWeights::misfit_of(const VectorXd& products) const {
@@ -54,7 +55,7 @@ double NoiseWeights::variance_alike(const VectorXd& photographs) const {
 
 VectorXd NoiseWeights::factors() const {
   const Eigen::ArrayXd whole = variances_.array() + misfit_;
-  return (whole.mean() / whole).sqrt();
+  return (reference_ / whole).sqrt();
 }
 
 }  // namespace inversion

@@ -17,6 +17,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+constexpr double kOldNoise = 0.5;  // what a set's variances count of the next one's
+
 // What a set of paths counts of the next one in `UnbiasedEnd::sets`, on the approach: the Hessian changes less there
 // than by its noise.
 constexpr double kOldInCertainty = 0.8;
@@ -68,7 +70,7 @@ UnbiasedEnd remove_bias(ViewObjective& objective, const Search& search, int firs
   const bool with_prior = search.has_prior() && !attempt.rounds.empty();
   const VectorXd photographs = objective.photograph_variances();
   const StepCoordinates coordinates(search.unknowns);
-  NoiseWeights weights(views_and_colours(objective));
+  NoiseWeights weights(views_and_colours(objective), kOldNoise);
   const auto learn_noise = [&](const ViewObjective::Halves& both) {
     weights.add(both.variances, both.residuals[0].cwiseProduct(both.residuals[1]) - photographs);
   };

@@ -23,7 +23,8 @@ struct CameraArguments {
 
 void run_camera(CameraArguments& arguments) {
   arguments.request.progress_style = arguments.output.progress_style();
-  const LensFile lens = calibrate_camera(arguments.request);
+  const auto [lens, remarks] = calibrate_camera(arguments.request);
+  for (const std::string& remark : remarks) std::cerr << "note: " << remark << "\n";
   if (arguments.output.json)
     std::cout << to_json(lens).dump() << "\n";
   else if (!arguments.output.quiet)

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "station/documents/lens_file.h"
 #include "station/output/progress.h"
@@ -16,8 +18,14 @@ struct CalibrateCameraRequest {
   ProgressStyle progress_style = ProgressStyle::automatic;
 };
 
+struct CalibratedCamera {
+  LensFile lens;
+  std::vector<std::string> remarks;  // what a person should know of the pictures, a line each
+};
+
 // Reads every picture of the folder (JPEG, PNG, TIFF, raw), writes <out> and the .cameramodel beside it, also when an
-// acceptance check failed: the caller says so. Throws std::runtime_error when there is nothing to solve.
-LensFile calibrate_camera(const CalibrateCameraRequest& request);
+// acceptance check failed: the caller says so. Throws std::runtime_error when there is nothing to solve,
+// a picture is damaged or of another camera or lens, or the board is not that of the file.
+CalibratedCamera calibrate_camera(const CalibrateCameraRequest& request);
 
 }  // namespace station

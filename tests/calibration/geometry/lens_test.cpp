@@ -273,6 +273,23 @@ TEST(Lens, AnotherLensInEverySecondViewIsShownByTheHalves) {
   EXPECT_TRUE(all_passed(fit_lens(handheld_views(20, 0.05, random), synthetic::board(), kSize, 2400).gates));
 }
 
+// Poses take up what another focal length does to pictures so narrow: no half contradicts the other in the picture.
+TEST(Lens, AFocusThatMovedHalfWayIsShownByTheFocalLengths) {
+  std::mt19937 random(17);
+  auto views = handheld_views(20, 0.05, random);
+  Lens other = synthetic::narrow_lens();
+  other.fx_px *= 1.04, other.fy_px *= 1.04;
+  const auto later = handheld_views(20, 0.05, random, other);
+  for (std::size_t v = 10; v < views.size(); ++v) views[v] = later[v];
+  const auto focal = [](const LensFit& fit) {
+    return *std::ranges::find_if(fit.gates,
+                                 [](const Gate& gate) { return gate.name.starts_with("focal length of half"); });
+  };
+  const Gate moved = focal(fit_lens(views, synthetic::board(), kSize, 2400));
+  EXPECT_FALSE(moved.passed) << moved.value;
+  EXPECT_TRUE(focal(fit_lens(later, synthetic::board(), kSize, 2400)).passed);
+}
+
 TEST(Lens, ABoardWithoutACommonLatticeIsRefused) {
   TagLayout crooked = synthetic::board();
   crooked.tags[5].object_from_tag.rotate(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ()));
