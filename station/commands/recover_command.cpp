@@ -9,16 +9,17 @@ namespace {
 
 struct RecoverArguments {
   RecoverRequest request;
+  std::vector<std::filesystem::path> threads;
   OutputOptions output;
 };
 
 void run(RecoverArguments& arguments) {
   arguments.request.progress_style = arguments.output.progress_style();
-  const RecoveredThread recovered = recover_thread(arguments.request);
-  if (arguments.output.json)
-    std::cout << to_json(recovered).dump() << "\n";
-  else
-    std::cout << describe(recovered);
+  const bool json = arguments.output.json;
+  const auto recovered = recover_threads(arguments.request, arguments.threads, [&](const RecoveredThread& one) {
+    if (!json) std::cout << describe(one) << std::flush;
+  });
+  std::cout << (json ? to_json(recovered).dump() + "\n" : table_of(recovered));
 }
 
 }  // namespace
@@ -30,7 +31,7 @@ void add_recover_command(CLI::App& app) {
       app.add_subcommand("recover", "fit pictures of a known thread: errors, and predicted against seen deviations");
   command->add_option("--rig", request.rig, "rig file with a simulation part: lens, lamps and sensor")->required();
   command->add_option("--spool", request.spool, "spool file, for its wrapping")->required();
-  command->add_option("--thread", request.thread, "thread file: the truth")->required();
+  command->add_option("--thread", arguments->threads, "thread files: the truth, one after the other")->required();
   command->add_option("--draws", request.draws, "fits to other draws of the noise; 0: none")
       ->check(CLI::Range(0, 10000));
   command->add_option("--prior", request.fit.prior_weight, "weight of the simulated threads' prior; 0: none")

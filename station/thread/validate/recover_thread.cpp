@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <stdexcept>
 
 #include "inversion/fit/energy_bands.h"
@@ -117,16 +118,23 @@ std::vector<View> photographs(const RecoverRequest& request, const RigFile& rig,
   return exact;
 }
 
+// A fit to one draw of the noise, with the deviations that noise gives it and with its total ones.
+struct Draw {
+  Reading by_noise, total;
+};
+
 // The seen and the predicted deviation of each quantity over the draws of the noise, of which there are two or more.
-void add_spreads(const std::vector<Reading>& draws, std::vector<RecoveredQuantity>& quantities) {
+void add_spreads(const std::vector<Draw>& draws, std::vector<RecoveredQuantity>& quantities) {
+  constexpr double kHeld = 3;  // deviations
   const auto count = static_cast<double>(draws.size());
   for (std::size_t i = 0; i < quantities.size(); ++i) {
     RecoveredQuantity& of = quantities[i];
     double spread2 = 0, predicted2 = 0;
-    for (const Reading& draw : draws) of.mean += draw.values[i] / count;
-    for (const Reading& draw : draws) {
-      spread2 += (draw.values[i] - of.mean) * (draw.values[i] - of.mean) / (count - 1);
-      predicted2 += draw.sigmas[i] * draw.sigmas[i] / count;
+    for (const Draw& draw : draws) of.mean += draw.by_noise.values[i] / count;
+    for (const auto& [by_noise, total] : draws) {
+      spread2 += (by_noise.values[i] - of.mean) * (by_noise.values[i] - of.mean) / (count - 1);
+      predicted2 += by_noise.sigmas[i] * by_noise.sigmas[i] / count;
+      of.held += std::abs(total.values[i] - of.truth) <= kHeld * total.sigmas[i] ? 1 / count : 0;
     }
     of.spread = std::sqrt(spread2);
     of.predicted = std::sqrt(predicted2);
@@ -204,15 +212,26 @@ RecoveredThread recover_thread(const RecoverRequest& request) {
   result.quantities = recovered_quantities(truth, first);
 
   inversion::FitOptions again = fit_again(cold, first);
-  std::vector<Reading> draws;
+  std::vector<Draw> draws;
   for (int draw = 1; draw <= request.draws; ++draw) {
     again.seed = request.fit.seed + kDrawSeedStep * static_cast<std::uint64_t>(draw);
     const inversion::ViewFit fit = fit_draw(draw, again, draw_of(again.seed));
-    draws.push_back(reading_of(fit, fit.certainty.noise_covariance));
+    draws.push_back({reading_of(fit, fit.certainty.noise_covariance), reading_of(fit, fit.certainty.covariance)});
   }
   if (draws.size() > 1) add_spreads(draws, result.quantities);
   progress.finish(std::to_string(1 + request.draws) + " fits");
   return result;
+}
+
+std::vector<RecoveredThread> recover_threads(RecoverRequest request, const std::vector<std::filesystem::path>& threads,
+                                             const std::function<void(const RecoveredThread&)>& found) {
+  std::vector<RecoveredThread> recovered;
+  for (const std::filesystem::path& thread : threads) {
+    request.thread = thread;
+    recovered.push_back(recover_thread(request));
+    found(recovered.back());
+  }
+  return recovered;
 }
 
 std::string describe(const RecoveredThread& recovered) {
@@ -225,20 +244,47 @@ std::string describe(const RecoveredThread& recovered) {
       recovered.loss_of_truth.mean, recovered.loss_of_truth.standard_error, recovered.loss_of_fit.mean,
       recovered.loss_of_fit.standard_error, recovered.loss_of_truth.without_noise, recovered.loss_of_fit.without_noise);
   text += line;
-  text += "quantity           truth   fitted     +-   error, %  in +-     mean   spread  predicted  predicted/spread\n";
+  text +=
+      "quantity           truth   fitted     +-   error, %  in +-     mean   spread  predicted  predicted/spread  "
+      "held, "
+      "%\n";
   for (const RecoveredQuantity& of : recovered.quantities) {
     const double error = of.fitted - of.truth;
     std::snprintf(line, sizeof line, "%-14s  %8.4f %8.4f %6.4f  %9.1f  %5.1f", of.name.c_str(), of.truth, of.fitted,
                   of.sigma, 100 * error / of.truth, of.sigma > 0 ? error / of.sigma : 0.0);
     text += line;
     if (recovered.draws > 1) {
-      std::snprintf(line, sizeof line, " %8.4f  %7.5f    %7.5f  %16.2f", of.mean, of.spread, of.predicted,
-                    of.spread > 0 ? of.predicted / of.spread : 0.0);
+      std::snprintf(line, sizeof line, " %8.4f  %7.5f    %7.5f  %16.2f %8.0f", of.mean, of.spread, of.predicted,
+                    of.spread > 0 ? of.predicted / of.spread : 0.0, 100 * of.held);
       text += line;
     }
     text += "\n";
   }
   return text;
+}
+
+std::string table_of(const std::vector<RecoveredThread>& recovered) {
+  if (recovered.size() < 2 || recovered.front().draws < 2) return {};
+  std::string text = "thread                    held, % (mean, least)   beta_TT: mean error, %   predicted/spread\n";
+  for (const RecoveredThread& one : recovered) {
+    double mean = 0, least = 1, low = std::numeric_limits<double>::infinity(), high = 0, beta = 0;
+    for (const RecoveredQuantity& of : one.quantities) {
+      mean += of.held / static_cast<double>(one.quantities.size());
+      least = std::min(least, of.held);
+      if (of.name == "beta[1]") beta = 100 * (of.mean / of.truth - 1);
+      if (of.spread > 0) low = std::min(low, of.predicted / of.spread), high = std::max(high, of.predicted / of.spread);
+    }
+    text += formatted("%-24s  %13.1f %9.0f  %22.1f  %9.2f ... %.2f\n", one.thread.c_str(), 100 * mean, 100 * least,
+                      beta, low, high);
+  }
+  return text;
+}
+
+nlohmann::json to_json(const std::vector<RecoveredThread>& recovered) {
+  if (recovered.size() == 1) return to_json(recovered.front());
+  nlohmann::json all = nlohmann::json::array();
+  for (const RecoveredThread& one : recovered) all.push_back(to_json(one));
+  return all;
 }
 
 nlohmann::json to_json(const RecoveredThread& recovered) {
@@ -250,7 +296,8 @@ nlohmann::json to_json(const RecoveredThread& recovered) {
                           {"sigma", of.sigma},
                           {"mean", of.mean},
                           {"spread", of.spread},
-                          {"predicted", of.predicted}});
+                          {"predicted", of.predicted},
+                          {"held", of.held}});
   return {{"thread", recovered.thread},
           {"seconds", recovered.seconds},
           {"loss_of_truth", loss_json(recovered.loss_of_truth)},

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -33,6 +34,7 @@ struct RecoveredQuantity {
   double fitted = 0, sigma = 0;  // the first fit's value and its total predicted deviation
   double mean = 0, spread = 0,
          predicted = 0;  // over the draws: deviation seen, and predicted from noise; 0 without draws
+  double held = 0;       // share of the draws within three of their own total deviations of the truth
 };
 
 struct RecoveredThread {
@@ -49,7 +51,15 @@ struct RecoveredThread {
 // it is stopped.
 RecoveredThread recover_thread(const RecoverRequest& request);
 
+// One thread after the other; calls found() with each.
+std::vector<RecoveredThread> recover_threads(RecoverRequest request, const std::vector<std::filesystem::path>& threads,
+                                             const std::function<void(const RecoveredThread&)>& found);
+
 std::string describe(const RecoveredThread& recovered);
+// A line for each thread: how its draws held, and how well their spread was predicted. Empty for one thread, or for
+// less than two draws.
+std::string table_of(const std::vector<RecoveredThread>& recovered);
 nlohmann::json to_json(const RecoveredThread& recovered);
+nlohmann::json to_json(const std::vector<RecoveredThread>& recovered);  // of one: that one
 
 }  // namespace station

@@ -140,7 +140,7 @@ TEST(FitFaultsTest, OneBadViewIsNamedAndHardlyMovesTheThread) {
   FitOptions all_alike = whole;
   all_alike.robust = false;
   const ViewFit plain = fit_views({}, views, all_alike);
-  // Absorption and the strengths of TT and TRT make up for each other, so that they may be far off where the fit says so.
+  // Absorption and the strengths of TT and TRT make up for each other: they may be far off where the fit says so.
   const ThreadUnknowns truth = unknowns_of(known_thread());
   for (const ViewFit* fit : {&good, &found.fit})
     for (int k = 0; k < truth.size(); ++k)

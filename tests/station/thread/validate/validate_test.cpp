@@ -1,6 +1,8 @@
 // The commands that judge the fits themselves, as a person types them, in few paths and samples.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -61,6 +63,16 @@ TEST(Recover, TheTruthIsTheThreadsAndExplainsItsOwnPictures) {
   EXPECT_GT(truth.at("mean").get<double>(), 0);
   EXPECT_LT(std::abs(truth.at("without_noise").get<double>()), 0.5 * truth.at("mean").get<double>());
   EXPECT_LT(recovered.at("loss_of_fit").at("mean").get<double>(), 10 * truth.at("mean").get<double>());
+}
+
+TEST(Recover, OfSeveralThreadsEachIsPrintedAndATableOfAll) {
+  const ProgramResult result = run_threadstation({"recover", "--rig", kRig, "--spool", kData + "/spools/silk_blue.json",
+                                                  "--thread", kThread, kData + "/threads/silk_red.json", "--draws", "2",
+                                                  "--paths", "32", "64", "--spp", "8", "--quiet"});
+  ASSERT_EQ(result.status, 0) << result.error;
+  EXPECT_THAT(result.out, testing::HasSubstr("silk-like, red, 17 views"));
+  const std::string table = result.out.substr(result.out.find("thread   "));
+  EXPECT_EQ(std::ranges::count(table, '\n'), 3) << table;
 }
 
 TEST(Recover, BadInputGetsOneLine) {
