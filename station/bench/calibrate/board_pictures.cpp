@@ -1,6 +1,5 @@
 #include "station/bench/calibrate/board_pictures.h"
 
-#include <OpenImageIO/imageio.h>
 #include <turbojpeg.h>
 
 #include <algorithm>
@@ -109,24 +108,7 @@ GreyPicture read_grey_picture(const fs::path& file) {
   return picture;
 }
 
-TakenWith taken_with(const fs::path& file) {
-  const auto input = OIIO::ImageInput::open(file.string());
-  if (!input) {
-    OIIO::geterror();  // which it would write to standard error otherwise
-    return {};
-  }
-  const OIIO::ImageSpec& spec = input->spec();
-  const auto text = [&](const char* name) {
-    return std::string(OIIO::Strutil::strip(spec.get_string_attribute(name)));
-  };
-  TakenWith with{.camera = text("Make"), .lens = text("Exif:LensModel")};
-  for (const char* name : {"Model", "Exif:BodySerialNumber"})
-    if (const std::string more = text(name); !more.empty()) with.camera += (with.camera.empty() ? "" : " ") + more;
-  with.focal_length_mm = static_cast<double>(spec.get_float_attribute("Exif:FocalLength"));
-  return with;
-}
-
-std::string other_lens(const TakenWith& first, const TakenWith& second) {
+std::string other_lens(const renderer::TakenWith& first, const renderer::TakenWith& second) {
   constexpr double kSame = 0.005;  // of a focal length, as cameras round it
   const auto differ = [](const std::string& a, const std::string& b) { return !a.empty() && !b.empty() && a != b; };
   if (differ(first.camera, second.camera)) return "was taken by " + second.camera + ", the first by " + first.camera;

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "renderer/picture/taken_with.h"
+
 namespace station {
 
 // The folder's pictures, sorted by name. Throws std::runtime_error when there is no folder or no picture in it.
@@ -19,16 +21,8 @@ struct GreyPicture {
 // Throws std::runtime_error that names the file when it is no picture or breaks off before its end.
 GreyPicture read_grey_picture(const std::filesystem::path& file);
 
-// What a picture's file says of how it was taken; empty and 0 where it says nothing.
-struct TakenWith {
-  std::string camera, lens;
-  double focal_length_mm = 0;
-};
-
-TakenWith taken_with(const std::filesystem::path& file);
-
 // How the second picture cannot be of the same calibrated lens as the first, as "was taken by A, the first by B"; empty
 // when nothing speaks against it.
-std::string other_lens(const TakenWith& first, const TakenWith& second);
+std::string other_lens(const renderer::TakenWith& first, const renderer::TakenWith& second);
 
 }  // namespace station

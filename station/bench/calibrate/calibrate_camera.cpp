@@ -87,12 +87,12 @@ CalibratedCamera calibrate_camera(const CalibrateCameraRequest& request) {
   Seen seen;
   CalibratedCamera calibrated;
   LensFile& result = calibrated.lens;
-  const TakenWith first = taken_with(files.front());
+  const renderer::TakenWith first = renderer::taken_with(files.front());
   std::map<std::string, std::string> names;  // of pictures by their pixels' hash
   int done = 0;
   for (const fs::path& file : files) {
     progress.show(done++, static_cast<int>(files.size()), file.filename().string());
-    if (const std::string other = other_lens(first, taken_with(file)); !other.empty())
+    if (const std::string other = other_lens(first, renderer::taken_with(file)); !other.empty())
       throw std::runtime_error(file.string() + " " + other + " (" + files.front().filename().string() +
                                "); a lens is calibrated from the pictures of one camera and lens: sort them into "
                                "folders");
