@@ -14,7 +14,7 @@ void NoiseWeights::add(const VectorXd& variances, const VectorXd& products) {
   const double misfit = misfit_of(products);
   misfit_ = empty() ? misfit : std::min(misfit, last_misfit_);
   last_misfit_ = misfit;
-  if (empty()) reference_ = variances_.mean() + misfit_;
+  if (empty()) first_ = variances_.mean();
   sets_ = old_ * sets_ + 1;
 }
 
@@ -53,9 +53,14 @@ double NoiseWeights::variance_alike(const VectorXd& photographs) const {
   return std::min(weighted_variance(), (factors().array().square() * (photographs.array() + misfit_)).mean());
 }
 
+double NoiseWeights::weighted_variance() const {
+  const double noise = variances_.mean();
+  return (noise + misfit_) * (noise > 0 ? first_ / noise : 1);
+}
+
 VectorXd NoiseWeights::factors() const {
   const Eigen::ArrayXd whole = variances_.array() + misfit_;
-  return (reference_ / whole).sqrt();
+  return (weighted_variance() / whole).sqrt();
 }
 
 }  // namespace inversion

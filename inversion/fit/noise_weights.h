@@ -31,13 +31,13 @@ class NoiseWeights {
   // photographs' part of that variance, which both halves share.
   void add(const Eigen::VectorXd& variances, const Eigen::VectorXd& products);
   bool empty() const { return sets_ == 0; }
-  double misfit_variance() const { return misfit_; }       // m^2
-  double weighted_variance() const { return reference_; }  // of the residuals times their factors
+  double misfit_variance() const { return misfit_; }  // m^2
+  double weighted_variance() const;                   // of the residuals times their factors
   // The part of it that is alike in all sets of paths: the misfit and the noise of the photographs, whose part of each
   // variance is given.
   double variance_alike(const Eigen::VectorXd& photographs) const;
-  // What eq. 6's residuals are multiplied by: sqrt(r / (v + m^2)), r being the mean of v + m^2 after the first set. It
-  // needs at least one set.
+  // What eq. 6's residuals are multiplied by: sqrt(r mean(v + m^2) / (v + m^2)), r being the mean of v after the first
+  // set over that now. It needs at least one set.
   Eigen::VectorXd factors() const;
 
  private:
@@ -45,7 +45,7 @@ class NoiseWeights {
   double misfit_of(const Eigen::VectorXd& products) const;
 
   std::vector<int> groups_;
-  double old_, sets_ = 0, reference_ = 0;
+  double old_, sets_ = 0, first_ = 0;
   double misfit_ = 0, last_misfit_ = 0;
   Eigen::VectorXd variances_;  // mean of the sets, the older ones fading, and of the residual's group
 };

@@ -134,8 +134,8 @@ MatrixXd one_sided(const LinearisedFit& fit, const Known& with_it, const MatrixX
   const Eigen::Index free = covariance.rows() - 1;
   const int bound = with_it.chosen.back();
   const double variance = covariance(free, free);
-  double beyond = 0;
-  if (fit.gradient.size() > 0 && variance > 0) {
+  double beyond = 0;  // of the spread's: the truth lies on this side, and the minima of other noise around it
+  if (moment == &OneSided::truth && fit.gradient.size() > 0 && variance > 0) {
     const VectorXd gradient = columns((fit.gradient.cwiseProduct(fit.scales)).transpose(), with_it.chosen).transpose();
     const double minimum = -with_it.hessian.ldlt().solve(gradient)[free];
     beyond = std::max(0.0, fit.bounds[static_cast<std::size_t>(bound)] * minimum / std::sqrt(variance));

@@ -20,7 +20,8 @@
 // around the minimum that the loss would have without the bound, cut off there; its deviation is the root of E[t^2].
 // Every other unknown moves along with it on the valley's floor, by B = -H_ff^-1 H_fb, and is uncertain by B t besides
 // what it is while the bound holds. Each unknown at a bound is treated as if it were the only one. That is the total;
-// other noise would move that minimum, and what the fit then finds is cut off at the bound, so that its spread is less.
+// other noise would move that minimum, around a truth on this side of the bound, and what the fit then finds is cut off
+// there: the spread is taken to be that around a truth at the bound, however far beyond it this one minimum lies.
 #pragma once
 
 #include <Eigen/Core>

@@ -179,26 +179,27 @@ TEST(CertaintyTest, AtABoundTheSpreadIsThatOfFitsWithOtherNoise) {
   const MatrixXd root = (sigma * sigma * square.inverse()).llt().matrixL();
   std::mt19937 random(11);
   std::normal_distribution<double> normal;
-  for (const double beyond : {0.0, 0.005, 0.01}) {
-    const Eigen::Vector2d minimum(0.3, -0.2);  // without the bound, which is above
-    const double bound = minimum.x() - beyond;
-    // Of the unknown that trades with the first one, where that stays at the bound.
-    const auto at_bound = [&](const Eigen::Vector2d& unbounded) {
-      const double moved = square(1, 0) / square(1, 1) * (unbounded.x() - bound);
-      return Eigen::Vector2d(bound, unbounded.y() + moved);
-    };
-    constexpr int kDraws = 200000;
-    Eigen::Vector2d sum(0, 0);
-    Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
-    for (int i = 0; i < kDraws; ++i) {
-      const Eigen::Vector2d drawn = minimum + root * Eigen::Vector2d(normal(random), normal(random));
-      const Eigen::Vector2d off = (drawn.x() > bound ? at_bound(drawn) : drawn) - minimum;
-      sum += off;
-      squares += off * off.transpose();
-    }
-    const Eigen::Matrix2d expected = squares / kDraws - sum * sum.transpose() / kDraws / kDraws;
-    fit.bounds[0] = 1;
-    fit.gradient = square * (at_bound(minimum) - minimum);
+  const Eigen::Vector2d minimum(0.3, -0.2);  // of pictures without noise, at the bound
+  const double bound = minimum.x();
+  // Of the unknown that trades with the first one, where that stays at the bound.
+  const auto at_bound = [&](const Eigen::Vector2d& unbounded) {
+    const double moved = square(1, 0) / square(1, 1) * (unbounded.x() - bound);
+    return Eigen::Vector2d(bound, unbounded.y() + moved);
+  };
+  constexpr int kDraws = 200000;
+  Eigen::Vector2d sum(0, 0);
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  for (int i = 0; i < kDraws; ++i) {
+    const Eigen::Vector2d drawn = minimum + root * Eigen::Vector2d(normal(random), normal(random));
+    const Eigen::Vector2d off = (drawn.x() > bound ? at_bound(drawn) : drawn) - minimum;
+    sum += off;
+    squares += off * off.transpose();
+  }
+  const Eigen::Matrix2d expected = squares / kDraws - sum * sum.transpose() / kDraws / kDraws;
+  fit.bounds[0] = 1;
+  for (const double beyond : {0.0, 0.005, 0.01}) {  // whichever of these draws this fit is
+    const Eigen::Vector2d drawn = minimum + Eigen::Vector2d(beyond, 0);
+    fit.gradient = square * (at_bound(drawn) - drawn);
     const Certainty certainty = certainty_of(fit);
     EXPECT_TRUE(certainty.noise_covariance.isApprox(expected, 0.02)) << beyond << " beyond:\n"
                                                                      << certainty.noise_covariance << "\nby drawing:\n"
