@@ -1,5 +1,6 @@
 #include "inversion/solve/joined_sets.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
