@@ -31,6 +31,13 @@ LatticeCorner corner_at(const TagLattice& tags, const Corner& corner) {
   return {static_cast<int>(std::lround(steps.x())), static_cast<int>(std::lround(steps.y())), corner.pixel};
 }
 
+// "tags 3, 7"; empty for none.
+std::string tags_text(const std::vector<int>& ids) {
+  std::string text;
+  for (const int id : ids) text += (text.empty() ? "tags " : ", ") + std::to_string(id);
+  return text;
+}
+
 }  // namespace
 
 TagLattice lattice_of(const TagLayout& board) {
@@ -108,10 +115,10 @@ std::string displaced_tags(const TagLattice& tags, const TagLayout& board, const
       displaced[id] += corners >= 3 ? 1 : 0;  // a good tag may share one or two nodes with a displaced neighbour
     }
   }
-  std::string names;
+  std::vector<int> found;
   for (const auto& [id, times] : displaced)
-    if (times >= 2 && 2 * times > seen[id]) names += (names.empty() ? "tags " : ", ") + std::to_string(id);
-  return names;
+    if (times >= 2 && 2 * times > seen[id]) found.push_back(id);
+  return tags_text(found);
 }
 
 std::string tags_beside(const TagLayout& board, const std::vector<TagObservation>& pictures) {
@@ -134,16 +141,16 @@ std::string tags_beside(const TagLayout& board, const std::vector<TagObservation
       places[tag.id].push_back(place.front());
     }
   }
-  std::string names;
+  std::vector<int> found;
   for (const auto& [id, seen] : places) {
     std::vector<double> x, y;
     for (const cv::Point2d& place : seen) x.push_back(place.x), y.push_back(place.y);
     const cv::Point2d middle(median(x), median(y));
     const auto alike = std::ranges::count_if(
         seen, [&](const cv::Point2d& place) { return cv::norm(place - middle) < 0.25 * board.tags.front().size_mm; });
-    if (alike >= 3 && 2 * alike > std::ssize(seen)) names += (names.empty() ? "tags " : ", ") + std::to_string(id);
+    if (alike >= 3 && 2 * alike > std::ssize(seen)) found.push_back(id);
   }
-  return names;
+  return tags_text(found);
 }
 
 }  // namespace calibration

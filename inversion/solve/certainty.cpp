@@ -120,8 +120,6 @@ struct OneSided {
 };
 
 OneSided one_sided_moments(double beyond) {
-  constexpr double kFar = 20;  // from there on E[t^2] = 2 / beyond^2, to a hundredth
-  if (beyond > kFar) return {.truth = 2 / (beyond * beyond)};
   const double density = std::exp(-0.5 * beyond * beyond) / std::sqrt(2 * std::numbers::pi),
                above = 0.5 * std::erfc(beyond / std::numbers::sqrt2);
   const double square = (1 + beyond * beyond) * above - beyond * density, mean = density - beyond * above;
@@ -131,6 +129,7 @@ OneSided one_sided_moments(double beyond) {
 // What an unknown at a bound, the last of those that `with_it` knows, adds to the covariance of all unknowns.
 MatrixXd one_sided(const LinearisedFit& fit, const Known& with_it, const MatrixXd& covariance,
                    double OneSided::*moment) {
+  constexpr double kMostBeyond = 3;
   const Eigen::Index free = covariance.rows() - 1;
   const int bound = with_it.chosen.back();
   const double variance = covariance(free, free);
@@ -138,7 +137,7 @@ MatrixXd one_sided(const LinearisedFit& fit, const Known& with_it, const MatrixX
   if (moment == &OneSided::truth && fit.gradient.size() > 0 && variance > 0) {
     const VectorXd gradient = columns((fit.gradient.cwiseProduct(fit.scales)).transpose(), with_it.chosen).transpose();
     const double minimum = -with_it.hessian.ldlt().solve(gradient)[free];
-    beyond = std::max(0.0, fit.bounds[static_cast<std::size_t>(bound)] * minimum / std::sqrt(variance));
+    beyond = std::clamp(fit.bounds[static_cast<std::size_t>(bound)] * minimum / std::sqrt(variance), 0.0, kMostBeyond);
   }
   VectorXd moved = VectorXd::Ones(free + 1);  // all unknowns, when the one at the bound moves by 1
   if (free > 0)

@@ -18,6 +18,8 @@
 //
 // At a bound the truth lies on one side. What the unknown's distance t from its bound may be follows a normal density
 // around the minimum that the loss would have without the bound, cut off there; its deviation is the root of E[t^2].
+// A minimum more than three deviations beyond counts as three: as the truth lies on this side, it says that the
+// deviation is too small rather than that the unknown is known so much better.
 // Every other unknown moves along with it on the valley's floor, by B = -H_ff^-1 H_fb, and is uncertain by B t besides
 // what it is while the bound holds. Each unknown at a bound is treated as if it were the only one. That is the total;
 // other noise would move that minimum, around a truth on this side of the bound, and what the fit then finds is cut off
@@ -51,8 +53,8 @@ struct LinearisedFit {
   // count as large as it. May be empty: not at all.
   std::function<double(const Eigen::VectorXd& direction)> curvature_deviation{};
   Eigen::MatrixXd gradient_covariance;  // G; may be empty: J' S J
-  Eigen::MatrixXd
-      misfit_covariance;  // what the views' misfit adds to G in the total; may be empty, and need not be positive
+  // What the views' misfit adds to G in the total; may be empty, and need not be positive.
+  Eigen::MatrixXd misfit_covariance;
   Eigen::VectorXd residuals, variances;
   // Of a residual in the loss that was minimised, if that is the mean over more paths than `residuals` are of; 0: the
   // mean square of `residuals`.

@@ -1,7 +1,9 @@
 #include "station/bench/calibrate/calibrate_camera.h"
 
+#include <algorithm>
 #include <map>
 #include <opencv2/core/utils/logger.hpp>
+#include <opencv2/imgproc.hpp>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -29,12 +31,17 @@ struct Seen {
 
 constexpr int kLargerLookedFor = 3;  // pictures
 
-// A part of a chessboard is one too: the first pictures are searched for more rows and columns.
+// A part of a chessboard is one too: the first pictures are searched for more rows and columns, in small, because the
+// search takes seconds where it finds nothing in millions of pixels.
 void require_no_larger(const GreyPicture& picture, const calibration::Lattice& board, const fs::path& file) {
+  constexpr double kWidest_px = 1600;
+  cv::Mat1b small = picture.display;
+  if (const double scale = kWidest_px / std::max(small.cols, small.rows); scale < 1)
+    cv::resize(picture.display, small, {}, scale, scale, cv::INTER_AREA);
   for (const auto& [rows, columns] :
        {std::pair(board.rows + 1, board.columns), std::pair(board.rows, board.columns + 1),
         std::pair(board.rows + 1, board.columns + 1)})
-    if (calibration::find_chessboard(picture.display, columns, rows))
+    if (calibration::find_chessboard(small, columns, rows))
       throw std::runtime_error(file.string() + " shows a chessboard of at least " + std::to_string(rows) + " x " +
                                std::to_string(columns) + " inner corners, the board file has " +
                                std::to_string(board.rows) + " x " + std::to_string(board.columns) +

@@ -244,10 +244,8 @@ std::string describe(const RecoveredThread& recovered) {
       recovered.loss_of_truth.mean, recovered.loss_of_truth.standard_error, recovered.loss_of_fit.mean,
       recovered.loss_of_fit.standard_error, recovered.loss_of_truth.without_noise, recovered.loss_of_fit.without_noise);
   text += line;
-  text +=
-      "quantity           truth   fitted     +-   error, %  in +-     mean   spread  predicted  predicted/spread  "
-      "held, "
-      "%\n";
+  text += "quantity           truth   fitted     +-   error, %  in +-     mean   spread  predicted  predicted/spread";
+  text += recovered.draws > 1 ? "  held, %\n" : "\n";
   for (const RecoveredQuantity& of : recovered.quantities) {
     const double error = of.fitted - of.truth;
     std::snprintf(line, sizeof line, "%-14s  %8.4f %8.4f %6.4f  %9.1f  %5.1f", of.name.c_str(), of.truth, of.fitted,

@@ -165,11 +165,15 @@ TEST(CertaintyTest, AtABoundDeviationsAreOneSidedAndWhatTradesWithTheUnknownIsUn
                                                                  << certainty.covariance << "\nby summing:\n"
                                                                  << expected;
     }
+  // A minimum twenty deviations beyond says that they are too small, not that the unknown is known to a tenth of one.
+  fit.gradient = 30 * square * Eigen::Vector2d(-0.01, 0);
+  const double far = certainty_of(fit).covariance(0, 0);
   // Without a gradient it is as if the minimum lay on the bound.
   fit.gradient = VectorXd();
   const double level = certainty_of(fit).covariance(0, 0);
   fit.bounds[0] = 0;
   EXPECT_NEAR(level / certainty_of(fit).covariance(0, 0), 1, 1e-9);
+  EXPECT_NEAR(std::sqrt(far / level), 0.38, 0.02);  // that of three deviations
 }
 
 TEST(CertaintyTest, AtABoundTheSpreadIsThatOfFitsWithOtherNoise) {
