@@ -289,7 +289,8 @@ void add_gates(const LightSolver& solver, const Unknowns& x, const std::vector<L
     fit.gates.push_back(at_most(
         guesses[light].name + ", held-out panel pictures, rms error %", 100 * error, 100 * kHeldOutLimit,
         "panel pictures under the " + guesses[light].name + " are predicted from the others to " +
-            text("%.2f %%", 100 * error) + " only: let the lamp warm up, leave it where it is, take them again"));
+            text("%.2f %%", 100 * error) +
+            " only: let the lamp warm up, leave it where it is, switch the room light off and take them again"));
     const double off = (x.positions[light] - guesses[light].position).norm();
     fit.gates.push_back(at_most(guesses[light].name + ", distance from the tape's position mm", off, kTapeLimit_mm,
                                 "the " + guesses[light].name + " is found " + text("%.0f mm", off) +

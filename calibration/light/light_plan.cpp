@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "calibration/geometry/projection.h"
@@ -21,6 +24,8 @@ constexpr int kCells = 5;
 constexpr double kSpotSigma = 0.003;
 constexpr double kVignettingRadius2 = 0.5;  // squared distance from the centre, in half diagonals, that threads reach
 constexpr double kGainPerMm = 0.002;        // the error of the gain there that is as bad as 1 mm of a light's position
+constexpr double kTurnStep = 5 * kDegree;   // from one angle of the platform that is tried to the next
+constexpr double kFinestStep = 1 * kDegree;
 
 // Numbers of unknowns: a light's own (x y z, beam right and up), and the common ones (log intensity, mu, droop (2), v0,
 // v1).
@@ -32,37 +37,17 @@ struct Candidate {
   Eigen::MatrixXd information;  // about all unknowns: each light's own, then the common ones
 };
 
-bool inside(const PanelBench& bench, const Vector3d& world) {
-  const double margin = 0.03 * bench.lens.width_px;
-  const Point<double> camera = bench.world_from_camera.inverse() * world;
-  if (camera.z() <= 0) return false;
-  const Intrinsics intrinsics = intrinsics_of(bench.lens);
-  const Vector2d pixel = project(intrinsics.data(), camera);
-  return pixel.x() > margin && pixel.y() > margin && pixel.x() < bench.lens.width_px - margin &&
-         pixel.y() < bench.lens.height_px - margin;
-}
-
-int tags_inside(const PanelBench& bench, const Isometry3d& world_from_panel) {
-  int count = 0;
-  for (const Tag& tag : bench.tags.tags) {
-    bool whole = true;
-    for (const Vector3d& corner : corners_in_object(tag)) whole = whole && inside(bench, world_from_panel * corner);
-    count += whole;
-  }
-  return count;
-}
-
 bool admissible(const PanelBench& bench, const LightGuess& light, double steepest, const Isometry3d& panel) {
   const Vector3d normal = panel.linear().col(2);
   const Vector3d to_light = (light.position - panel.translation()).normalized(),
-                 to_camera = (bench.world_from_camera.translation() - panel.translation()).normalized();
+                 to_camera = (bench.camera.world_from_camera.translation() - panel.translation()).normalized();
   if (normal.dot(to_light) < std::cos(steepest) || normal.dot(to_camera) < std::cos(steepest)) return false;
   const Vector3d mirror = 2 * normal.dot(to_light) * normal - to_light;
   if (mirror.dot(to_camera) > std::cos(20 * kDegree)) return false;
   for (const double x : {-0.5, 0.5})
     for (const double y : {-0.5, 0.5})
       if ((panel * Vector3d(x * bench.plate_mm, y * bench.plate_mm, 0)).z() < bench.lowest_mm) return false;
-  return tags_inside(bench, panel) >= 2;
+  return tags_in_picture(bench.camera, bench.tags, panel) >= 2;
 }
 
 // The information about all unknowns in the logarithms of one picture's radiances, when the lamp's output in the
@@ -70,13 +55,13 @@ bool admissible(const PanelBench& bench, const LightGuess& light, double steepes
 Eigen::MatrixXd picture_information(const PanelBench& bench, const LightGuess& guess, const PanelPose& pose,
                                     std::size_t lights, const LightOptions& options, double gain_sigma) {
   const BeamFrame frame(guess);
-  const Intrinsics intrinsics = intrinsics_of(bench.lens);
+  const Intrinsics intrinsics = intrinsics_of(bench.camera.lens);
   std::vector<Eigen::Matrix<double, kOwn + kCommon, 1>> rows;
   for (const Vector3d& cell : panel_cells(bench.white_mm, kCells)) {
     PanelSpot spot{.point = pose.world_from_panel * cell, .normal = pose.world_from_panel.linear().col(2)};
-    if (!inside(bench, spot.point)) continue;
-    spot.to_camera = (bench.world_from_camera.translation() - spot.point).normalized();
-    const Point<double> in_camera = bench.world_from_camera.inverse() * spot.point;
+    if (!in_picture(bench.camera, spot.point)) continue;
+    spot.to_camera = (bench.camera.world_from_camera.translation() - spot.point).normalized();
+    const Point<double> in_camera = bench.camera.world_from_camera.inverse() * spot.point;
     spot.pixel = project(intrinsics.data(), in_camera);
     const Jet position[] = {Jet(guess.position.x(), 0), Jet(guess.position.y(), 1), Jet(guess.position.z(), 2)};
     const Jet beam[] = {Jet(0.0, 3), Jet(0.0, 4)}, droop[] = {Jet(0.08, 7), Jet(0.0, 8)},
@@ -100,43 +85,32 @@ Eigen::MatrixXd picture_information(const PanelBench& bench, const LightGuess& g
   return all;
 }
 
-Isometry3d facing(const Vector3d& normal, const Vector3d& centre) {
-  Isometry3d pose = Isometry3d::Identity();
-  const Vector3d right = Vector3d::UnitZ().cross(normal).normalized();
-  pose.linear() << right, normal.cross(right), normal;
-  pose.translation() = centre;
-  return pose;
+// The largest angle from a panel's normal that is allowed to light and camera.
+double steepest_view_rad(const PanelBench& bench, const LightGuess& guess) {
+  const Vector3d to_light = (guess.position - bench.centre).normalized(),
+                 to_camera = (bench.camera.world_from_camera.translation() - bench.centre).normalized();
+  const double half = std::acos(to_light.dot(to_camera)) / 2;
+  return std::clamp(half + 12 * kDegree, 45 * kDegree, 70 * kDegree);
 }
 
-std::vector<Candidate> candidates(const PanelBench& bench, const std::vector<LightGuess>& lights, int light,
-                                  const LightOptions& options) {
-  const LightGuess& guess = lights[static_cast<std::size_t>(light)];
-  const Vector3d to_light = (guess.position - bench.centre).normalized(),
-                 to_camera = (bench.world_from_camera.translation() - bench.centre).normalized();
-  const Vector3d half = (to_light + to_camera).normalized(), side = half.unitOrthogonal();
-  const double steepest = std::clamp(std::acos(half.dot(to_camera)) + 12 * kDegree, 45 * kDegree, 70 * kDegree);
-  const Eigen::Matrix3d& camera = bench.world_from_camera.linear();
-  std::vector<Candidate> out;
-  for (const double polar : {0.0, 12.0, 24.0, 36.0, 48.0})
-    for (int turn = 0; turn < (polar > 0 ? 12 : 1); ++turn) {
-      const Vector3d normal =
-          Eigen::AngleAxisd(turn * 30 * kDegree, half) * (Eigen::AngleAxisd(polar * kDegree, side) * half);
-      if (normal.z() > std::cos(3 * kDegree)) continue;  // when the panel lies flat, its up direction is arbitrary
-      for (const double nearer : {-30.0, 0.0, 30.0})
-        for (const double across : {-45.0, 0.0, 45.0})
-          for (const double up : {-22.0, 0.0, 22.0}) {
-            const PanelPose pose{light, facing(normal, bench.centre + camera * Vector3d(across, -up, -nearer))};
-            if (!admissible(bench, guess, steepest, pose.world_from_panel)) continue;
-            const double steepness = std::tan(std::acos(normal.dot(to_light)));
-            const double tilt = (tags_inside(bench, pose.world_from_panel) == 4 ? 1 : 2) * options.pose_sigma_rad;
-            const double gain_sigma = std::hypot(options.drift, tilt * steepness);
-            out.push_back({pose, picture_information(bench, guess, pose, lights.size(), options, gain_sigma)});
-          }
-    }
-  if (out.empty())
-    throw std::runtime_error("no pose of the panel shows its white face to the " + guess.name +
-                             " and to the camera at once: measure both positions again, or move the lamp");
-  return out;
+Candidate candidate(const PanelBench& bench, const std::vector<LightGuess>& lights, const PanelPose& pose,
+                    const LightOptions& options) {
+  const LightGuess& guess = lights[static_cast<std::size_t>(pose.light)];
+  const Vector3d normal = pose.world_from_panel.linear().col(2);
+  const double steepness = std::tan(std::acos(normal.dot((guess.position - bench.centre).normalized())));
+  const double tilt =
+      (tags_in_picture(bench.camera, bench.tags, pose.world_from_panel) == 4 ? 1 : 2) * options.pose_sigma_rad;
+  const double gain_sigma = std::hypot(options.drift, tilt * steepness);
+  return {pose, picture_information(bench, guess, pose, lights.size(), options, gain_sigma)};
+}
+
+[[noreturn]] void refuse(const LightGuess& light) {
+  throw std::runtime_error("no pose of the panel shows its white face to the " + light.name +
+                           " and to the camera at once: measure both positions again, or move the lamp");
+}
+
+Isometry3d turned(double angle_rad, const Isometry3d& platform_from_object) {
+  return Eigen::AngleAxisd(angle_rad, Vector3d::UnitZ()) * platform_from_object;
 }
 
 Eigen::MatrixXd prior_information(const std::vector<LightGuess>& lights) {
@@ -161,7 +135,82 @@ double badness(const Eigen::MatrixXd& information, std::size_t lights) {
   return sum + gain.dot(covariance.bottomRightCorner<2, 2>() * gain);
 }
 
+struct Turns {
+  std::vector<double> angles_rad;
+  Eigen::MatrixXd known;  // with their pictures
+};
+
+// Angles of the platform, one by one the most telling; each is used once.
+Turns best_turns(const PanelBench& bench, const std::vector<LightGuess>& lights, const Eigen::MatrixXd& known,
+                 int light, const Isometry3d& platform_from_panel, int count, double limit_rad,
+                 const LightOptions& options) {
+  const LightGuess& guess = lights[static_cast<std::size_t>(light)];
+  const double steepest = steepest_view_rad(bench, guess);
+  std::map<double, Candidate> offered;
+  // In finer steps where the panel is shown over a narrow range only.
+  for (double step = kTurnStep; step > kFinestStep && static_cast<int>(offered.size()) < count; step /= 2) {
+    offered.clear();
+    const int steps = static_cast<int>(limit_rad / step + 1e-9);
+    for (int i = -steps; i <= steps; ++i) {
+      const PanelPose pose{light, turned(i * step, platform_from_panel)};
+      if (admissible(bench, guess, steepest, pose.world_from_panel))
+        offered.emplace(i * step, candidate(bench, lights, pose, options));
+    }
+  }
+  Turns turns{.angles_rad = {}, .known = known};
+  while (static_cast<int>(turns.angles_rad.size()) < count && !offered.empty()) {
+    const auto best = std::min_element(offered.begin(), offered.end(), [&](const auto& a, const auto& b) {
+      return badness(turns.known + a.second.information, lights.size()) <
+             badness(turns.known + b.second.information, lights.size());
+    });
+    turns.known += best->second.information;
+    turns.angles_rad.push_back(best->first);
+    offered.erase(best);
+  }
+  std::sort(turns.angles_rad.begin(), turns.angles_rad.end());
+  return turns;
+}
+
 }  // namespace
+
+std::vector<PanelMounting> plan_panel_mountings(const PanelBench& bench, const std::vector<LightGuess>& lights,
+                                                const std::vector<Isometry3d>& stands,
+                                                const std::vector<MountingCounts>& counts, double limit_rad,
+                                                const LightOptions& options) {
+  Eigen::MatrixXd known = prior_information(lights);
+  std::vector<PanelMounting> plan;
+  for (int light = 0; light < static_cast<int>(lights.size()); ++light) {
+    std::set<std::size_t> used;
+    const MountingCounts& count = counts.at(static_cast<std::size_t>(light));
+    for (int i = 0; i < count.mountings; ++i) {
+      std::optional<std::size_t> chosen;
+      Turns best;
+      for (std::size_t s = 0; s < stands.size(); ++s) {
+        if (used.contains(s)) continue;
+        Turns turns = best_turns(bench, lights, known, light, stands[s], count.pictures, limit_rad, options);
+        if (turns.angles_rad.empty()) continue;
+        if (chosen && badness(turns.known, lights.size()) >= badness(best.known, lights.size())) continue;
+        chosen = s;
+        best = std::move(turns);
+      }
+      if (!chosen) break;
+      used.insert(*chosen);
+      known = best.known;
+      plan.push_back({light, static_cast<int>(*chosen), stands[*chosen], best.angles_rad});
+    }
+    if (used.empty()) refuse(lights[static_cast<std::size_t>(light)]);
+  }
+  return plan;
+}
+
+std::vector<double> plan_panel_angles(const PanelBench& bench, const std::vector<LightGuess>& lights,
+                                      const std::vector<PanelPose>& earlier, int light,
+                                      const Isometry3d& platform_from_panel, int count, double limit_rad,
+                                      const LightOptions& options) {
+  Eigen::MatrixXd known = prior_information(lights);
+  for (const PanelPose& pose : earlier) known += candidate(bench, lights, pose, options).information;
+  return best_turns(bench, lights, known, light, platform_from_panel, count, limit_rad, options).angles_rad;
+}
 
 double panel_cell_mm(double white_mm, int n) {
   return white_mm * kUsedFraction / n;
@@ -173,26 +222,6 @@ std::vector<Vector3d> panel_cells(double white_mm, int n) {
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) centres.emplace_back((i - (n - 1) / 2.0) * cell, (j - (n - 1) / 2.0) * cell, 0);
   return centres;
-}
-
-std::vector<PanelPose> plan_panel_poses(const PanelBench& bench, const std::vector<LightGuess>& lights,
-                                        const std::vector<int>& counts, const LightOptions& options) {
-  Eigen::MatrixXd known = prior_information(lights);
-  std::vector<PanelPose> plan;
-  for (std::size_t light = 0; light < lights.size(); ++light) {
-    const std::vector<Candidate> offered = candidates(bench, lights, static_cast<int>(light), options);
-    for (int i = 0; i < counts.at(light); ++i) {
-      const Candidate* best = nullptr;
-      double least = std::numeric_limits<double>::infinity();
-      for (const Candidate& candidate : offered) {
-        const double value = badness(known + candidate.information, lights.size());
-        if (value < least) least = value, best = &candidate;
-      }
-      known += best->information;
-      plan.push_back(best->pose);
-    }
-  }
-  return plan;
 }
 
 }  // namespace calibration

@@ -18,6 +18,7 @@ class ConsoleOperator final : public Operator {
     }
     standing_ = wanted;
   }
+  void correct(const std::string& what) override { ask_or_end(asked_, {.text = what}); }
 
  private:
   AskedPerson& asked_;

@@ -5,29 +5,12 @@
 #include <vector>
 
 #include "rig/devices/degree.h"
+#include "rig/people/asked_person.h"
 
 namespace rig {
 namespace {
 
 using Sentences = std::vector<std::string>;
-
-std::string object_name(BenchObject object) {
-  switch (object) {
-    case BenchObject::board:
-      return "the printed target";
-    case BenchObject::spectralon:
-      return "the Spectralon target";
-    case BenchObject::holder:
-      return "the holder";
-    case BenchObject::colour_chart:
-      return "the colour chart";
-    case BenchObject::cylinder:
-      return "the cylinder";
-    case BenchObject::nothing:
-      break;
-  }
-  return "nothing";
-}
 
 std::string mounting_name(Mounting mounting) {
   return mounting == Mounting::horizontal ? "horizontal" : "vertical";
@@ -76,7 +59,9 @@ std::string facing_phrase(const Eigen::Vector3d& normal) {
 
 bool stands_the_same(const Arrangement& a, const Arrangement& b) {
   if (a.object != b.object || a.object == BenchObject::nothing) return a.object == b.object;
-  return a.on_platform == b.on_platform && a.pose.isApprox(b.pose, 1e-6);
+  if (a.kept_moving || b.kept_moving) return a.kept_moving == b.kept_moving;
+  return a.on_platform == b.on_platform && a.stand == b.stand && a.on_its_side == b.on_its_side &&
+         a.pose.isApprox(b.pose, 1e-6);
 }
 
 bool mounted_the_same(const Arrangement& a, const Arrangement& b) {
@@ -97,6 +82,15 @@ std::string place_sentence(const Arrangement& to) {
   }
   if (to.object == BenchObject::cylinder)
     return "Stand the cylinder with the cloth upright in the middle of the platform, its seam away from the camera.";
+  if (to.kept_moving) {
+    return "Hold " + name +
+           " close before the lens, so that its white face fills the picture, and move it gently to and fro until the "
+           "next instruction.";
+  }
+  if (to.stand > 0) {
+    return "Put " + name + (to.on_its_side ? ", on its side," : "") + " on stand " + std::to_string(to.stand) +
+           ", in the middle of the platform, its face towards the camera; 3 cm or 15 degrees off do no harm.";
+  }
   return (to.on_platform ? "Stand " + name + " on the platform, " : "Hold " + name + " ") +
          place_phrase(to.pose.translation()) + ", " + facing_phrase(to.pose.linear().col(2)) + ".";
 }
@@ -125,8 +119,30 @@ std::string join_sentences(const Sentences& sentences) {
 
 }  // namespace
 
+std::string object_name(BenchObject object) {
+  switch (object) {
+    case BenchObject::board:
+      return "the printed target";
+    case BenchObject::spectralon:
+      return "the Spectralon target";
+    case BenchObject::holder:
+      return "the holder";
+    case BenchObject::colour_chart:
+      return "the colour chart";
+    case BenchObject::cylinder:
+      return "the cylinder";
+    case BenchObject::nothing:
+      break;
+  }
+  return "nothing";
+}
+
 bool same_arrangement(const Arrangement& a, const Arrangement& b) {
   return stands_the_same(a, b) && mounted_the_same(a, b) && a.lamp == b.lamp && a.room_light == b.room_light;
+}
+
+void Operator::correct(const std::string& what) {
+  throw Declined(what);
 }
 
 std::string instruction(const Arrangement& from, const Arrangement& to) {

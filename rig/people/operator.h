@@ -20,6 +20,9 @@ struct Arrangement {
   BenchObject object = BenchObject::nothing;
   Mounting mounting = Mounting::horizontal;  // holder only
   bool on_platform = false;                  // true: turns with the platform
+  int stand = 0;                             // on the platform: which of the stands holds the object; 0: none
+  bool on_its_side = false;                  // on a stand: a quarter turn, so that the object's +x is up
+  bool kept_moving = false;                  // in the hand, which moves it gently about: its pose is one of many
   // Where the object should stand: platform_from_object (platform frame at angle 0 = world) when on_platform,
   // world_from_object otherwise. A hand places it only roughly so.
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -27,9 +30,11 @@ struct Arrangement {
   bool room_light = false;
 };
 
-// True when a person has nothing to do between the two: a pose counts to a millionth, the mounting only for the
-// holder, and neither when nothing stands there.
+// True when a person has nothing to do between the two: a pose counts to a millionth and not at all while the object is
+// kept moving, the mounting only for the holder, and none of them when nothing stands there.
 bool same_arrangement(const Arrangement& a, const Arrangement& b);
+
+std::string object_name(BenchObject object);  // "the printed target"
 
 // One sentence per thing to do, for a person: from what stands now to what is wanted; empty when nothing is to be
 // done.
@@ -43,6 +48,9 @@ class Operator {
   virtual ~Operator() = default;
   // Returns when the bench is in the wanted arrangement; throws Declined (asked_person.h) when the person declines.
   virtual void arrange(const Arrangement& wanted) = 0;
+  // Asks to put right what was seen to stand wrongly, in whole sentences, and returns when that is done. Throws
+  // Declined when the person declines, and where nobody is asked.
+  virtual void correct(const std::string& what);
 };
 
 }  // namespace rig

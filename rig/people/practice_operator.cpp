@@ -14,6 +14,10 @@ class PracticeOperator final : public Operator {
     person_->arrange(wanted);
     hand_->arrange(wanted);
   }
+  void correct(const std::string& what) override {
+    person_->correct(what);
+    hand_->correct(what);
+  }
 
  private:
   std::unique_ptr<Operator> person_, hand_;

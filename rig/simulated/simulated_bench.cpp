@@ -15,6 +15,7 @@ std::uint64_t placement_key(const Arrangement& arrangement) {
   const auto take = [&key](std::uint64_t value) { key = mixed(key ^ mixed(value + 1)); };
   take(arrangement.object == BenchObject::holder ? static_cast<std::uint64_t>(arrangement.mounting) : 0);
   take(arrangement.on_platform ? 1 : 0);
+  if (arrangement.stand > 0) take(static_cast<std::uint64_t>(arrangement.stand));
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 4; ++column)
       take(static_cast<std::uint64_t>(std::llround(arrangement.pose(row, column) * 1e6)));
@@ -31,6 +32,7 @@ class SimulatedOperator final : public Operator {
  public:
   explicit SimulatedOperator(SimulatedBench& bench) : bench_(bench) {}
   void arrange(const Arrangement& wanted) override { bench_.place(wanted); }
+  void correct(const std::string& /*what*/) override { bench_.place_anew(); }
 
  private:
   SimulatedBench& bench_;
@@ -73,10 +75,27 @@ cv::Mat3f SimulatedBench::draw_without_lamp() const {
 // The hand's error is an offset in the parent's frame and a small turn about the object's own origin. An object that
 // stands or lies on the platform is supported by it and errs only in its place and direction there.
 void SimulatedBench::place(const Arrangement& arrangement) {
+  attempt_ = 0;
+  put(arrangement);
+}
+
+void SimulatedBench::place_anew() {
+  ++attempt_;
+  put(arrangement_);
+}
+
+void SimulatedBench::put(const Arrangement& arrangement) {
   arrangement_ = arrangement;
   placed_pose_ = arrangement.pose;
   if (arrangement.object == BenchObject::nothing) return;
-  NoiseStream hand(truth_.seed, placement_key(arrangement));
+  NoiseStream hand(truth_.seed + attempt_, placement_key(arrangement));
+  if (arrangement.stand > 0) {
+    const auto within = [&hand](double most) { return most * (2 * hand.uniform() - 1); };
+    const double forward_mm = within(truth_.stand_placement_mm), right_mm = within(truth_.stand_placement_mm);
+    placed_pose_ = Eigen::Translation3d(forward_mm, right_mm, 0) *
+                   Eigen::AngleAxisd(within(truth_.stand_placement_rad), Eigen::Vector3d::UnitZ()) * arrangement.pose;
+    return;
+  }
   const auto [x, y] = hand.normals();
   const auto [z, turn_x] = hand.normals();
   const auto [turn_y, turn_z] = hand.normals();

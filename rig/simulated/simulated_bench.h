@@ -74,6 +74,8 @@ struct BenchTruth {
   double room_leak = 0.0;     // part of the room light that still shines when it should be off
   double placement_mm = 1.0;  // error of an object placed by hand (standard deviation per axis), with the next line
   double placement_rad = 0.01;
+  double stand_placement_mm = 0;   // of a stand on the platform: at most, along either axis, evenly distributed
+  double stand_placement_rad = 0;  // and its direction
   std::uint64_t seed = 1;
 };
 
@@ -112,12 +114,16 @@ class SimulatedBench {
   // and pose (not on the lights): asked again for the same, the hand places it the same. An object on the platform errs
   // only in its place and direction on the platform.
   void place(const Arrangement& arrangement);
+  void place_anew();  // what stands there, with another error
   void turn_platform(double true_angle_rad) { platform_angle_rad_ = true_angle_rad; }
 
  private:
+  void put(const Arrangement& arrangement);
+
   BenchTruth truth_;
   DrawPicture draw_;
   Arrangement arrangement_;
+  std::uint64_t attempt_ = 0;  // how often it was placed anew
   Eigen::Isometry3d placed_pose_ = Eigen::Isometry3d::Identity();
   std::atomic<double> platform_angle_rad_ = 0.0;  // atomic, because a simulated motor turns it from its wire's thread
 };

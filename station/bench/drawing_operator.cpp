@@ -15,6 +15,7 @@ class DrawingOperator final : public rig::Operator {
     asked_.prepare({{"arrangement", arrangement_document(wanted)}}, "\n" + drawing(wanted));
     person_.arrange(wanted);
   }
+  void correct(const std::string& what) override { person_.correct(what); }
 
  private:
   rig::Operator& person_;
@@ -73,11 +74,10 @@ std::string drawing(const rig::Arrangement& wanted) {
 }
 
 nlohmann::json arrangement_document(const rig::Arrangement& wanted) {
-  return {{"object", name_of(wanted.object)},
-          {"mounting", mounting_name(wanted.mounting)},
-          {"on_platform", wanted.on_platform},
-          {"lamp", lamp_name(wanted.lamp)},
-          {"room_light", wanted.room_light}};
+  return {{"object", name_of(wanted.object)},  {"mounting", mounting_name(wanted.mounting)},
+          {"on_platform", wanted.on_platform}, {"stand", wanted.stand},
+          {"on_its_side", wanted.on_its_side}, {"kept_moving", wanted.kept_moving},
+          {"lamp", lamp_name(wanted.lamp)},    {"room_light", wanted.room_light}};
 }
 
 std::unique_ptr<rig::Operator> make_drawing_operator(rig::Operator& person, rig::AskedPerson& asked) {

@@ -14,7 +14,8 @@ namespace station {
 std::string drawing(const rig::Arrangement& wanted);
 
 // The same for a program that draws it itself: {"object": "nothing", "board", "spectralon", "holder", "colour_chart" or
-// "cylinder", "mounting": "horizontal" or "vertical", "on_platform", "lamp": "off", "front", "back" or "front_left",
+// "cylinder", "mounting": "horizontal" or "vertical", "on_platform", "stand" (its number, 0: none), "on_its_side",
+// "kept_moving", "lamp": "off", "front", "back" or "front_left",
 // "room_light"}.
 nlohmann::json arrangement_document(const rig::Arrangement& wanted);
 

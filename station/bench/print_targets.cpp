@@ -1,15 +1,15 @@
 #include "station/bench/print_targets.h"
 
-#include <cairo-pdf.h>
 #include <cairo.h>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <stdexcept>
 
+#include "calibration/geometry/target_stand.h"
 #include "calibration/geometry/targets.h"
+#include "station/bench/draw_stand.h"
 #include "station/documents/board_file.h"
 #include "station/documents/degree.h"
 #include "station/documents/reader.h"
@@ -17,9 +17,6 @@
 namespace station {
 namespace {
 
-constexpr double kPointsPerMm = 72.0 / 25.4;
-constexpr double kPixelsPerMm = 300.0 / 25.4;
-constexpr double kMargin_mm = 10.0;     // printers leave about 5 mm white
 constexpr double kBarHeight_mm = 26.0;  // of the strip at the bottom: control bar and text
 
 // The drawing in the plane spanned by `right` and `up`: x, y, towards the viewer.
@@ -57,9 +54,6 @@ Box extent(const TargetSheet& sheet) {
   return box;
 }
 
-using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
-using Pen = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
-
 // From here on cairo's unit is the millimetre on the page, y downwards.
 
 void draw_tag(cairo_t* pen, const calibration::Tag& tag, const Eigen::Vector2d& origin) {
@@ -80,15 +74,8 @@ void draw_tag(cairo_t* pen, const calibration::Tag& tag, const Eigen::Vector2d& 
   cairo_restore(pen);
 }
 
-void draw_text(cairo_t* pen, double x, double y, double size_mm, const std::string& text) {
-  cairo_select_font_face(pen, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-  cairo_set_font_size(pen, size_mm);
-  cairo_move_to(pen, x, y);
-  cairo_show_text(pen, text.c_str());
-}
-
 void draw_control_bar(cairo_t* pen, const Eigen::Vector2d& page, const TargetSheet& sheet) {
-  const double left = kMargin_mm, y = page.y() - kMargin_mm;
+  const double left = kPageMargin_mm, y = page.y() - kPageMargin_mm;
   cairo_rectangle(pen, left, y - 2.0, calibration::kControlBar_mm, 2.0);
   cairo_fill(pen);
   cairo_set_line_width(pen, 0.2);
@@ -105,9 +92,6 @@ void draw_control_bar(cairo_t* pen, const Eigen::Vector2d& page, const TargetShe
 
 void draw(cairo_t* pen, const TargetSheet& sheet, Paper paper) {
   const Eigen::Vector2d page = page_mm(paper), origin = origin_on_page_mm(sheet, paper);
-  cairo_set_source_rgb(pen, 1, 1, 1);
-  cairo_paint(pen);
-  cairo_set_source_rgb(pen, 0, 0, 0);
   cairo_set_line_width(pen, 0.1);
   for (const double radius : sheet.circles_mm) {
     cairo_new_sub_path(pen);
@@ -118,52 +102,6 @@ void draw(cairo_t* pen, const TargetSheet& sheet, Paper paper) {
   cairo_stroke(pen);
   for (const calibration::Tag& tag : sheet.tags) draw_tag(pen, tag, origin);
   draw_control_bar(pen, page, sheet);
-}
-
-void require_written(cairo_status_t status, const std::filesystem::path& file) {
-  if (status != CAIRO_STATUS_SUCCESS)
-    throw std::runtime_error("cannot write " + file.string() + ": " + cairo_status_to_string(status) +
-                             "; choose a writable folder with --out");
-}
-
-void write_pdf(const TargetSheet& sheet, Paper paper, const std::filesystem::path& file) {
-  const Eigen::Vector2d points = page_mm(paper) * kPointsPerMm;
-  const Surface surface(cairo_pdf_surface_create(file.c_str(), points.x(), points.y()), &cairo_surface_destroy);
-  require_written(cairo_surface_status(surface.get()), file);
-  {
-    const Pen pen(cairo_create(surface.get()), &cairo_destroy);
-    cairo_scale(pen.get(), kPointsPerMm, kPointsPerMm);
-    draw(pen.get(), sheet, paper);
-    cairo_show_page(pen.get());
-    require_written(cairo_status(pen.get()), file);
-  }
-  cairo_surface_finish(surface.get());
-  require_written(cairo_surface_status(surface.get()), file);
-}
-
-void write_png(const TargetSheet& sheet, Paper paper, const std::filesystem::path& file) {
-  const Eigen::Vector2d pixels = page_mm(paper) * kPixelsPerMm;
-  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::lround(pixels.x())),
-                                                   static_cast<int>(std::lround(pixels.y()))),
-                        &cairo_surface_destroy);
-  require_written(cairo_surface_status(surface.get()), file);
-  {
-    const Pen pen(cairo_create(surface.get()), &cairo_destroy);
-    cairo_scale(pen.get(), kPixelsPerMm, kPixelsPerMm);
-    draw(pen.get(), sheet, paper);
-  }
-  std::string bytes;
-  const auto append = [](void* out, const unsigned char* data, unsigned length) {
-    static_cast<std::string*>(out)->append(reinterpret_cast<const char*>(data), length);
-    return CAIRO_STATUS_SUCCESS;
-  };
-  require_written(cairo_surface_write_to_png_stream(surface.get(), append, &bytes), file);
-  // Cairo does not say how large a pixel is; without it a viewer prints at a size of its own. The chunk pHYs, 11811
-  // pixels per metre, stands behind the header of 33 bytes; its last four bytes are its checksum.
-  constexpr unsigned char kResolution[] = {0,    0, 0, 9,    'p',  'H', 'Y',  's',  0,    0,   0x2E,
-                                           0x23, 0, 0, 0x2E, 0x23, 1,   0x78, 0xA5, 0x3F, 0x76};
-  bytes.insert(33, reinterpret_cast<const char*>(kResolution), sizeof kResolution);
-  write_text_file(file, bytes);
 }
 
 // Numbers for people and for programs: id, edge, centre x, y on the sheet, direction of the tag's right edge.
@@ -198,21 +136,17 @@ nlohmann::json geometry_json(const RigFile& rig, const std::vector<TargetSheet>&
 
 }  // namespace
 
-Eigen::Vector2d page_mm(Paper paper) {
-  return paper == Paper::a4 ? Eigen::Vector2d(210.0, 297.0) : Eigen::Vector2d(215.9, 279.4);
-}
-
 Eigen::Vector2d origin_on_page_mm(const TargetSheet& sheet, Paper paper) {
   const Eigen::Vector2d page = page_mm(paper);
   const Box box = extent(sheet);
   const Eigen::Vector2d size = box.high - box.low, middle = 0.5 * (box.high + box.low);
-  const Eigen::Vector2d free(page.x() - 2 * kMargin_mm, page.y() - 2 * kMargin_mm - kBarHeight_mm);
+  const Eigen::Vector2d free(page.x() - 2 * kPageMargin_mm, page.y() - 2 * kPageMargin_mm - kBarHeight_mm);
   if ((size.array() > free.array()).any())
     throw std::runtime_error(sheet.title + " needs " + std::to_string(std::lround(size.x())) + " x " +
                              std::to_string(std::lround(size.y())) + " mm, the paper has " +
                              std::to_string(std::lround(free.x())) + " x " + std::to_string(std::lround(free.y())) +
                              " mm free; make it smaller in the rig file");
-  return {page.x() / 2 - middle.x(), kMargin_mm + free.y() / 2 + middle.y()};
+  return {page.x() / 2 - middle.x(), kPageMargin_mm + free.y() / 2 + middle.y()};
 }
 
 std::vector<TargetSheet> target_sheets(const RigFile& rig) {
@@ -266,10 +200,18 @@ std::vector<std::filesystem::path> print_targets(const RigFile& rig, Paper paper
     throw std::runtime_error("cannot make " + folder.string() + ": " + code.message() + "; choose a writable folder");
   std::vector<std::filesystem::path> files;
   for (const TargetSheet& sheet : sheets) {
+    const DrawPage page = [&](cairo_t* pen) { draw(pen, sheet, paper); };
     files.push_back(folder / (sheet.file + ".pdf"));
-    write_pdf(sheet, paper, files.back());
+    write_page_pdf(files.back(), paper, page);
     files.push_back(folder / (sheet.file + ".png"));
-    write_png(sheet, paper, files.back());
+    write_page_png(files.back(), paper, page);
+  }
+  for (int stand = 1; stand <= static_cast<int>(calibration::kStandLeans_rad.size()); ++stand) {
+    const DrawPage page = [&](cairo_t* pen) { draw_stand(pen, rig, stand, paper); };
+    files.push_back(folder / ("stand_" + std::to_string(stand) + ".pdf"));
+    write_page_pdf(files.back(), paper, page);
+    files.push_back(folder / ("stand_" + std::to_string(stand) + ".svg"));
+    write_page_svg(files.back(), paper, page);
   }
   files.push_back(folder / "board.json");
   write_json_file(files.back(), geometry_json(rig, sheets));

@@ -1,4 +1,4 @@
-// Printable calibration targets: the boards and tags of a rig file, drawn to scale.
+// Printable calibration targets: the boards and tags of a rig file, and the stands that hold them, drawn to scale.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,11 +7,10 @@
 #include <vector>
 
 #include "calibration/geometry/tags.h"
+#include "station/bench/paper_page.h"
 #include "station/documents/rig_file.h"
 
 namespace station {
-
-enum class Paper { a4, letter };
 
 // One sheet of paper: tags, the outlines to cut along, and a word on what to do with it. Millimetres from the sheet's
 // own origin, +x right, +y up; `centre` of the drawing comes to the middle of the page.
@@ -26,12 +25,12 @@ struct TargetSheet {
 // The rig's targets as they must be drawn: a control bar that was measured on an earlier print is taken out again.
 std::vector<TargetSheet> target_sheets(const RigFile& rig);
 
-// Writes <file>.pdf (vectors) and <file>.png (300 dpi) of each sheet and board.json. Returns the files. Throws
-// std::runtime_error when a sheet does not fit on the paper or a file cannot be written.
+// Writes <file>.pdf (vectors) and <file>.png (300 dpi) of each sheet, stand_N.pdf and .svg of each stand, and
+// board.json. Returns the files. Throws std::runtime_error when a sheet does not fit on the paper or a file cannot be
+// written.
 std::vector<std::filesystem::path> print_targets(const RigFile& rig, Paper paper, const std::filesystem::path& folder);
 
-// The page's size, and where the drawing's origin lies on it, mm from its top left corner.
-Eigen::Vector2d page_mm(Paper paper);
+// Where the drawing's origin lies on the page, mm from its top left corner.
 Eigen::Vector2d origin_on_page_mm(const TargetSheet& sheet, Paper paper);
 
 }  // namespace station

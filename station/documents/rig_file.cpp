@@ -196,6 +196,9 @@ SimulatedRig parse_simulation(ObjectReader simulation) {
   result.spectralon_droop = simulation.number("spectralon_droop_percent", 0, 30) / 100;
   truth.placement_mm = simulation.number("placement_mm", 0, 20);
   truth.placement_rad = simulation.number("placement_deg", 0, 20) * kDegree;
+  if (simulation.has("stand_placement_mm")) truth.stand_placement_mm = simulation.number("stand_placement_mm", 0, 100);
+  if (simulation.has("stand_placement_deg"))
+    truth.stand_placement_rad = simulation.number("stand_placement_deg", 0, 90) * kDegree;
   simulation.finish();
   return result;
 }

@@ -46,14 +46,18 @@ std::string last_utc(const std::vector<CalibrationPicture>& pictures) {
 RigCalibration calibrate_rig(const CalibrateRequest& request) {
   const RigFile rig = read_rig(request.rig);
   ProgressDisplay progress("calibrate", request.progress_style);
-  const auto show = [&](int done, int total, const std::string& label) {
-    if (request.asked) request.asked->prepare({{"step", done + 1}, {"of", total}}, "");
-    progress.show(done, total, label);
+  const std::vector<CalibrationStep> plan = make_calibration_plan(rig);
+  const std::vector<int> actions = actions_of(plan);
+  const auto show = [&](int done, int total, const std::string& label) { progress.show(done, total, label); };
+  // A person counts what is left to do, not pictures.
+  const auto show_step = [&](int done, int total, const std::string& label) {
+    if (request.asked && done < total)
+      request.asked->prepare({{"step", actions.at(static_cast<std::size_t>(done))}, {"of", actions.back()}}, "");
+    show(done, total, label);
   };
   std::string utc;
   if (!request.solve_only) {
     watch_interrupts();
-    const std::vector<CalibrationStep> plan = make_calibration_plan(rig);
     if (!request.only.empty())
       forget_calibration_pictures(request.out, [&](CalibrationRole role) { return belongs_to(role, request.only); });
     RigDevices devices = open_rig(rig, std::nullopt, request.asked);
@@ -62,7 +66,7 @@ RigCalibration calibrate_rig(const CalibrateRequest& request) {
       person = std::move(devices.person);
       devices.person = make_drawing_operator(*person, *request.asked);
     }
-    record_calibration(plan, devices, request.out, show, interrupted);
+    record_calibration(rig, plan, devices, request.out, show_step, interrupted);
     leave_at_zero(rig, *devices.turntable);
     utc = devices.clock->utc();
   }

@@ -5,6 +5,8 @@
 #include <stdexcept>
 
 #include "calibration/sensor/sensor_file.h"
+#include "station/bench/calibrate/standing_target.h"
+#include "station/bench/camera_adapter.h"
 #include "station/bench/exposure.h"
 #include "station/documents/degree.h"
 #include "station/documents/disk/file_system.h"
@@ -100,10 +102,41 @@ rig::Picture picture_like(rig::Camera& camera, const std::vector<CalibrationPict
   return camera.capture();
 }
 
+constexpr int kCorrections = 3;
+
+// The angles for the steps of the plan from `first` on that share its place and role. `standing`: where the target was
+// seen to stand, if it was; otherwise it is looked for, and a person is asked to put it right where it cannot be seen
+// as planned.
+std::vector<double> angles_of(const RigFile& rig, const std::vector<CalibrationStep>& plan, std::size_t first,
+                              RigDevices& devices, std::optional<Eigen::Isometry3d>& standing, double& exposure_s) {
+  const CalibrationStep& step = plan[first];
+  std::vector<double> planned;
+  for (const CalibrationStep& other : plan)
+    if (other.role == step.role && rig::same_arrangement(other.arrangement, step.arrangement))
+      planned.push_back(other.platform_angle_rad);
+  const std::size_t n = planned.size();
+  for (int asked = 0;; ++asked) {
+    for (const std::size_t look : {n / 2, n / 4, n * 3 / 4}) {
+      if (standing) break;
+      devices.turntable->move_to(planned[look]);
+      const rig::Picture picture = well_exposed_picture(*devices.camera, aim_of(CalibrationRole::lens), exposure_s);
+      const calibration::SensorPicture raw = calibration::read_sensor_bytes(picture.bytes, "picture for " + step.id);
+      standing = find_target(rig, step.arrangement, tags_in(raw), raw.mosaic.size(), devices.turntable->angle_rad());
+    }
+    if (standing)
+      if (const auto angles = angles_for(rig, plan, first, *standing)) return *angles;
+    const std::string wrong = how_to_stand(step.arrangement, standing);
+    if (asked == kCorrections) throw std::runtime_error(wrong + " The same command goes on from here.");
+    devices.person->correct(wrong);
+    standing.reset();
+  }
+}
+
 }  // namespace
 
-std::vector<CalibrationPicture> record_calibration(const std::vector<CalibrationStep>& plan, RigDevices& devices,
-                                                   const std::filesystem::path& folder, const StepProgress& progress,
+std::vector<CalibrationPicture> record_calibration(const RigFile& rig, const std::vector<CalibrationStep>& plan,
+                                                   RigDevices& devices, const std::filesystem::path& folder,
+                                                   const StepProgress& progress,
                                                    const std::function<bool()>& should_stop) {
   std::error_code code;
   std::filesystem::create_directories(folder / "pictures", code);
@@ -120,16 +153,26 @@ std::vector<CalibrationPicture> record_calibration(const std::vector<Calibration
   FileSystem disk;
   devices.turntable->home();
   double exposure_s = 0.125;
-  int done = 0;
-  for (const CalibrationStep& step : plan) {
-    progress(done++, static_cast<int>(plan.size()), step.id);
+  std::optional<Eigen::Isometry3d> standing;  // of what is on a stand
+  std::vector<double> angles;                 // of the steps that share a place and a role
+  std::size_t begin = 0;                      // the first of them
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const CalibrationStep& step = plan[i];
+    const bool same_place = rig::same_arrangement(step.arrangement, plan[begin].arrangement);
+    if (!same_place) standing.reset();
+    if (!same_place || step.role != plan[begin].role) {
+      begin = i;
+      angles.clear();
+    }
+    progress(static_cast<int>(i), static_cast<int>(plan.size()), step.id);
     if (known(step.id)) continue;
     if (should_stop()) {
       devices.turntable->stop();
       throw std::runtime_error("calibration interrupted; the same command goes on from here");
     }
     devices.person->arrange(step.arrangement);
-    devices.turntable->move_to(step.platform_angle_rad);
+    if (step.follows_target && angles.empty()) angles = angles_of(rig, plan, begin, devices, standing, exposure_s);
+    devices.turntable->move_to(step.follows_target ? angles.at(i - begin) : step.platform_angle_rad);
     const rig::Picture picture = step.exposure_of.empty()
                                      ? well_exposed_picture(*devices.camera, aim_of(step.role), exposure_s)
                                      : picture_like(*devices.camera, pictures, step);
@@ -147,7 +190,7 @@ std::vector<CalibrationPicture> record_calibration(const std::vector<Calibration
     pictures.push_back(entry);
     write_list(folder, pictures);
   }
-  progress(done, static_cast<int>(plan.size()), "done");
+  progress(static_cast<int>(plan.size()), static_cast<int>(plan.size()), "done");
   return pictures;
 }
 

@@ -30,10 +30,12 @@ struct CalibrationPicture {
 
 using StepProgress = std::function<void(int done, int total, const std::string& label)>;
 
-// Takes the pictures that `plan` asks for and the folder does not hold yet. `should_stop` is polled between steps; when
-// it is true the platform is stopped and std::runtime_error thrown.
-std::vector<CalibrationPicture> record_calibration(const std::vector<CalibrationStep>& plan, RigDevices& devices,
-                                                   const std::filesystem::path& folder, const StepProgress& progress,
+// Takes the pictures that `plan` asks for and the folder does not hold yet. Where a step follows its target, a picture
+// is taken first to see how it stands. `should_stop` is polled between steps; when it is true the platform is stopped
+// and std::runtime_error thrown.
+std::vector<CalibrationPicture> record_calibration(const RigFile& rig, const std::vector<CalibrationStep>& plan,
+                                                   RigDevices& devices, const std::filesystem::path& folder,
+                                                   const StepProgress& progress,
                                                    const std::function<bool()>& should_stop);
 
 // Takes pictures of these roles off the list, so that record_calibration takes them again. Does nothing when there is

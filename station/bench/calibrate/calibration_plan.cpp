@@ -1,121 +1,148 @@
 #include "station/bench/calibrate/calibration_plan.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 
+#include "calibration/geometry/target_stand.h"
 #include "station/bench/calibrate/lamps.h"
 #include "station/bench/calibrate/response_plan.h"
+#include "station/bench/calibrate/standing_target.h"
 #include "station/documents/degree.h"
 
 namespace station {
 namespace {
-Eigen::Matrix3d turn(double degrees, const Eigen::Vector3d& axis) {
-  return Eigen::AngleAxisd(degrees * kDegree, axis).toRotationMatrix();
-}
 
-CalibrationStep step(CalibrationRole role, int number, const rig::Arrangement& arrangement) {
+CalibrationStep step(CalibrationRole role, int number, const rig::Arrangement& arrangement, double angle_rad) {
   std::string id = to_text(role) + "-" + (number < 10 ? "0" : "") + std::to_string(number);
-  return {.id = std::move(id), .role = role, .arrangement = arrangement};
+  return {.id = std::move(id),
+          .role = role,
+          .arrangement = arrangement,
+          .platform_angle_rad = angle_rad,
+          .follows_target = arrangement.stand > 0};
 }
 
-// The board in the hand, facing the camera, then tilted: degrees about its own x, y and normal; millimetres across the
-// picture; distance as a fraction of the distance to the platform. Tilts and depths make the focal length observable.
-struct HandPose {
-  double tilt_x, tilt_y, spin, across, up, distance;
+// How many pictures a mounting of a target has. A platform that a person turns is turned some fifty times in all.
+// Accuracy over a hundred simulated calibrations: tests/calibration.
+struct Counts {
+  int lens;
+  std::vector<calibration::MountingCounts> panel;  // under the lamp in front, behind
 };
-constexpr std::array<HandPose, 16> kHandPoses{{{0, 0, 0, 0, 0, 1.0},
-                                               {35, 0, 0, 0, 0, 0.95},
-                                               {-35, 0, 0, 5, 0, 1.0},
-                                               {0, 35, 0, 0, 5, 0.95},
-                                               {0, -35, 0, -5, 0, 1.0},
-                                               {30, 30, 0, 0, 0, 0.9},
-                                               {-30, 30, 0, 8, -5, 1.05},
-                                               {30, -30, 0, -8, 5, 1.1},
-                                               {-30, -30, 0, 0, 0, 0.92},
-                                               {10, 0, 90, 0, 0, 1.1},
-                                               {25, -10, 45, 22, -12, 0.9},
-                                               {0, 28, 180, -25, 15, 0.9},
-                                               {-28, 5, 0, 32, 20, 1.1},
-                                               {5, -28, 0, -32, -20, 1.1},
-                                               {20, 20, 0, 38, -22, 1.0},
-                                               {-20, -20, 90, -38, 22, 1.0}}};
 
-void add_lens_steps(const RigFile& rig, std::vector<CalibrationStep>& plan) {
-  const Eigen::Isometry3d& camera = rig.world_from_camera_by_tape;
-  const Eigen::Vector3d forward = camera.linear().col(2);
-  // Distance along the axis to the point nearest the platform's centre line at working height.
-  const double distance = (Eigen::Vector3d(0, 0, rig.platform_height_mm + 34) - camera.translation()).dot(forward);
-  Eigen::Matrix3d facing;  // board axes in camera axes: x right, y up, z towards the viewer
-  facing << 1, 0, 0, 0, -1, 0, 0, 0, -1;
-  int number = 0;
-  for (const HandPose& hand : kHandPoses) {
-    Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
-    camera_from_board.linear() = facing * turn(hand.tilt_x, Eigen::Vector3d::UnitX()) *
-                                 turn(hand.tilt_y, Eigen::Vector3d::UnitY()) *
-                                 turn(hand.spin, Eigen::Vector3d::UnitZ());
-    camera_from_board.translation() = Eigen::Vector3d(hand.across, -hand.up, hand.distance * distance);
-    plan.push_back(step(CalibrationRole::lens, ++number,
-                        {.object = rig::BenchObject::board, .pose = camera * camera_from_board, .room_light = true}));
-  }
+Counts counts_of(const RigFile& rig) {
+  if (rig.turntable_driver == "manual") return {6, {{2, 7}, {2, 6}}};
+  return {16, {{2, 10}, {2, 10}}};
 }
 
 // The empty platform: its ring and the tags on the table are all that is needed.
 void add_platform_steps(std::vector<CalibrationStep>& plan) {
   int number = 0;
-  for (int angle_deg = -60; angle_deg <= 60; angle_deg += 15) {
-    CalibrationStep turning = step(CalibrationRole::turning, ++number, {.room_light = true});
-    turning.platform_angle_rad = angle_deg * kDegree;
-    plan.push_back(turning);
+  for (int angle_deg = -60; angle_deg <= 60; angle_deg += 15)
+    plan.push_back(step(CalibrationRole::turning, ++number, {.room_light = true}, angle_deg * kDegree));
+}
+
+// The board on a steep, a leaning and a nearly flat stand; once on its side, so that width and height of the picture
+// are measured by the same edges.
+void add_lens_steps(const RigFile& rig, std::vector<CalibrationStep>& plan) {
+  int number = 0;
+  for (const auto& [stand, on_its_side] : {std::pair{1, false}, {3, true}, {4, false}}) {
+    const rig::Arrangement board{.object = rig::BenchObject::board,
+                                 .on_platform = true,
+                                 .stand = stand,
+                                 .on_its_side = on_its_side,
+                                 .pose = standing_pose(rig, rig::BenchObject::board, stand, on_its_side),
+                                 .room_light = true};
+    for (const double angle : calibration::plan_board_angles(panel_bench(rig).camera, rig.board, board.pose,
+                                                             counts_of(rig).lens, platform_limit_rad(rig)))
+      plan.push_back(step(CalibrationRole::lens, ++number, board, angle));
   }
 }
 
-// With 0.3 % noise, 0.5 % drift of the lamp and panels held to 0.1 degree, simulated (tests/calibration): 12 poses put
-// the front lamp within 2.5 mm and the back lamp within 2.1 mm (rms), 16 within 2.2 and 2.0; with a reference chip read
-// to 0.1 %, 12 do within 1.4. Behind, too, the panel alone is used: the back lamp stands some 29 degrees off the
-// camera's axis and its field of view ends at 7, so that tags on the lamp are in no picture.
-constexpr int kFrontPoses = 16, kBackPoses = 12;
-
-void add_panel_steps(const RigFile& rig, std::vector<CalibrationStep>& plan) {
+std::vector<calibration::PanelMounting> panel_mountings(const RigFile& rig) {
+  std::vector<Eigen::Isometry3d> stands;
+  for (int stand = 1; stand <= static_cast<int>(calibration::kStandLeans_rad.size()); ++stand)
+    stands.push_back(standing_pose(rig, rig::BenchObject::spectralon, stand, false));
   const calibration::PanelBench bench = panel_bench(rig);
-  const auto poses = calibration::plan_panel_poses(bench, lamp_guesses(rig), {kFrontPoses, kBackPoses},
-                                                   light_options(rig, {bench.lens.width_px, bench.lens.height_px}));
-  std::array<int, 2> number{};
-  for (const calibration::PanelPose& pose : poses) {
-    const bool front = pose.light == 0;
-    plan.push_back(step(front ? CalibrationRole::front_light : CalibrationRole::back_light,
-                        ++number.at(static_cast<std::size_t>(pose.light)),
-                        {.object = rig::BenchObject::spectralon,
-                         .pose = pose.world_from_panel,
-                         .lamp = front ? rig::Lamp::front : rig::Lamp::back}));
-  }
+  const cv::Size size(bench.camera.lens.width_px, bench.camera.lens.height_px);
+  return calibration::plan_panel_mountings(bench, lamp_guesses(rig), stands, counts_of(rig).panel,
+                                           platform_limit_rad(rig), light_options(rig, size));
+}
+
+rig::Arrangement standing_panel(const calibration::PanelMounting& mounting) {
+  return {.object = rig::BenchObject::spectralon,
+          .on_platform = true,
+          .stand = mounting.stand + 1,
+          .pose = mounting.platform_from_panel,
+          .lamp = mounting.light == 0 ? rig::Lamp::front : rig::Lamp::back};
+}
+
+// Behind, too, the panel alone is used: the back lamp stands some 29 degrees off the camera's axis and its field of
+// view ends at 7, so that tags on the lamp are in no picture.
+void add_panel_steps(const std::vector<calibration::PanelMounting>& mountings, int light,
+                     std::vector<CalibrationStep>& plan) {
+  int number = 0;
+  for (const calibration::PanelMounting& mounting : mountings)
+    for (const double angle : mounting.angles_rad)
+      if (mounting.light == light)
+        plan.push_back(step(light == 0 ? CalibrationRole::front_light : CalibrationRole::back_light, ++number,
+                            standing_panel(mounting), angle));
+}
+
+// The panel of the first mounting, turned half-way between camera and lamp, for pairs of pictures that may differ by
+// noise alone.
+CalibrationStep response_place(const RigFile& rig, const calibration::PanelMounting& mounting) {
+  const Eigen::Vector3d centre = mounting.platform_from_panel.translation();
+  const Eigen::Vector3d half =
+      (rig.world_from_camera_by_tape.translation() - centre).normalized() + (rig.front_lamp_mm - centre).normalized();
+  return step(CalibrationRole::response, 1, standing_panel(mounting), std::atan2(half.y(), half.x()));
 }
 
 // Facing the camera, turned away from the lamp in front, so that gloss goes elsewhere.
 void add_chart_step(const RigFile& rig, std::vector<CalibrationStep>& plan) {
   if (!rig.colour_chart) return;
-  const Eigen::Vector3d centre(18, 0, rig.platform_height_mm + rig.colour_chart->plate_mm / 2 + 6);
+  const Eigen::Vector3d centre(0, 0, rig.platform_height_mm + rig.colour_chart->plate_mm / 2);
   const Eigen::Vector3d to_camera = (rig.world_from_camera_by_tape.translation() - centre).normalized();
   const Eigen::Vector3d to_lamp = (rig.front_lamp_mm - centre).normalized();
   const Eigen::Vector3d away = to_lamp - to_camera.dot(to_lamp) * to_camera;
   const Eigen::Vector3d normal = (to_camera - 0.4 * away.normalized()).normalized();  // 22 degrees from the camera
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear().col(0) = Eigen::Vector3d::UnitZ().cross(normal).normalized();
-  pose.linear().col(1) = normal.cross(pose.linear().col(0));
-  pose.linear().col(2) = normal;
-  pose.translation() = centre;
+  const auto& leans = calibration::kStandLeans_rad;
+  const auto nearest = std::min_element(leans.begin(), leans.end(), [&](double a, double b) {
+    return std::abs(a - std::asin(normal.z())) < std::abs(b - std::asin(normal.z()));
+  });
+  const int stand = static_cast<int>(nearest - leans.begin()) + 1;
   plan.push_back(step(CalibrationRole::colour, 1,
-                      {.object = rig::BenchObject::colour_chart, .pose = pose, .lamp = rig::Lamp::front}));
+                      {.object = rig::BenchObject::colour_chart,
+                       .on_platform = true,
+                       .stand = stand,
+                       .pose = standing_pose(rig, rig::BenchObject::colour_chart, stand, false),
+                       .lamp = rig::Lamp::front},
+                      std::atan2(normal.y(), normal.x())));
 }
 
 }  // namespace
 
 std::vector<CalibrationStep> make_calibration_plan(const RigFile& rig) {
+  const std::vector<calibration::PanelMounting> mountings = panel_mountings(rig);
   std::vector<CalibrationStep> plan;
-  add_lens_steps(rig, plan);
   add_platform_steps(plan);
-  add_response_steps(rig, plan);
-  add_panel_steps(rig, plan);
+  add_lens_steps(rig, plan);
+  add_white_field_steps(rig, plan);
+  add_response_steps(response_place(rig, mountings.front()), plan);
+  add_panel_steps(mountings, 0, plan);
   add_chart_step(rig, plan);
+  add_dark_steps(plan);
+  add_panel_steps(mountings, 1, plan);
   return plan;
+}
+
+std::vector<int> actions_of(const std::vector<CalibrationStep>& plan) {
+  std::vector<int> actions;
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const bool another = i == 0 || !rig::same_arrangement(plan[i - 1].arrangement, plan[i].arrangement);
+    actions.push_back((i == 0 ? 0 : actions.back()) + another);
+  }
+  return actions;
 }
 
 }  // namespace station

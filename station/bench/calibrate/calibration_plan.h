@@ -1,6 +1,6 @@
-// Which pictures a rig calibration needs: the tag board in the hand (lens), standing on the turning platform and lying
-// on it (axis, world frame), the sensor's pictures (response_plan.h), and the Spectralon panel under the lamp in front
-// and behind (light, vignetting).
+// Which pictures a rig calibration needs, in an order in which a person does little: the empty platform turning (axis,
+// world frame), the tag board on three stands (lens), the Spectralon panel before the lens (white field), on stands
+// under the lamp in front (sensor, light, vignetting), the colour chart, darkness, and the panel under the lamp behind.
 #pragma once
 
 #include <string>
@@ -12,5 +12,8 @@
 namespace station {
 
 std::vector<CalibrationStep> make_calibration_plan(const RigFile& rig);
+
+// For each step, which of the person's actions it comes after, counted from 1.
+std::vector<int> actions_of(const std::vector<CalibrationStep>& plan);
 
 }  // namespace station

@@ -14,6 +14,9 @@ struct CalibrationStep {
   CalibrationRole role = CalibrationRole::lens;
   rig::Arrangement arrangement;
   double platform_angle_rad = 0.0;
+  // The object stands on the platform as a hand put it: the angle is changed so that it is seen as planned
+  // (standing_target.h).
+  bool follows_target = false;
   std::string exposure_of{};  // an earlier step whose exposure it repeats, `stops` longer; empty: metered
   int stops = 0;
 };

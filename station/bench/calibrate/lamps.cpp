@@ -1,9 +1,11 @@
 #include "station/bench/calibrate/lamps.h"
 
+#include "calibration/geometry/target_stand.h"
+
 namespace station {
 namespace {
 
-constexpr double kHandLift_mm = 2.0;  // above the platform, so that no tilted plate dips into it
+constexpr double kClear_mm = 2.0;  // above the platform, so that no plate touches it
 
 // The size of the camera's pictures; a real one's are not known before the first.
 cv::Size picture_size(const RigFile& rig) {
@@ -25,13 +27,13 @@ calibration::LightOptions light_options(const RigFile& rig, cv::Size picture) {
 calibration::PanelBench panel_bench(const RigFile& rig) {
   const cv::Size size = picture_size(rig);
   const double f = rig.focal_length_guess_px;
-  return {.lens = {size.width, size.height, f, f, 0.5 * (size.width - 1), 0.5 * (size.height - 1), {}},
-          .world_from_camera = rig.world_from_camera_by_tape,
+  return {.camera = {.lens = {size.width, size.height, f, f, 0.5 * (size.width - 1), 0.5 * (size.height - 1), {}},
+                     .world_from_camera = rig.world_from_camera_by_tape},
           .white_mm = rig.spectralon.white_mm,
           .plate_mm = rig.spectralon.plate_mm,
           .tags = rig.spectralon.tags,
-          .centre = {0, 0, rig.platform_height_mm + rig.spectralon.plate_mm / 2 + kHandLift_mm},
-          .lowest_mm = rig.platform_height_mm + kHandLift_mm};
+          .centre = {0, 0, rig.platform_height_mm + calibration::kLedgeHeight_mm + rig.spectralon.plate_mm / 3},
+          .lowest_mm = rig.platform_height_mm + kClear_mm};
 }
 
 }  // namespace station

@@ -1,5 +1,6 @@
 #include "station/bench/calibrate/response_plan.h"
 
+#include <algorithm>
 #include <numbers>
 #include <tuple>
 
@@ -10,19 +11,6 @@ constexpr int kRapid = 10, kBriefDarks = 16, kLastingDarks = 8;
 constexpr int kWhiteFieldPictures = 6;  // at each place
 constexpr double kWhiteFieldDistance =
     0.2;  // of the way from the camera to the platform: out of focus, filling the picture
-
-// Facing a direction half-way between camera and lamp, over the platform's middle.
-Eigen::Isometry3d panel_pose(const RigFile& rig) {
-  const Eigen::Vector3d centre(0, 0, rig.platform_height_mm + rig.spectralon.plate_mm / 2);
-  const Eigen::Vector3d to_camera = (rig.world_from_camera_by_tape.translation() - centre).normalized();
-  const Eigen::Vector3d normal = (to_camera + (rig.front_lamp_mm - centre).normalized()).normalized();
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear().col(0) = Eigen::Vector3d::UnitZ().cross(normal).normalized();
-  pose.linear().col(1) = normal.cross(pose.linear().col(0));
-  pose.linear().col(2) = normal;
-  pose.translation() = centre;
-  return pose;
-}
 
 // Before the lens, facing it; shifted and turned a little, so that a mark on the panel is not taken for one on the
 // sensor.
@@ -40,38 +28,52 @@ Eigen::Isometry3d white_field_pose(const RigFile& rig, double across_mm, double 
 
 struct Steps {
   std::vector<CalibrationStep>& plan;
-  CalibrationRole role;
-  rig::Arrangement arrangement;
+  CalibrationStep first;  // whose place all have
   int number = 0;
 
   std::string add(const std::string& exposure_of = {}, int stops = 0) {
+    CalibrationStep next = first;
     ++number;
-    const std::string id = to_text(role) + "-" + (number < 10 ? "0" : "") + std::to_string(number);
-    plan.push_back({.id = id, .role = role, .arrangement = arrangement, .exposure_of = exposure_of, .stops = stops});
-    return id;
+    next.id = to_text(next.role) + (number < 10 ? "-0" : "-") + std::to_string(number);
+    next.exposure_of = exposure_of;
+    next.stops = stops;
+    plan.push_back(next);
+    return next.id;
   }
 };
 
 }  // namespace
 
-void add_response_steps(const RigFile& rig, std::vector<CalibrationStep>& plan) {
-  // Standing, not held: pairs of pictures may differ by noise alone.
-  rig::Arrangement panel{
-      .object = rig::BenchObject::spectralon, .on_platform = true, .pose = panel_pose(rig), .lamp = rig::Lamp::front};
-  Steps response{plan, CalibrationRole::response, panel};
+void add_response_steps(CalibrationStep place, std::vector<CalibrationStep>& plan) {
+  place.role = CalibrationRole::response;
+  Steps response{plan, place};
   const std::string metered = response.add();
   for (int stop = kLadderLow; stop <= kLadderHigh; ++stop) response.add(metered, stop);
   for (int stop = kLadderHigh; stop >= kLadderLow; --stop) response.add(metered, stop);
-  Steps rapid{plan, CalibrationRole::rapid, panel};
+  place.role = CalibrationRole::rapid;
+  Steps rapid{plan, place};
   for (int i = 0; i < kRapid; ++i) rapid.add(metered);
-  panel.lamp = rig::Lamp::off;
-  Steps dark{plan, CalibrationRole::dark, panel};
-  for (int i = 0; i < kBriefDarks; ++i) dark.add(metered, kLadderLow);
-  for (int i = 0; i < kLastingDarks; ++i) dark.add(metered, kLadderHigh);
-  Steps white{plan, CalibrationRole::white_field, {.object = rig::BenchObject::spectralon, .room_light = true}};
+}
+
+void add_dark_steps(std::vector<CalibrationStep>& plan) {
+  const auto metered = std::find_if(plan.begin(), plan.end(), [](const CalibrationStep& step) {
+    return step.role == CalibrationRole::response && step.exposure_of.empty();
+  });
+  CalibrationStep place{.role = CalibrationRole::dark, .arrangement = plan.back().arrangement};
+  place.arrangement.lamp = rig::Lamp::off;
+  const std::string like = metered->id;
+  Steps dark{plan, place};
+  for (int i = 0; i < kBriefDarks; ++i) dark.add(like, kLadderLow);
+  for (int i = 0; i < kLastingDarks; ++i) dark.add(like, kLadderHigh);
+}
+
+void add_white_field_steps(const RigFile& rig, std::vector<CalibrationStep>& plan) {
+  Steps white{plan,
+              {.role = CalibrationRole::white_field,
+               .arrangement = {.object = rig::BenchObject::spectralon, .kept_moving = true, .room_light = true}}};
   for (const auto& [across_mm, up_mm, turned_rad] :
        {std::tuple{0.0, 0.0, 0.0}, {1.5, -1.0, std::numbers::pi / 2}, {-1.5, 1.0, std::numbers::pi}}) {
-    white.arrangement.pose = white_field_pose(rig, across_mm, up_mm, turned_rad);
+    white.first.arrangement.pose = white_field_pose(rig, across_mm, up_mm, turned_rad);
     const std::string first = white.add();
     for (int i = 1; i < kWhiteFieldPictures; ++i) white.add(first);
   }

@@ -16,7 +16,11 @@ namespace station {
 
 inline constexpr int kLadderLow = -7, kLadderHigh = 4;  // stops from the metered exposure
 
-// Adds the steps for these pictures to the plan.
-void add_response_steps(const RigFile& rig, std::vector<CalibrationStep>& plan);
+// Each adds the steps for its pictures to the plan: the ladder of exposures and rapid pictures of the panel that stands
+// as in `place`; darkness, with what the plan has placed last and the exposures of the ladder's ends; the panel before
+// the lens, out of focus and moving.
+void add_response_steps(CalibrationStep place, std::vector<CalibrationStep>& plan);
+void add_dark_steps(std::vector<CalibrationStep>& plan);
+void add_white_field_steps(const RigFile& rig, std::vector<CalibrationStep>& plan);
 
 }  // namespace station

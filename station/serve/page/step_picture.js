@@ -42,7 +42,7 @@ function grid(columns, rows, filled) {
 
 const fronts = {
   nothing: () => [],
-  board: () => grid(4, 3, true),
+  board: wanted => wanted.on_its_side ? grid(3, 4, true) : grid(4, 3, true),
   colour_chart: () => grid(6, 4, false),
   spectralon: () => [draw("rect", {x: 435, y: 95, width: 70, height: 70, class: "white"})],
   holder: wanted => lines(wanted.mounting === "vertical" ? 8 : 7, wanted.mounting === "vertical"),
@@ -54,8 +54,15 @@ function front(wanted) {
     draw("rect", {x: 390, y: 60, width: 160, height: 140, class: wanted.object === "nothing" ? "empty" : "frame"}),
     ...fronts[wanted.object](wanted),
     words(470, 235, `object_${wanted.object}`),
-    words(470, 262, wanted.object === "holder" ? `threads_${wanted.mounting}` : wanted.on_platform ? "on_platform" : "by_hand",
-          {class: "dim"}));
+    ...(wanted.stand ? [draw("text", {x: 470, y: 52, "text-anchor": "middle", class: "lit"}, `${text("stand")} ${wanted.stand}`)] : []),
+    words(470, 262, howItStands(wanted), {class: "dim"}));
+}
+
+function howItStands(wanted) {
+  if (wanted.object === "holder") return `threads_${wanted.mounting}`;
+  if (wanted.kept_moving) return "kept_moving";
+  if (wanted.stand) return wanted.on_its_side ? "on_its_side" : "upright_on_stand";
+  return wanted.on_platform ? "on_platform" : "by_hand";
 }
 
 export function stepPicture(wanted) {

@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "calibration/geometry/target_stand.h"
 #include "calibration/sensor/degree.h"
 
 namespace calibration::synthetic {
@@ -101,6 +102,28 @@ std::vector<Eigen::Isometry3d> handheld_poses(int count, std::mt19937& random) {
     const double roll = 20.0 * kDegree * unit(random);
     const double dx = 30.0 * unit(random), dy = 18.0 * unit(random);
     poses.push_back(facing(distance_mm, yaw, pitch, roll, {dx, dy}));
+  }
+  return poses;
+}
+
+Eigen::Isometry3d put_down(const Eigen::Isometry3d& platform_from_object, std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  const double forward_mm = 30 * unit(random), right_mm = 30 * unit(random), turn_rad = 15 * kDegree * unit(random);
+  return Eigen::Translation3d(forward_mm, right_mm, 0) * Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()) *
+         platform_from_object;
+}
+
+std::vector<Eigen::Isometry3d> stand_poses(const RoughCamera& camera, const TagLayout& board,
+                                           const Eigen::Vector2d& plate_mm, int pictures, std::mt19937& random) {
+  std::vector<Eigen::Isometry3d> poses;
+  for (const auto& [stand, on_its_side] : {std::pair{0, false}, {2, true}, {3, false}}) {
+    Eigen::Isometry3d on = on_stand(kStandLeans_rad.at(static_cast<std::size_t>(stand)),
+                                    on_its_side ? plate_mm.x() : plate_mm.y(), 88, 30);
+    if (on_its_side) on.rotate(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()));
+    const Eigen::Isometry3d standing = put_down(on, random);
+    for (const double angle : plan_board_angles(camera, board, standing, pictures, std::numbers::pi))
+      poses.push_back(camera.world_from_camera.inverse() * Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) *
+                      standing);
   }
   return poses;
 }

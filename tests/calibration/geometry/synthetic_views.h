@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "calibration/geometry/board_plan.h"
 #include "calibration/geometry/lattice.h"
 #include "calibration/geometry/lens.h"
 #include "calibration/geometry/tags.h"
@@ -39,6 +40,15 @@ BoardPicture observe_lattice(const Lens& lens, const Lattice& lattice, const Eig
 
 // Poses of a board held by hand: distances 450-750 mm, tilts to +-40 degrees, all over the picture.
 std::vector<Eigen::Isometry3d> handheld_poses(int count, std::mt19937& random);
+
+// Where a hand puts down a stand on the platform: within 30 mm each way and 15 degrees of where it should stand.
+Eigen::Isometry3d put_down(const Eigen::Isometry3d& platform_from_object, std::mt19937& random);
+
+// The poses camera_from_board of a board on a plate `plate_mm` wide and high as the guided calibration takes them: on
+// three of the stands, on one of them on its side, put down by a hand and turned by the platform, `pictures` on each
+// stand, under a camera that is known as `camera` says.
+std::vector<Eigen::Isometry3d> stand_poses(const RoughCamera& camera, const TagLayout& board,
+                                           const Eigen::Vector2d& plate_mm, int pictures, std::mt19937& random);
 
 // A linear picture of the printed layout (paper 0.8, ink 0.04, surround 0.1), with `samples` x `samples` rays per
 // pixel.

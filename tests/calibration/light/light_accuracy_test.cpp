@@ -1,6 +1,7 @@
-// How well lights are found from the planned poses of a Spectralon panel, over many benches: 0.3 % noise per spot,
-// 0.5 % drift of the lamp from picture to picture, poses of the panel wrong by 0.1 degree and 0.1 mm, a panel that
-// droops by 0 to 15 %, a beam of cos^mu with mu 0 to 2. The figures are printed with their seeds.
+// How well lights are found from the planned poses of a Spectralon panel on stands, over many benches: stands that a
+// hand puts down within 30 mm each way and 15 degrees of where they should be, 0.3 % noise per spot, 0.5 % drift of the
+// lamp from picture to picture, poses of the panel wrong by 0.1 degree and 0.1 mm, a panel that droops by 0 to 15 %, a
+// beam of cos^mu with mu 0 to 2. The figures are printed with their seeds.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,15 +38,18 @@ double irradiance_error(const LightFit& fit, const synthetic::LampTruth& truth, 
   return std::sqrt(sum / count);
 }
 
-std::vector<Accuracy> accuracy(const char* what, int solves, unsigned first_seed, int front, int back,
-                               const synthetic::Imperfections& by, bool other_shape = false) {
+std::vector<Accuracy> accuracy(const char* what, int solves, unsigned first_seed,
+                               const std::vector<MountingCounts>& counts, const synthetic::Imperfections& by,
+                               bool other_shape = false) {
   std::vector<Accuracy> out(2);
+  int placed = 0, asked_again = 0;
   for (unsigned seed = first_seed; seed < first_seed + static_cast<unsigned>(solves); ++seed) {
     std::mt19937 random(seed);
     synthetic::LampTruth truth = synthetic::drawn_truth(random);
     truth.droop_of_incidence_only = other_shape;
     const auto guesses = synthetic::taped(truth, random);
-    const auto poses = plan_panel_poses(synthetic::panel_bench(), guesses, {front, back}, synthetic::panel_options());
+    const auto [poses, mountings, asked] = synthetic::planned_poses(guesses, counts, &random);
+    placed += mountings, asked_again += asked;
     const auto seen = synthetic::panel_pictures(truth, poses, by, random);
     const LightFit fit = fit_light(seen.spots, guesses, synthetic::panel_options(), seen.pictures);
     EXPECT_TRUE(fit.converged) << "seed " << seed;
@@ -73,6 +77,8 @@ std::vector<Accuracy> accuracy(const char* what, int solves, unsigned first_seed
       a.held_out_spot_rms += spots / count;
     }
   }
+  std::printf("%s: of %d stands put down %d had to be put right\n", what, placed, asked_again);
+  EXPECT_LT(asked_again, 0.05 * placed) << "the hand is within its tolerance";
   for (std::size_t light = 0; light < 2; ++light) {
     Accuracy& a = out[light];
     for (double* mean_square :
@@ -81,7 +87,7 @@ std::vector<Accuracy> accuracy(const char* what, int solves, unsigned first_seed
     std::printf(
         "%-34s %-5s %2d poses, seeds %u-%u: position %.2f mm rms, %.2f worst; irradiance %.2f %% rms, %.2f worst; "
         "held out %.2f %% (spots %.2f %%); error / sigma %.2f, within 2 sigma %d of %d; droop to %.3f\n",
-        what, light == 0 ? "front" : "back", light == 0 ? front : back, first_seed,
+        what, light == 0 ? "front" : "back", counts[light].mountings * counts[light].pictures, first_seed,
         first_seed + static_cast<unsigned>(a.solves) - 1, a.rms_mm, a.worst_mm, 100 * a.irradiance_rms,
         100 * a.irradiance_worst, 100 * a.held_out_rms, 100 * a.held_out_spot_rms, a.error_over_sigma,
         a.within_two_sigma, a.solves, a.droop_rms);
@@ -90,11 +96,14 @@ std::vector<Accuracy> accuracy(const char* what, int solves, unsigned first_seed
   return out;
 }
 
-constexpr double kChipReading = 0.001;  // how well a reference chip in the picture tells the lamp's output
+constexpr double kChipReading = 0.001;   // how well a reference chip in the picture tells the lamp's output
+constexpr double kTagsReading = 0.0015;  // how well the tags on the table do (station/bench/calibrate)
 
-// The plan of the guided calibration (station/bench/calibrate), with a reference chip.
-TEST(LightAccuracy, PlannedPosesAndAReferenceChipGiveLampAndIrradianceAsAsked) {
-  const auto a = accuracy("as planned, chip to 0.1 %", 100, 1000, 16, 12, {.monitored = kChipReading});
+const std::vector<MountingCounts> kPlanned{{2, 10}, {2, 10}};
+
+// The plan of the guided calibration (station/bench/calibrate), whose tags on the table tell the lamp's output.
+TEST(LightAccuracy, PlannedPosesAndTagsOnTheTableGiveLampAndIrradianceAsAsked) {
+  const auto a = accuracy("as planned, tags to 0.15 %", 100, 1000, kPlanned, {.monitored = kTagsReading});
   // asked of the front lamp: 2.5 mm rms, 5 mm at worst, 0.5 %; of the back lamp: 5 mm, 1 %; pictures held out: 0.5 %
   EXPECT_LT(a[0].rms_mm, 2.5);
   EXPECT_LT(a[0].worst_mm, 5);
@@ -111,8 +120,9 @@ TEST(LightAccuracy, PlannedPosesAndAReferenceChipGiveLampAndIrradianceAsAsked) {
   }
 }
 
-TEST(LightAccuracy, WithoutAReferenceChipPositionsHoldButPicturesHeldOutShowTheDrift) {
-  const auto a = accuracy("as planned, no chip", 100, 1000, 16, 12, {});
+// Where nothing tells the lamp's output, more pictures make up for it.
+TEST(LightAccuracy, WithoutAReadingOfTheLampPositionsHoldButPicturesHeldOutShowTheDrift) {
+  const auto a = accuracy("more pictures, no reading", 100, 1000, {{3, 14}, {2, 10}}, {});
   EXPECT_LT(a[0].rms_mm, 2.5);
   EXPECT_LT(a[0].irradiance_rms, 0.005);
   EXPECT_LT(a[1].rms_mm, 5);
@@ -126,8 +136,8 @@ TEST(LightAccuracy, WithoutAReferenceChipPositionsHoldButPicturesHeldOutShowTheD
 TEST(LightAccuracy, MorePosesDoBetter) {
   for (const double monitored : {0.0, kChipReading}) {
     const char* what = monitored > 0 ? "chip to 0.1 %" : "no chip";
-    const auto few = accuracy(what, 20, 2000, 8, 8, {.monitored = monitored});
-    const auto many = accuracy(what, 20, 2000, 16, 16, {.monitored = monitored});
+    const auto few = accuracy(what, 20, 2000, {{2, 4}, {2, 4}}, {.monitored = monitored});
+    const auto many = accuracy(what, 20, 2000, {{2, 8}, {2, 8}}, {.monitored = monitored});
     // Twice the poses: 0.7 of the errors; 20 draws of three numbers tell a ratio to 15 %.
     EXPECT_LT(many[0].rms_mm, few[0].rms_mm);
     EXPECT_LT(many[1].rms_mm, few[1].rms_mm);
@@ -135,7 +145,8 @@ TEST(LightAccuracy, MorePosesDoBetter) {
 }
 
 TEST(LightAccuracy, APanelOfAnotherDroopShapeIsFittedToo) {
-  const auto a = accuracy("droop of incidence alone, chip", 20, 3000, 12, 12, {.monitored = kChipReading}, true);
+  const auto a =
+      accuracy("droop of incidence alone, chip", 20, 3000, {{2, 6}, {2, 6}}, {.monitored = kChipReading}, true);
   EXPECT_LT(a[0].rms_mm, 2.5);
   EXPECT_LT(a[0].irradiance_rms, 0.005);
   EXPECT_LT(a[1].rms_mm, 5);

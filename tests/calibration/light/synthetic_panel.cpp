@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "calibration/geometry/target_stand.h"
 #include "calibration/light/spectralon.h"
 #include "calibration/sensor/degree.h"
 #include "tests/calibration/geometry/synthetic_views.h"
@@ -14,6 +15,7 @@ using Eigen::Vector3d;
 
 const cv::Size kSize(600, 400);
 const Vector3d kSpool(0, 0, 64);
+constexpr double kLimit_rad = std::numbers::pi;  // of the platform
 
 Vector3d normals(std::mt19937& random, double sigma) {
   std::normal_distribution<double> gauss(0.0, sigma);
@@ -93,14 +95,43 @@ std::vector<LightGuess> taped(const LampTruth& t, std::mt19937& random, double e
 }
 
 PanelBench panel_bench() {
-  PanelBench bench{
-      .lens = narrow_lens(), .world_from_camera = world_from_camera(), .centre = {0, 0, 76}, .lowest_mm = 31};
+  PanelBench bench{.camera = {.lens = narrow_lens(), .world_from_camera = world_from_camera()},
+                   .centre = {0, 0, 66},
+                   .lowest_mm = 31};
   for (int i = 0; i < 4; ++i) {
     Tag tag{.id = i, .size_mm = 14};
     tag.object_from_tag.translation() = Vector3d(i % 2 ? 34.5 : -34.5, i / 2 ? 34.5 : -34.5, 0);
     bench.tags.tags.push_back(tag);
   }
   return bench;
+}
+
+std::vector<Eigen::Isometry3d> panel_stands() {
+  std::vector<Eigen::Isometry3d> stands;
+  for (const double lean : kStandLeans_rad) stands.push_back(on_stand(lean, 88, 88, 30));
+  return stands;
+}
+
+PlannedPoses planned_poses(const std::vector<LightGuess>& guesses, const std::vector<MountingCounts>& counts,
+                           std::mt19937* wandering) {
+  const PanelBench bench = panel_bench();
+  PlannedPoses planned;
+  for (const PanelMounting& mounting :
+       plan_panel_mountings(bench, guesses, panel_stands(), counts, kLimit_rad, panel_options())) {
+    const auto pictures = static_cast<std::size_t>(counts.at(static_cast<std::size_t>(mounting.light)).pictures);
+    Eigen::Isometry3d standing;
+    std::vector<double> angles;
+    for (int attempt = 0; angles.size() < pictures; ++attempt) {
+      standing = wandering ? put_down(mounting.platform_from_panel, *wandering) : mounting.platform_from_panel;
+      angles = plan_panel_angles(bench, guesses, planned.poses, mounting.light, standing, static_cast<int>(pictures),
+                                 kLimit_rad, panel_options());
+      planned.asked_again += attempt > 0;
+    }
+    planned.mountings += 1;
+    for (const double angle : angles)
+      planned.poses.push_back({mounting.light, Eigen::AngleAxisd(angle, Vector3d::UnitZ()) * standing});
+  }
+  return planned;
 }
 
 LightOptions panel_options() {
@@ -126,11 +157,11 @@ PanelPictures panel_pictures(const LampTruth& t, const std::vector<PanelPose>& p
                      .picture = static_cast<int>(out.pictures.size()),
                      .point = pose.world_from_panel * cell,
                      .normal = pose.world_from_panel.linear().col(2)};
-      spot.to_camera = (bench.world_from_camera.translation() - spot.point).normalized();
+      spot.to_camera = (bench.camera.world_from_camera.translation() - spot.point).normalized();
       const Vector3d point = true_pose * cell, normal = true_pose.linear().col(2),
                      to_light = (t.positions[light] - point).normalized(),
-                     to_camera = (bench.world_from_camera.translation() - point).normalized();
-      spot.pixel = project(bench.lens, bench.world_from_camera.inverse() * point);
+                     to_camera = (bench.camera.world_from_camera.translation() - point).normalized();
+      spot.pixel = project(bench.camera.lens, bench.camera.world_from_camera.inverse() * point);
       if (spot.pixel.x() < 0 || spot.pixel.y() < 0 || spot.pixel.x() > kSize.width - 1 ||
           spot.pixel.y() > kSize.height - 1)
         continue;

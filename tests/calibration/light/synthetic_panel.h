@@ -46,6 +46,18 @@ struct PanelPictures {
 std::vector<LightGuess> taped(const LampTruth& truth, std::mt19937& random, double error_mm = 15);
 
 PanelBench panel_bench();
+std::vector<Eigen::Isometry3d> panel_stands();  // platform_from_panel on each
+
+// The panel's poses as planned for a bench with such lights. A hand that wanders puts each stand down within 30 mm each
+// way and 15 degrees of where it should be; the angles are then planned for where it stands. Where it cannot be seen
+// from there as planned, the hand is asked once more.
+struct PlannedPoses {
+  std::vector<PanelPose> poses;
+  int mountings = 0, asked_again = 0;
+};
+PlannedPoses planned_poses(const std::vector<LightGuess>& guesses, const std::vector<MountingCounts>& counts,
+                           std::mt19937* wandering = nullptr);
+
 LightOptions panel_options();
 
 PanelPictures panel_pictures(const LampTruth& truth, const std::vector<PanelPose>& poses,

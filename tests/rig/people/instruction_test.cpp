@@ -82,6 +82,26 @@ TEST(Instruction, ExchangesOneObjectForAnother) {
             "threads vertical.");
 }
 
+TEST(Instruction, ATargetOnAStandIsPutDownRoughly) {
+  Arrangement board{.object = BenchObject::board, .on_platform = true, .stand = 1, .room_light = true};
+  EXPECT_EQ(rig::instruction({.room_light = true}, board),
+            "Put the printed target on stand 1, in the middle of the platform, its face towards the camera; 3 cm or 15 "
+            "degrees off do no harm.");
+  Arrangement on_its_side = board;
+  on_its_side.stand = 3;
+  on_its_side.on_its_side = true;
+  EXPECT_NE(rig::instruction(board, on_its_side).find("the printed target, on its side, on stand 3"),
+            std::string::npos);
+}
+
+TEST(Instruction, WhatIsKeptMovingIsAskedForOnce) {
+  Arrangement first{.object = BenchObject::spectralon, .kept_moving = true}, second = first;
+  second.pose.translation() = Eigen::Vector3d(1, 2, 3);
+  EXPECT_TRUE(rig::same_arrangement(first, second));
+  EXPECT_EQ(rig::instruction(first, second), "");
+  EXPECT_NE(rig::instruction({}, first).find("move it gently to and fro"), std::string::npos);
+}
+
 TEST(Instruction, InFullSaysEverything) {
   EXPECT_EQ(rig::full_instruction({}),
             "Take away whatever stands on the platform. Switch the flashlight off. Switch the room light off.");

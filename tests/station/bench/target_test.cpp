@@ -5,6 +5,8 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
+#include "station/bench/calibrate/standing_target.h"
+#include "station/bench/draw_stand.h"
 #include "station/bench/print_targets.h"
 #include "station/documents/board_file.h"
 #include "tests/places.h"
@@ -51,6 +53,8 @@ TEST(Target, EveryTagIsDrawnToScaleOnBothPapers) {
     ASSERT_EQ(result.status, 0) << result.error;
     const std::vector<station::TargetSheet> sheets = station::target_sheets(station::read_rig(fixture_rig()));
     EXPECT_EQ(sheets.size(), 6U);
+    for (const char* file : {"stand_1.svg", "stand_4.svg", "stand_1.pdf", "stand_4.pdf"})
+      EXPECT_GT(std::filesystem::file_size(folder.path() / name / file), 1000U) << file;
     for (const station::TargetSheet& sheet : sheets) {
       expect_to_scale(sheet, paper, folder.path() / name / (sheet.file + ".png"));
       std::ifstream pdf(folder.path() / name / (sheet.file + ".pdf"));
@@ -58,6 +62,30 @@ TEST(Target, EveryTagIsDrawnToScaleOnBothPapers) {
       pdf.read(start.data(), 5);
       EXPECT_EQ(start, "%PDF-");
     }
+  }
+}
+
+// The face of a plate on the ledge, leaning on the cheek, is where the calibration expects it.
+TEST(Target, AStandHoldsAPlateAsTheCalibrationExpects) {
+  const station::RigFile rig = station::read_rig(fixture_rig());
+  for (int stand = 1; stand <= 4; ++stand) {
+    const std::vector<Eigen::Vector2d> cheek = station::cheek_outline(rig, stand);
+    const Eigen::Isometry3d plate =
+        station::standing_pose(rig, rig::BenchObject::spectralon, stand, false);  // origin: middle of its face
+    const Eigen::Vector2d up(plate.linear()(0, 1), plate.linear()(2, 1)),
+        out(plate.linear()(0, 2), plate.linear()(2, 2));
+    const Eigen::Vector2d foot =
+        Eigen::Vector2d(plate.translation().x(), plate.translation().z() - rig.platform_height_mm) -
+        rig.spectralon.plate_mm / 2 * up;
+    const Eigen::Vector2d corner = cheek[5], top = cheek[6], lip = cheek[3];
+    EXPECT_LT((corner + 5 * out - foot).norm(), 1e-9) << "the plate is 5 mm thick and stands in the corner";
+    EXPECT_LT(std::abs((top - corner).dot(out)), 1e-9) << "its back lies on the cheek";
+    EXPECT_LT((lip - foot).dot(up), 2.5) << "the tags are free";
+    EXPECT_EQ(cheek.front().y(), 0);
+    EXPECT_EQ(cheek.back().y(), 0);
+    const double middle = plate.translation().x();
+    EXPECT_GT(cheek.front().x(), middle + 10) << "it does not fall over";
+    EXPECT_LT(cheek.back().x(), middle - 30);
   }
 }
 

@@ -77,6 +77,20 @@ class TechnicianPage : public testing::Test {
     ASSERT_TRUE(eventually([&] { return !job().at("question").is_null(); })) << job().dump(1);
   }
 
+  // Does all that the job asks until it ends; the texts of its questions.
+  std::vector<std::string> attend(const json& fields) {
+    std::vector<std::string> texts;
+    const HttpResponse started = post("/api/job", fields);
+    EXPECT_EQ(started.status, 200) << started.body;
+    for (json state; eventually([&] { return !(state = job()).at("question").is_null() || !state.at("running"); });) {
+      if (!state.at("running")) break;
+      texts.push_back(state.at("question").at("text"));
+      EXPECT_EQ(answer(state.at("question"), "done").status, 200);
+    }
+    EXPECT_EQ(job().at("status"), 0) << job().dump(1);
+    return texts;
+  }
+
   TemporaryFolder folder_;
   std::atomic<int> changes_ = 0;
   std::unique_ptr<station::TechnicianPage> page_;

@@ -78,20 +78,6 @@ class TurnedByHand : public TechnicianPage {
             {{"turntable", "manual"}, {"simulation", {{"samples_per_pixel", 2}, {"target_samples_per_pixel", 6}}}}) {
     post("/api/control", {{"client", "me"}});
   }
-
-  // Does all that the job asks until it ends; the texts of its questions.
-  std::vector<std::string> attend(const json& fields) {
-    std::vector<std::string> texts;
-    const HttpResponse started = post("/api/job", fields);
-    EXPECT_EQ(started.status, 200) << started.body;
-    for (json state; eventually([&] { return !(state = job()).at("question").is_null() || !state.at("running"); });) {
-      if (!state.at("running")) break;
-      texts.push_back(state.at("question").at("text"));
-      EXPECT_EQ(answer(state.at("question"), "done").status, 200);
-    }
-    EXPECT_EQ(job().at("status"), 0) << job().dump(1);
-    return texts;
-  }
 };
 
 TEST_F(TurnedByHand, IsCheckedFromThePage) {
@@ -118,22 +104,6 @@ TEST_F(TurnedByHand, AnAngleThatIsTypedIsReadAndAWrongOneAskedForAgain) {
   ASSERT_TRUE(eventually([&] { return !job().at("question").is_null(); }));
   EXPECT_EQ(job().at("question").at("remark"), "That is not 30.0 deg; turn it on.");
   EXPECT_EQ(job().at("question").at("text"), first.at("text"));
-}
-
-TEST_F(TurnedByHand, IsCalibratedAndASpoolCapturedFromThePage) {
-  EXPECT_GT(attend({{"client", "me"}, {"kind", "calibrate"}, {"name", "monday"}}).size(), 5U);
-  ASSERT_EQ(post("/api/spool", {{"client", "me"},
-                                {"name", "silk"},
-                                {"turns", 50},
-                                {"diameter_mm", 0.5},
-                                {"sheets", "front"},
-                                {"simulated", "silk_red"}})
-                .status,
-            200);
-  const auto asked =
-      attend({{"client", "me"}, {"kind", "capture"}, {"name", "silk"}, {"calibration", "monday"}, {"spool", "silk"}});
-  EXPECT_GT(asked.size(), 1U);
-  EXPECT_EQ(get("/api/session", "silk").at("state"), "complete");
 }
 
 TEST_F(TechnicianPage, TheEmergencyStopIsAnybodysAndEndsTheRun) {

@@ -1,0 +1,41 @@
+// A target that a hand has put on the platform with its stand: where it stands, as a picture shows it, and the angles
+// of the platform at which it is seen as planned.
+//
+// All that is known of the camera then is its place by tape and the engraving of its lens; that is enough, because what
+// counts is where in the picture the target lies and how its face is turned.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/geometry/tags.h"
+#include "station/bench/calibrate/calibration_step.h"
+#include "station/documents/rig_file.h"
+
+namespace station {
+
+// platform_from_object (mm; platform frame at angle 0 = world) of the board, the panel or the chart on a stand (from 1)
+// that stands as asked.
+Eigen::Isometry3d standing_pose(const RigFile& rig, rig::BenchObject object, int stand, bool on_its_side);
+
+// How far the platform is turned either way while a target stands on it.
+double platform_limit_rad(const RigFile& rig);
+
+// Where the target that was wanted stands, from its tags in a picture of `size` with the platform at `reading_rad`.
+// Std::nullopt when none of them is seen.
+std::optional<Eigen::Isometry3d> find_target(const RigFile& rig, const rig::Arrangement& wanted,
+                                             const calibration::TagObservation& seen, cv::Size size,
+                                             double reading_rad);
+
+// The angles for the steps of `plan` from `first` on that have its role and arrangement, when their target stands as
+// `standing` says; nothing when it cannot be seen as planned from there.
+std::optional<std::vector<double>> angles_for(const RigFile& rig, const std::vector<CalibrationStep>& plan,
+                                              std::size_t first, const Eigen::Isometry3d& standing);
+
+// What a person shall put right, in whole sentences: where it stands (nothing: it was not seen) against where it
+// should.
+std::string how_to_stand(const rig::Arrangement& wanted, const std::optional<Eigen::Isometry3d>& standing);
+
+}  // namespace station
