@@ -50,17 +50,7 @@ TEST_F(DimLight, IsCalibratedByTwelveActionsInAQuarterOfAnHour) {
   EXPECT_EQ(station::failed_gates(station::all_gates(station::read_calibration(folder))), "");
 }
 
-// A rig whose platform a person turns, while the simulated hand does all else.
-class TurnedByHandJob : public TechnicianPage {
- protected:
-  TurnedByHandJob()
-      : TechnicianPage(
-            {{"turntable", "manual"}, {"simulation", {{"samples_per_pixel", 2}, {"target_samples_per_pixel", 6}}}}) {
-    post("/api/control", {{"client", "me"}});
-  }
-};
-
-TEST_F(TurnedByHandJob, IsCalibratedAndASpoolCapturedFromThePage) {
+TEST_F(TurnedByHand, IsCalibratedAndASpoolCapturedFromThePage) {
   EXPECT_GT(attend({{"client", "me"}, {"kind", "calibrate"}, {"name", "monday"}}).size(), 5U);
   ASSERT_EQ(post("/api/spool", {{"client", "me"},
                                 {"name", "silk"},

@@ -96,4 +96,14 @@ class TechnicianPage : public testing::Test {
   std::unique_ptr<station::TechnicianPage> page_;
 };
 
+// A rig whose platform a person turns, while the simulated hand does all else.
+class TurnedByHand : public TechnicianPage {
+ protected:
+  TurnedByHand()
+      : TechnicianPage(
+            {{"turntable", "manual"}, {"simulation", {{"samples_per_pixel", 2}, {"target_samples_per_pixel", 6}}}}) {
+    post("/api/control", {{"client", "me"}});
+  }
+};
+
 }  // namespace station_test

@@ -70,16 +70,6 @@ TEST_F(TechnicianPage, ASecondClickDoesNotAnswerTheNextQuestion) {
   EXPECT_EQ(job().at("question"), second);
 }
 
-// A rig whose platform a person turns, while the simulated hand does all else.
-class TurnedByHand : public TechnicianPage {
- protected:
-  TurnedByHand()
-      : TechnicianPage(
-            {{"turntable", "manual"}, {"simulation", {{"samples_per_pixel", 2}, {"target_samples_per_pixel", 6}}}}) {
-    post("/api/control", {{"client", "me"}});
-  }
-};
-
 TEST_F(TurnedByHand, IsCheckedFromThePage) {
   const std::vector<std::string> asked = attend({{"client", "me"}, {"kind", "check"}});
   ASSERT_GE(asked.size(), 10U);
