@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "calibration/geometry/projection.h"
+#include "calibration/geometry/target_stand.h"
 #include "calibration/sensor/degree.h"
 
 namespace calibration {
@@ -49,7 +50,7 @@ std::vector<double> plan_board_angles(const RoughCamera& camera, const TagLayout
   const int steps = static_cast<int>(limit_rad / kTurnStep + 1e-9);
   for (int step = -steps; step <= steps; ++step) {
     const double angle = step * kTurnStep;
-    if (shows(camera, board, Eigen::AngleAxisd(angle, Vector3d::UnitZ()) * platform_from_board)) shown.push_back(angle);
+    if (shows(camera, board, turned(angle, platform_from_board))) shown.push_back(angle);
   }
   if (static_cast<int>(shown.size()) <= count) return shown;
   std::vector<double> angles;

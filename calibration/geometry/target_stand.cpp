@@ -17,4 +17,8 @@ Eigen::Isometry3d on_stand(double lean_rad, double plate_mm, double panel_mm, do
   return pose;
 }
 
+Eigen::Isometry3d turned(double angle_rad, const Eigen::Isometry3d& platform_from_object) {
+  return Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()) * platform_from_object;
+}
+
 }  // namespace calibration

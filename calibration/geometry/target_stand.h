@@ -27,4 +27,7 @@ double ledge_mm(double lean_rad, double panel_mm);
 // origin in its middle, +x right, +y up, +z out of its face.
 Eigen::Isometry3d on_stand(double lean_rad, double plate_mm, double panel_mm, double platform_mm);
 
+// What stands on the platform, in the world, when the platform is turned by `angle_rad`.
+Eigen::Isometry3d turned(double angle_rad, const Eigen::Isometry3d& platform_from_object);
+
 }  // namespace calibration

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "calibration/geometry/projection.h"
+#include "calibration/geometry/target_stand.h"
 #include "calibration/light/light_model.h"
 #include "calibration/sensor/degree.h"
 
@@ -107,10 +108,6 @@ Candidate candidate(const PanelBench& bench, const std::vector<LightGuess>& ligh
 [[noreturn]] void refuse(const LightGuess& light) {
   throw std::runtime_error("no pose of the panel shows its white face to the " + light.name +
                            " and to the camera at once: measure both positions again, or move the lamp");
-}
-
-Isometry3d turned(double angle_rad, const Isometry3d& platform_from_object) {
-  return Eigen::AngleAxisd(angle_rad, Vector3d::UnitZ()) * platform_from_object;
 }
 
 Eigen::MatrixXd prior_information(const std::vector<LightGuess>& lights) {

@@ -112,8 +112,7 @@ std::vector<double> angles_of(const RigFile& rig, const std::vector<CalibrationS
   const CalibrationStep& step = plan[first];
   std::vector<double> planned;
   for (const CalibrationStep& other : plan)
-    if (other.role == step.role && rig::same_arrangement(other.arrangement, step.arrangement))
-      planned.push_back(other.platform_angle_rad);
+    if (share_a_mounting(step, other)) planned.push_back(other.platform_angle_rad);
   const std::size_t n = planned.size();
   for (int asked = 0;; ++asked) {
     for (const std::size_t look : {n / 2, n / 4, n * 3 / 4}) {
@@ -158,9 +157,8 @@ std::vector<CalibrationPicture> record_calibration(const RigFile& rig, const std
   std::size_t begin = 0;                      // the first of them
   for (std::size_t i = 0; i < plan.size(); ++i) {
     const CalibrationStep& step = plan[i];
-    const bool same_place = rig::same_arrangement(step.arrangement, plan[begin].arrangement);
-    if (!same_place) standing.reset();
-    if (!same_place || step.role != plan[begin].role) {
+    if (!rig::same_arrangement(step.arrangement, plan[begin].arrangement)) standing.reset();
+    if (!share_a_mounting(step, plan[begin])) {
       begin = i;
       angles.clear();
     }

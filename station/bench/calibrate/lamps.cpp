@@ -24,11 +24,13 @@ calibration::LightOptions light_options(const RigFile& rig, cv::Size picture) {
   return {.albedo = rig.spectralon.albedo, .image_size = picture};
 }
 
-calibration::PanelBench panel_bench(const RigFile& rig) {
-  const cv::Size size = picture_size(rig);
+calibration::Lens engraved_lens(const RigFile& rig, cv::Size picture) {
   const double f = rig.focal_length_guess_px;
-  return {.camera = {.lens = {size.width, size.height, f, f, 0.5 * (size.width - 1), 0.5 * (size.height - 1), {}},
-                     .world_from_camera = rig.world_from_camera_by_tape},
+  return {picture.width, picture.height, f, f, 0.5 * (picture.width - 1), 0.5 * (picture.height - 1), {}};
+}
+
+calibration::PanelBench panel_bench(const RigFile& rig) {
+  return {.camera = {.lens = engraved_lens(rig, picture_size(rig)), .world_from_camera = rig.world_from_camera_by_tape},
           .white_mm = rig.spectralon.white_mm,
           .plate_mm = rig.spectralon.plate_mm,
           .tags = rig.spectralon.tags,

@@ -8,6 +8,9 @@
 
 namespace station {
 
+// The lens by its engraving alone, for pictures of this size.
+calibration::Lens engraved_lens(const RigFile& rig, cv::Size picture);
+
 std::vector<calibration::LightGuess> lamp_guesses(const RigFile& rig);  // front, back
 calibration::LightOptions light_options(const RigFile& rig, cv::Size picture);
 // The bench as it is known by tape, before anything is calibrated.

@@ -11,6 +11,7 @@
 namespace station {
 namespace {
 
+using calibration::turned;
 using Eigen::Isometry3d, Eigen::Vector2d, Eigen::Vector3d;
 
 const calibration::TagLayout& tags_of(const RigFile& rig, rig::BenchObject object) {
@@ -30,18 +31,10 @@ Vector2d plate_mm(const RigFile& rig, rig::BenchObject object) {
   return 2 * half;
 }
 
-Isometry3d turned(double angle_rad, const Isometry3d& platform_from_object) {
-  return Eigen::AngleAxisd(angle_rad, Vector3d::UnitZ()) * platform_from_object;
-}
-
 // The turn about the vertical that brings `b` nearest to `a`.
 double turn_between(const Isometry3d& a, const Isometry3d& b) {
   const Eigen::Matrix3d between = a.linear() * b.linear().transpose();
   return std::atan2(between(1, 0) - between(0, 1), between(0, 0) + between(1, 1));
-}
-
-bool same_group(const CalibrationStep& a, const CalibrationStep& b) {
-  return a.role == b.role && rig::same_arrangement(a.arrangement, b.arrangement);
 }
 
 int light_of(CalibrationRole role) {
@@ -49,6 +42,10 @@ int light_of(CalibrationRole role) {
 }
 
 }  // namespace
+
+bool share_a_mounting(const CalibrationStep& a, const CalibrationStep& b) {
+  return a.role == b.role && rig::same_arrangement(a.arrangement, b.arrangement);
+}
 
 Isometry3d standing_pose(const RigFile& rig, rig::BenchObject object, int stand, bool on_its_side) {
   const Vector2d plate = plate_mm(rig, object);
@@ -65,9 +62,7 @@ double platform_limit_rad(const RigFile& rig) {
 
 std::optional<Isometry3d> find_target(const RigFile& rig, const rig::Arrangement& wanted,
                                       const calibration::TagObservation& seen, cv::Size size, double reading_rad) {
-  const double f = rig.focal_length_guess_px;
-  const calibration::Lens lens{size.width, size.height, f, f, 0.5 * (size.width - 1), 0.5 * (size.height - 1), {}};
-  const auto found = calibration::fit_pose(lens, tags_of(rig, wanted.object), seen);
+  const auto found = calibration::fit_pose(engraved_lens(rig, size), tags_of(rig, wanted.object), seen);
   if (!found) return std::nullopt;
   const Isometry3d world_from_object = rig.world_from_camera_by_tape * found->camera_from_object;
   // The distance is as good as the guessed focal length; that the target stands on its stand is known better.
@@ -81,8 +76,8 @@ std::optional<Isometry3d> find_target(const RigFile& rig, const rig::Arrangement
 std::optional<std::vector<double>> angles_for(const RigFile& rig, const std::vector<CalibrationStep>& plan,
                                               std::size_t first, const Isometry3d& standing) {
   const CalibrationStep& step = plan.at(first);
-  const auto count = static_cast<int>(
-      std::count_if(plan.begin(), plan.end(), [&](const CalibrationStep& other) { return same_group(step, other); }));
+  const auto count = static_cast<int>(std::count_if(
+      plan.begin(), plan.end(), [&](const CalibrationStep& other) { return share_a_mounting(step, other); }));
   const calibration::PanelBench bench = panel_bench(rig);
   const double limit = platform_limit_rad(rig);
   std::vector<double> angles;
@@ -91,7 +86,7 @@ std::optional<std::vector<double>> angles_for(const RigFile& rig, const std::vec
   } else if (const int light = light_of(step.role); light >= 0) {
     std::vector<calibration::PanelPose> earlier;
     for (const CalibrationStep& other : plan) {
-      if (same_group(step, other)) break;
+      if (share_a_mounting(step, other)) break;
       if (light_of(other.role) >= 0)
         earlier.push_back({light_of(other.role), turned(other.platform_angle_rad, other.arrangement.pose)});
     }

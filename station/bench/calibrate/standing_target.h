@@ -16,6 +16,9 @@
 
 namespace station {
 
+// True for steps of one role that are taken with the target put down once.
+bool share_a_mounting(const CalibrationStep& a, const CalibrationStep& b);
+
 // platform_from_object (mm; platform frame at angle 0 = world) of the board, the panel or the chart on a stand (from 1)
 // that stands as asked.
 Eigen::Isometry3d standing_pose(const RigFile& rig, rig::BenchObject object, int stand, bool on_its_side);

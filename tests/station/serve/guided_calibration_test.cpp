@@ -1,8 +1,5 @@
 // Whole calibrations guided by the page: how much a person has to do, and how long it takes.
-#include <array>
-#include <chrono>
 #include <ctime>
-#include <set>
 
 #include "station/documents/calibration_file.h"
 #include "station/documents/gate_list.h"
