@@ -7,34 +7,72 @@
 #include <numbers>
 
 namespace calibration {
-namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
-struct SpotResidual {
+// What a spot's radiance is predicted with, beside the unknowns.
+struct SpotModel {
   PanelSpot spot;
   BeamFrame frame;
   Vector3d seed_intensity;
   double albedo, r2;
   double bounce;  // by table_bounce
 
+  // The panel's radiance under the lamp alone, for unit intensity and without vignetting.
   template <typename T>
-  void predict(const T* position, const T* beam, const T* lamp, const T* droop, const T* table, const T* vignetting,
-               const T* log_output, T* radiance) const {
-    using std::exp;
-    const T unit = unit_radiance<T>(spot, position, frame.direction(beam), lamp[3], droop, albedo);
-    const T scale =
-        exp(*log_output) * vignetting_gain(r2, vignetting) * (unit + *table * (albedo / std::numbers::pi * bounce));
-    for (int c = 0; c < 3; ++c) radiance[c] = scale * exp(lamp[c]) * seed_intensity[c];
+  T unit(const T* position, const T* beam, const T& mu, const T* droop) const {
+    return unit_radiance<T>(spot, position, frame.direction(beam), mu, droop, albedo);
   }
+  double table_unit() const { return albedo / std::numbers::pi * bounce; }
+};
 
-  template <typename T>
-  bool operator()(const T* position, const T* beam, const T* lamp, const T* droop, const T* table, const T* vignetting,
-                  const T* log_output, T* residual) const {
-    predict(position, beam, lamp, droop, table, vignetting, log_output, residual);
-    for (int c = 0; c < 3; ++c) residual[c] = (residual[c] - spot.radiance[c]) / spot.sigma[c];
+namespace {
+
+// (predicted - measured) / sigma of a spot, RGB. Parameters: position, beam, lamp, droop, table, vignetting, log output.
+// Automatic derivatives are taken of the panel's factor only; the others multiply it.
+class SpotCost final : public ceres::SizedCostFunction<3, 3, 2, 4, 2, 1, 2, 1> {
+ public:
+  explicit SpotCost(SpotModel model) : model_(std::move(model)) {}
+
+  bool Evaluate(const double* const* x, double* residuals, double** jacobians) const override {
+    using UnitJet = ceres::Jet<double, 8>;  // position 0-2, beam 3-4, mu 5, droop 6-7
+    const double *lamp = x[2], table = x[4][0];
+    UnitJet unit;
+    if (jacobians == nullptr) {
+      unit = UnitJet(model_.unit(x[0], x[1], lamp[3], x[3]));
+    } else {
+      const UnitJet position[]{{x[0][0], 0}, {x[0][1], 1}, {x[0][2], 2}}, beam[]{{x[1][0], 3}, {x[1][1], 4}};
+      const UnitJet mu(lamp[3], 5), droop[]{{x[3][0], 6}, {x[3][1], 7}};
+      unit = model_.unit(position, beam, mu, droop);
+    }
+    const ceres::Jet<double, 2> v[]{{x[5][0], 0}, {x[5][1], 1}};
+    const ceres::Jet<double, 2> gain = vignetting_gain(model_.r2, v);
+    const double shape = unit.a + table * model_.table_unit(), output = std::exp(x[6][0]);
+    for (int c = 0; c < 3; ++c) {
+      const double over_sigma = output * std::exp(lamp[c]) * model_.seed_intensity[c] / model_.spot.sigma[c];
+      const double predicted = over_sigma * gain.a * shape;
+      residuals[c] = predicted - model_.spot.radiance[c] / model_.spot.sigma[c];
+      if (jacobians == nullptr) continue;
+      const Eigen::Matrix<double, 8, 1> by_unit = over_sigma * gain.a * unit.v;
+      const auto row = [&](int block, int size) {
+        return jacobians[block] == nullptr ? nullptr : jacobians[block] + c * size;
+      };
+      if (double* out = row(0, 3)) Eigen::Map<Vector3d>{out} = by_unit.head<3>();
+      if (double* out = row(1, 2)) Eigen::Map<Vector2d>{out} = by_unit.segment<2>(3);
+      if (double* out = row(2, 4)) {
+        Eigen::Map<Eigen::Vector4d>{out} = Eigen::Vector4d(0, 0, 0, by_unit[5]);
+        out[c] = predicted;
+      }
+      if (double* out = row(3, 2)) Eigen::Map<Vector2d>{out} = by_unit.tail<2>();
+      if (double* out = row(4, 1)) *out = over_sigma * gain.a * model_.table_unit();
+      if (double* out = row(5, 2)) Eigen::Map<Vector2d>{out} = over_sigma * shape * gain.v;
+      if (double* out = row(6, 1)) *out = predicted;
+    }
     return true;
   }
+
+ private:
+  SpotModel model_;
 };
 
 // The residuals of a normal prior on N numbers.
@@ -64,6 +102,16 @@ LightSolver::LightSolver(const std::vector<PanelSpot>& spots, const std::vector<
     bounces_.push_back(table_bounce(spot, guesses_[static_cast<std::size_t>(spot.light)], options_.table_mm));
 }
 
+SpotModel LightSolver::model_of(std::size_t spot) const {
+  const PanelSpot& seen = spots_[spot];
+  return {seen,
+          frame(static_cast<std::size_t>(seen.light)),
+          seed_,
+          options_.albedo,
+          radius_squared(seen.pixel, options_.image_size),
+          bounces_[spot]};
+}
+
 Unknowns LightSolver::first_guess() const {
   Unknowns start;
   for (const LightGuess& guess : guesses_) {
@@ -79,7 +127,16 @@ bool LightSolver::solve(Unknowns& x, int without) const {
   ceres::Problem problem;
   pose_problem(problem, x, without);
   ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  // Outputs are eliminated first: each belongs to the spots of one picture.
+  options.linear_solver_type = ceres::DENSE_SCHUR;
+  options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  std::vector<double*> blocks;
+  problem.GetParameterBlocks(&blocks);
+  for (double* block : blocks) {
+    const bool output = block >= x.log_outputs.data() && block < x.log_outputs.data() + x.log_outputs.size();
+    options.linear_solver_ordering->AddElementToGroup(block, output ? 0 : 1);
+  }
+  if (without >= 0) options.initial_trust_region_radius = 1e12;  // begins next to its end: Gauss-Newton
   options.max_num_iterations = 500;
   options.function_tolerance = 1e-10;
   options.logging_type = ceres::SILENT;
@@ -107,15 +164,11 @@ std::vector<Vector3d> LightSolver::relative_errors(const Unknowns& x, int pictur
     const PanelSpot& spot = spots_[number];
     if (spot.picture != picture) continue;
     const auto light = static_cast<std::size_t>(spot.light);
-    Vector3d radiance;
-    const SpotResidual residual{spot,
-                                frame(static_cast<std::size_t>(spot.light)),
-                                seed_,
-                                options_.albedo,
-                                radius_squared(spot.pixel, options_.image_size),
-                                bounces_[number]};
-    residual.predict(x.positions[light].data(), x.beams[light].data(), x.lamp.data(), x.droop.data(), &x.table,
-                     x.vignetting.data(), &x.log_outputs[static_cast<std::size_t>(picture)], radiance.data());
+    const SpotModel model = model_of(number);
+    const double unit = model.unit(x.positions[light].data(), x.beams[light].data(), x.lamp[3], x.droop.data());
+    const double scale = std::exp(x.log_outputs[static_cast<std::size_t>(picture)]) *
+                         vignetting_gain(model.r2, x.vignetting.data()) * (unit + x.table * model.table_unit());
+    const Vector3d radiance = scale * x.lamp.head<3>().array().exp() * seed_.array();
     errors.push_back((radiance.array() / spot.radiance.array() - 1.0).matrix());
   }
   return errors;
@@ -129,11 +182,9 @@ void LightSolver::pose_problem(ceres::Problem& problem, Unknowns& x, int without
     const auto light = static_cast<std::size_t>(spot.light), picture = static_cast<std::size_t>(spot.picture);
     const double cosine = (guesses_[light].position - spot.point).normalized().dot(spot.normal);
     steepness[picture] = std::max(steepness[picture], std::sqrt(1.0 - cosine * cosine) / std::max(cosine, 0.05));
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<SpotResidual, 3, 3, 2, 4, 2, 1, 2, 1>(new SpotResidual{
-                                 spot, frame(static_cast<std::size_t>(spot.light)), seed_, options_.albedo,
-                                 radius_squared(spot.pixel, options_.image_size), bounces_[number]}),
-                             new ceres::HuberLoss(4.0), x.positions[light].data(), x.beams[light].data(), x.lamp.data(),
-                             x.droop.data(), &x.table, x.vignetting.data(), &x.log_outputs[picture]);
+    problem.AddResidualBlock(new SpotCost(model_of(number)), new ceres::HuberLoss(4.0), x.positions[light].data(),
+                             x.beams[light].data(), x.lamp.data(), x.droop.data(), &x.table, x.vignetting.data(),
+                             &x.log_outputs[picture]);
   }
   add_priors(problem, x, steepness);
 }

@@ -24,6 +24,8 @@ struct Unknowns {
   std::vector<double> log_outputs;  // one per picture
 };
 
+struct SpotModel;
+
 // The arguments of the constructor must outlive the solver.
 class LightSolver {
  public:
@@ -44,6 +46,7 @@ class LightSolver {
   BeamFrame frame(std::size_t light) const { return BeamFrame(guesses_[light]); }
 
  private:
+  SpotModel model_of(std::size_t spot) const;
   void pose_problem(ceres::Problem& problem, Unknowns& x, int without) const;
   void add_priors(ceres::Problem& problem, Unknowns& x, const std::vector<double>& steepness) const;
   Eigen::Vector3d seed_intensity() const;

@@ -101,7 +101,7 @@ class TurnedByHand : public TechnicianPage {
  protected:
   TurnedByHand()
       : TechnicianPage(
-            {{"turntable", "manual"}, {"simulation", {{"samples_per_pixel", 2}, {"target_samples_per_pixel", 6}}}}) {
+            {{"turntable", "manual"}, {"simulation", {{"samples_per_pixel", 2}, {"target_samples_per_pixel", 4}}}}) {
     post("/api/control", {{"client", "me"}});
   }
 };

@@ -23,7 +23,7 @@ function writeRig() {
   const rig = JSON.parse(readFileSync(path.join(data, "rigs/simulated_wire_grbl.json"), "utf8"));
   rig.operator = "console";
   rig.simulation.samples_per_pixel = 2;
-  rig.simulation.target_samples_per_pixel = 6;
+  rig.simulation.target_samples_per_pixel = 4;
   const file = path.join(folder, "rig.json");
   writeFileSync(file, JSON.stringify(rig));
   return file;
