@@ -16,7 +16,7 @@ inline constexpr double kPollS = 0.05;      // between questions whether the pla
 inline constexpr double kSameRatio = 1e-4;  // rounding when steps per degree are written down in two places
 
 struct ControllerSetup {
-  double steps_per_deg = 0;  // from the rig file; the controller's own value must agree
+  double steps_per_deg = 0;  // from the rig file; the controller's own value must agree; 0: it is not known yet
   HomeBy home_by = HomeBy::here;
   bool homes_x_alone = false;            // GRBL's $H was built to home no other axis than X
   double reply_timeout_s = 2;            // a silence of this length is an error

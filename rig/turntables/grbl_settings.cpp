@@ -83,8 +83,9 @@ std::vector<GrblSettingRow> grbl_setting_rows(const GrblSettings& found, const C
     add_homing(rows, firmware);
   }
   rows.add(32, "laser mode", 0);
-  rows.add(100, "steps per degree", std::abs(rows.at(100) / setup.steps_per_deg - 1) <= kSameRatio, setup.steps_per_deg,
-           grbl_number(setup.steps_per_deg));
+  if (setup.steps_per_deg > 0)
+    rows.add(100, "steps per degree", std::abs(rows.at(100) / setup.steps_per_deg - 1) <= kSameRatio,
+             setup.steps_per_deg, grbl_number(setup.steps_per_deg));
   if (by_switch) {
     rows.add(130, "travel in degrees, over which the switch is looked for", rows.at(130) >= kTravelDeg, kTravelDeg,
              "at least " + grbl_number(kTravelDeg));

@@ -160,7 +160,8 @@ class ZaberController final : public MotionController {
                                "\", or change the rig file");
     }
     identity_.steps_per_deg = ask_number("limit.cycle.dist") / kDegreesPerTurn;
-    if (!(std::abs(identity_.steps_per_deg / setup_.steps_per_deg - 1) <= kSameRatio)) {
+    const bool known = setup_.steps_per_deg > 0;
+    if (known && !(std::abs(identity_.steps_per_deg / setup_.steps_per_deg - 1) <= kSameRatio)) {
       throw std::runtime_error("the turntable has " + std::to_string(identity_.steps_per_deg) +
                                " microsteps per degree (limit.cycle.dist / 360) and the rig file says " +
                                std::to_string(setup_.steps_per_deg) + "; correct \"steps_per_deg\" in the rig file");

@@ -9,14 +9,13 @@
 #include "station/bench/calibration_validity.h"
 #include "station/bench/camera_adapter.h"
 #include "station/bench/exposure.h"
-#include "station/bench/metering.h"
 #include "station/bench/picture_measures.h"
+#include "station/bench/room_picture.h"
 #include "station/documents/degree.h"
 
 namespace station {
 namespace {
 
-constexpr int kMostTestPictures = 8;
 constexpr double kMostBlur_px = 1.2;  // of edges in focus: they then turn from dark to light within three pixels
 constexpr int kFewestTableTags = 1;
 
@@ -63,26 +62,18 @@ std::vector<rig::ContractRow> check_picture(const RigDevices& devices, const Rig
                                             const RigCalibration& calibration) {
   if (devices.bench) rig::make_simulated_operator(*devices.bench)->arrange({.room_light = true});
   devices.turntable->home();
-  std::optional<calibration::SensorPicture> picture;
-  const ExposureAim aim{.level = rig.target_level};
-  const Metering metering = meter_exposure(
-      *devices.camera, {}, {.exposure_s = 0.5, .f_number = calibration.camera.f_number},
-      [&](const PlanStep&, const rig::Picture& test) -> ExposureChoice {
-        picture = calibration::read_sensor_bytes(test.bytes, "the test picture");
-        const auto next = next_exposure_s(*picture, {}, aim);
-        return {.exposure_s = next.value_or(picture->exposure_s), .done = !next};
-      },
-      kMostTestPictures, [] {});
-  require_same_camera(calibration, *picture, "the test picture");
-  const cv::Mat1f grey = calibration::linear_grey(*picture);
+  const RoomPicture room = take_room_picture(*devices.camera, rig.target_level, calibration.camera.f_number);
+  const calibration::SensorPicture& picture = room.picture;
+  require_same_camera(calibration, picture, "the test picture");
+  const cv::Mat1f grey = calibration::linear_grey(picture);
   const calibration::TagObservation seen = calibration::detect_tags(grey);
-  const double level = bright_level(*picture, {}, aim.percentile);
+  const double level = bright_level(picture, {}, ExposureAim{}.percentile);
   const std::optional<double> blur_px = edge_blur_px(grey, seen);
   const bool sharp = blur_px && *blur_px <= kMostBlur_px;
   return {
-      {"an exposure is found", metering.converged,
-       words(picture->exposure_s, " s, brightest at ", 100 * level, " % of the range",
-             metering.converged ? "" : "; see that the room light is on and does not flicker")},
+      {"an exposure is found", room.exposed,
+       words(picture.exposure_s, " s, brightest at ", 100 * level, " % of the range",
+             room.exposed ? "" : "; see that the room light is on and does not flicker")},
       {"the picture is in focus", sharp,
        (blur_px ? words("edges of tags are blurred by ", *blur_px, " px")
                 : "no tag is seen that is large enough to tell") +

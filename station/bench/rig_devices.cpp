@@ -192,6 +192,14 @@ TurntableLine open_turntable_line(const RigFile& rig) {
   return connected;
 }
 
+double controller_steps_per_deg(const RigFile& rig) {
+  const TurntableLine opened = open_turntable_line(rig);
+  rig::ControllerSetup setup = rig.turntable_wire->controller;
+  setup.steps_per_deg = 0;
+  const auto connect = rig.turntable_driver == "grbl" ? rig::connect_grbl : rig::connect_zaber;
+  return connect(opened.line, *opened.devices.clock, setup)->identity().steps_per_deg;
+}
+
 RigDevices open_camera(const RigFile& rig) {
   RigDevices devices = undrawn_bench(rig, photographs_the_bench(rig));
   connect_camera(rig, devices);

@@ -57,6 +57,9 @@ struct TurntableLine {
 };
 TurntableLine open_turntable_line(const RigFile& rig);
 
+// How many steps the motor controller of a rig takes for a degree, as it says itself. Throws when it has none.
+double controller_steps_per_deg(const RigFile& rig);
+
 // Puts the simulated camera that a rig file names on this computer's network, photographing `devices.bench`.
 void start_simulated_camera(const RigFile& rig, RigDevices& devices, const rig::CameraFaultPlan& faults = {});
 

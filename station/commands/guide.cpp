@@ -20,6 +20,9 @@ constexpr Guide kGuides[] = {
     {"demo", "See what it does", "demo --quick --out demo"},
 
     {"devices", "Set up a bench", "devices"},
+    {"rig", "Set up a bench", ""},
+    {"rig new", kParts, "rig new --like DATA/rigs/simulated.json --out new_rig.json"},
+    {"rig check", kParts, "rig check DATA/rigs/simulated.json"},
     {"target", "Set up a bench", "target --rig DATA/rigs/simulated.json --out targets"},
     {"check", "Set up a bench", "check --rig DATA/rigs/simulated.json"},
     {"home", "Set up a bench", "home --rig DATA/rigs/simulated.json"},

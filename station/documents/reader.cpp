@@ -34,7 +34,7 @@ std::string text_of(Range range) {
 json read_json_file(const std::filesystem::path& file) {
   const std::string text = text_of_file(file);
   try {
-    return json::parse(text);
+    return json::parse(text, nullptr, true, true);
   } catch (const json::parse_error& error) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
     const auto line = 1 + std::count(text.begin(), end, '\n');
@@ -79,7 +79,7 @@ std::string ObjectReader::full_name(const std::string& key) const {
 }
 
 void ObjectReader::refuse(const std::string& key, const std::string& found_and_expected) const {
-  throw std::runtime_error(source_ + ": key \"" + full_name(key) + "\": " + found_and_expected);
+  throw DocumentError(source_ + ": key \"" + full_name(key) + "\": " + found_and_expected, full_name(key));
 }
 
 bool ObjectReader::has(const std::string& key) const {
@@ -210,7 +210,8 @@ const json& ObjectReader::raw(const std::string& key) {
 void ObjectReader::finish() const {
   for (const auto& [key, unused] : object_->items())
     if (std::find(asked_.begin(), asked_.end(), key) == asked_.end())
-      throw std::runtime_error(source_ + ": unknown key \"" + full_name(key) + "\"; remove it or check its spelling");
+      throw DocumentError(source_ + ": unknown key \"" + full_name(key) + "\"; remove it or check its spelling",
+                          full_name(key), true);
 }
 
 json to_json(const Eigen::Vector3d& v) {

@@ -2,8 +2,8 @@
 // it. Each kind of document has functions of the same names: parse_<kind> reads a document (`source` is the name that
 // error messages give it), read_<kind> a file, and to_json makes the document.
 //
-// Errors: std::runtime_error, one line: the file, the key (as a path such as "camera.width_px"), what was found and
-// what is expected.
+// Errors: DocumentError for what a key says, std::runtime_error for the rest; one line: the file, the key (as a path
+// such as "camera.width_px"), what was found and what is expected.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,14 +12,24 @@
 #include <initializer_list>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "station/documents/range.h"
 
 namespace station {
 
-// Reads and parses a file; the error for text that is not JSON tells line and column.
+// A key that is missing, unknown, or has no value that can be taken.
+struct DocumentError : std::runtime_error {
+  DocumentError(const std::string& what, std::string its_key, bool its_key_is_unknown = false)
+      : std::runtime_error(what), key(std::move(its_key)), unknown(its_key_is_unknown) {}
+  std::string key;  // its path: "camera_by_tape.aim_mm"
+  bool unknown;
+};
+
+// Reads and parses a file, in which `//` begins a comment; the error for text that is not JSON tells line and column.
 nlohmann::json read_json_file(const std::filesystem::path& file);
 
 // Write a file whole or not at all, by store_file (disk/stored_file.h).

@@ -151,6 +151,10 @@ const Commands kKinds{
        if (asked.flag("mark")) words.emplace_back("--mark");
        return words;
      }},
+    {"rig",
+     [](const Asked& asked) {
+       return Words{"rig", "new", "--like", asked.rig, "--out", asked.workspace.rig(asked.name())};
+     }},
     {"capture", capture},
     {"queue", queue},
     {"resume",

@@ -6,6 +6,7 @@
 
 #include "station/documents/disk/whole_file.h"
 #include "station/serve/checked_devices.h"
+#include "station/serve/handbook_page.h"
 #include "station/serve/job_command.h"
 #include "station/serve/left_jobs.h"
 #include "station/serve/page_answers.h"
@@ -110,6 +111,7 @@ HttpResponse TechnicianPage::get(const HttpRequest& request) {
             .body = std::string(file->content),
             .headers = {{"Content-Security-Policy",
                          "default-src 'self'; img-src 'self' data:; frame-ancestors 'none'; form-action 'none'"}}};
+  if (request.path.starts_with(kHandbook)) return handbook_page(request.path.substr(std::string(kHandbook).size()));
   if (request.path == "/api/state") return answered(state());
   if (request.path == "/api/events") return {.stream = true};
   if (request.path == "/api/bench") return answered(bench());

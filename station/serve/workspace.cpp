@@ -80,7 +80,7 @@ std::vector<std::string> files_in(const fs::path& folder, const std::string& end
 }
 
 Workspace::Workspace(const fs::path& folder) : folder_(fs::absolute(folder)) {
-  for (const char* part : {"calibrations", "spools", "samples", "sessions", "queues", "exports", "jobs"}) {
+  for (const char* part : {"calibrations", "spools", "samples", "sessions", "queues", "exports", "jobs", "rigs"}) {
     std::error_code error;
     fs::create_directories(folder_ / part, error);
     if (error)

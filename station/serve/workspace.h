@@ -4,7 +4,7 @@
 //   spools/<name>.json     spool files                  samples/<name>.json  what the lab knows of that spool
 //   queues/<name>.csv      tables of spools             library/           digitized threads
 //   exports/<name>/        made by export               jobs/              what each job said
-//   preview.jpg            the camera's live view
+//   rigs/<name>.json       made by rig new              preview.jpg          the camera's live view
 #pragma once
 
 #include <cstdint>
@@ -33,6 +33,7 @@ class Workspace {
   // The file of a thread in the library; refuses numbers that it does not have.
   std::filesystem::path thread_in_library(int number) const;
   std::filesystem::path exported(const std::string& name) const { return folder_ / "exports" / name; }
+  std::filesystem::path rig(const std::string& name) const { return folder_ / "rigs" / (name + ".json"); }
   std::filesystem::path preview() const { return folder_ / "preview.jpg"; }
 
   // {"calibrations", "spools", "sessions", "threads", "queues", "exports"}

@@ -7,9 +7,9 @@ namespace {
 
 constexpr double kClear_mm = 2.0;  // above the platform, so that no plate touches it
 
-// The size of the camera's pictures; a real one's are not known before the first.
+// The size of the camera's pictures, a real one's as the rig file says.
 cv::Size picture_size(const RigFile& rig) {
-  if (!rig.simulation) return {6000, 4000};
+  if (!rig.simulation) return {rig.camera_wire->setup.width_px, rig.camera_wire->setup.height_px};
   return {rig.simulation->truth.lens.width_px, rig.simulation->truth.lens.height_px};
 }
 

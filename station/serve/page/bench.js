@@ -45,15 +45,25 @@ function showQuestion(job) {
     event.preventDefault();
     answer(question, typed.typed.value);
   };
-  showStep(question.arrangement);
+  showStep(question);
   if (!byId("bench").hidden) scrollTo(0, 0);  // to the buttons
 }
 
-function showStep(arrangement) {
-  const wanted = JSON.stringify(arrangement);
+// Where the handbook says more about what is asked.
+function helpOn(question) {
+  if (question.drawing !== undefined) return "rig.html";
+  const wanted = question.arrangement;
+  if (!wanted) return "troubleshooting.html";
+  return wanted.object === "holder" || wanted.object === "cylinder" ? "first_spool.html" : `calibrate.html#${wanted.object}`;
+}
+
+function showStep(question) {
+  byId("step-help").href = `/handbook/${helpOn(question)}`;
+  const wanted = JSON.stringify([question.arrangement, question.drawing]);
   if (wanted === shownArrangement) return;
   shownArrangement = wanted;
-  byId("step").replaceChildren(...(arrangement ? [stepPicture(arrangement)] : []));
+  const drawing = question.drawing ? [make("img", {src: `/handbook/drawings/${question.drawing}.svg`, alt: text("measure_drawing")})] : [];
+  byId("step").replaceChildren(...(question.arrangement ? [stepPicture(question.arrangement)] : drawing));
 }
 
 function histogram(bins) {
@@ -125,6 +135,10 @@ export function beginBench() {
   byId("pause").onclick = () => post("/api/pause");
   byId("preview").onclick = () => startJob({kind: "preview"});
   byId("home").onclick = () => startJob({kind: "home"});
+  byId("rig-form").onsubmit = event => {
+    event.preventDefault();
+    startJob({kind: "rig", name: event.target.name.value});
+  };
   byId("check-form").onsubmit = event => {
     event.preventDefault();
     startJob({kind: "check", calibration: event.target.calibration.value});
