@@ -1,6 +1,7 @@
 // The person who is asked to do something and answers: at a terminal, or through a program that shows the question.
 #pragma once
 
+#include <functional>
 #include <iosfwd>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -26,6 +27,9 @@ struct Question {
   std::vector<Choice> choices = {{kDone, "", "Done"}, {kDecline, "q", "Cannot be done now"}};
   std::string typed{};   // what may be typed instead of a choice ("the angle in degrees"); empty: nothing
   std::string remark{};  // why it is asked again; empty the first time
+  // Done again and again while nobody has answered; what it returns is the answer then. A terminal leaves it out: there
+  // an Enter that comes too late would answer the next question.
+  std::function<std::optional<std::string>()> meanwhile{};
 };
 
 class AskedPerson {
@@ -40,6 +44,9 @@ class AskedPerson {
   // every later question, until another call replaces them or makes them null: "step" and "of" (this is step n of m),
   // "arrangement" (how the bench should stand).
   virtual void prepare(const nlohmann::json& context, const std::string& drawing) = 0;
+
+  // What is seen while a question is open, in a sentence; a terminal shows none.
+  virtual void remark(const std::string& /*seen*/) {}
 };
 
 // A person cannot or does not want to do what is asked now, or there is nobody left to ask.
@@ -60,6 +67,7 @@ std::unique_ptr<AskedPerson> make_person_at_terminal(std::istream& in, std::ostr
 //    "remark": ..., "step": 2, "of": 17, "arrangement": {...}}}
 // with "typed" and "remark" where the question has them, and the context that was prepared. Its answer, on `in`:
 //   {"id": 3, "answer": "done"}
+// Meanwhile, on `out`: {"remark": {"id": 3, "text": ...}}, and {"answered": 3} when it was answered by what is seen.
 // Every question has an id of its own. A line that does not answer the open question is not taken, and `out` says so:
 // {"note": ...}.
 std::unique_ptr<AskedPerson> make_person_behind_program(std::istream& in, std::ostream& out);

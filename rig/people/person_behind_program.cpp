@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <istream>
 #include <ostream>
 
 #include "rig/people/asked_person.h"
+#include "rig/people/patient_lines.h"
 
 namespace rig {
 namespace {
@@ -11,17 +11,24 @@ using nlohmann::json;
 
 class PersonBehindProgram final : public AskedPerson {
  public:
-  PersonBehindProgram(std::istream& in, std::ostream& out) : in_(in), out_(out) {}
+  PersonBehindProgram(std::istream& in, std::ostream& out) : lines_(in), out_(out) {}
 
   std::optional<std::string> ask(const Question& question) override {
     ++id_;
     write({{"question", document(question)}});
-    for (std::string line; std::getline(in_, line);) {
-      if (auto answer = answer_in(line, question)) return answer;
+    for (;;) {
+      const PatientLines::Said said = lines_.next(question.meanwhile);
+      if (said.other) {
+        write({{"answered", id_}});
+        return said.other;
+      }
+      if (!said.line) return std::nullopt;
+      if (auto answer = answer_in(*said.line, question)) return answer;
       write({{"note", "an answer was not taken: question " + std::to_string(id_) + " is open"}});
     }
-    return std::nullopt;
   }
+
+  void remark(const std::string& seen) override { write({{"remark", {{"id", id_}, {"text", seen}}}}); }
 
   void prepare(const json& context, const std::string&) override { context_.merge_patch(context); }
 
@@ -49,7 +56,7 @@ class PersonBehindProgram final : public AskedPerson {
   // Names of spools may hold any bytes.
   void write(const json& line) { out_ << line.dump(-1, ' ', false, json::error_handler_t::replace) << std::endl; }
 
-  std::istream& in_;
+  PatientLines lines_;
   std::ostream& out_;
   int id_ = 0;
   json context_ = json::object();

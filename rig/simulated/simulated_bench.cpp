@@ -59,6 +59,12 @@ BenchState SimulatedBench::state() const {
   return now;
 }
 
+cv::Mat3f SimulatedBench::draw_roughly() const {
+  BenchState now = state();
+  now.roughly = true;
+  return draw_(now);
+}
+
 cv::Mat3f SimulatedBench::draw_lamp() const {
   BenchState now = state();
   now.room_radiance.setZero();

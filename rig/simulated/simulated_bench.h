@@ -87,6 +87,7 @@ struct BenchState {
   double platform_angle_rad = 0.0;                                      // the true angle
   std::optional<TrueLamp> lamp{};
   Eigen::Vector3d room_radiance = Eigen::Vector3d::Zero();
+  bool roughly = false;  // for live view
 };
 
 // True when a drawing of `a` is also one of `b`. The lens is not compared, because a bench has only one.
@@ -105,6 +106,7 @@ class SimulatedBench {
   const BenchTruth& truth() const { return truth_; }
   BenchState state() const;  // the truth at this instant
   cv::Mat3f draw() const { return draw_(state()); }
+  cv::Mat3f draw_roughly() const;  // for live view: changes nothing in the pictures that come after it
   // The two parts of the picture, which add up: by the lamp alone at strength 1 (empty when it is off), and by all
   // other light (empty when there is none).
   cv::Mat3f draw_lamp() const;

@@ -156,7 +156,7 @@ class SimulatedCamera final : public Camera {
 
   std::vector<std::byte> preview() override {
     const BenchState now = bench_.state();
-    const std::string jpeg = live_view_jpeg(focused(bench_.draw(), now.lens));
+    const std::string jpeg = live_view_jpeg(focused(bench_.draw_roughly(), now.lens));
     const auto* bytes = reinterpret_cast<const std::byte*>(jpeg.data());
     return {bytes, bytes + jpeg.size()};
   }

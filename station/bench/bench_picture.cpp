@@ -23,6 +23,7 @@ constexpr double kPieceRadii = 29;
 constexpr int kPackingAttempts = 3000, kPackingTries = 40;
 constexpr std::uint64_t kPictureSeedStep = 7919;  // between the seeds of two pictures
 constexpr double kRoomLampRadius_mm = 250;
+constexpr int kRoughSamples = 2;                          // of live view
 const Eigen::Vector3d kRoomLampPosition(900, 350, 1100);  // above and beside the camera: upright targets are lit too
 
 renderer::SphereLight flashlight(const rig::TrueLamp& lamp, const Eigen::Isometry3d& object_from_world) {
@@ -114,7 +115,8 @@ struct Painter {
         camera_of(lens_of(state.lens), object_from_world * state.lens.world_from_camera, false);
     renderer::RenderOptions options;
     options.samples_per_pixel = rig.simulation->target_samples_per_pixel;
-    options.seed = rig.simulation->truth.seed + kPictureSeedStep * ++pictures;
+    if (state.roughly) options.samples_per_pixel = std::min(kRoughSamples, options.samples_per_pixel);
+    options.seed = rig.simulation->truth.seed + (state.roughly ? 0 : kPictureSeedStep * ++pictures);
     const bool threads =
         state.arrangement.object == rig::BenchObject::holder || state.arrangement.object == rig::BenchObject::cylinder;
     const bool threads_lit = threads && state.lamp;
@@ -124,7 +126,7 @@ struct Painter {
     options.only = ~covered;
     cv::Mat3f picture = tracer.render(camera, options);
     options.only = covered;
-    options.samples_per_pixel = rig.simulation->samples_per_pixel;
+    options.samples_per_pixel = state.roughly ? kRoughSamples : rig.simulation->samples_per_pixel;
     tracer.render(camera, options).copyTo(picture, covered);
     return picture;
   }

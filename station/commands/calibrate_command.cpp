@@ -81,6 +81,8 @@ void add_calibrate_command(CLI::App& app) {
   command->add_option("--rig", arguments->request.rig, "rig file");
   command->add_option("--out", arguments->request.out,
                       "folder for pictures and calibration.json; an interrupted one goes on");
+  command->add_option("--live", arguments->request.live,
+                      "JPEG of what the camera sees while a target is put down, with the outline where it is wanted");
   command->add_option("--only", arguments->request.only, "take the pictures of this part again")
       ->check(CLI::IsMember({"camera", "platform", "light", "response"}));
   command->add_flag("--solve", arguments->request.solve_only, "take no pictures: solve again from those in --out");

@@ -200,6 +200,10 @@ class Job::Process {
       question_ = said["question"];
       add_line(question_.value("text", ""));
     }
+    const int open = question_.is_null() ? -1 : question_.value("id", -1);
+    if (said.contains("answered") && said["answered"] == open) question_ = nullptr;
+    if (said.contains("remark") && said["remark"].is_object() && said["remark"].value("id", -2) == open)
+      question_["remark"] = said["remark"].value("text", "");
     if (said.contains("note") && said["note"].is_string()) add_line(said["note"].get<std::string>());
     if (!said.contains("done") || !said.contains("total")) return;
     done_ = said.value("done", 0), total_ = said.value("total", 0);

@@ -143,7 +143,13 @@ const Commands kKinds{
      }},
     {"calibrate",
      [](const Asked& asked) {
-       return Words{"calibrate", "--rig", asked.rig, "--out", asked.workspace.calibration(asked.name())};
+       return Words{"calibrate",
+                    "--rig",
+                    asked.rig,
+                    "--out",
+                    asked.workspace.calibration(asked.name()),
+                    "--live",
+                    asked.workspace.preview()};
      }},
     {"home",
      [](const Asked& asked) {

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "station/bench/calibrate/calibration_report.h"
+#include "station/bench/calibrate/placing_watch.h"
 #include "station/bench/drawing_operator.h"
 #include "station/bench/platform_memory.h"
 #include "station/bench/rig_devices.h"
@@ -60,12 +61,16 @@ RigCalibration calibrate_rig(const CalibrateRequest& request) {
     watch_interrupts();
     if (!request.only.empty())
       forget_calibration_pictures(request.out, [&](CalibrationRole role) { return belongs_to(role, request.only); });
-    RigDevices devices = open_rig(rig, std::nullopt, request.asked);
+    std::optional<WatchedPerson> watched;
+    if (request.asked) watched.emplace(*request.asked);
+    RigDevices devices = open_rig(rig, std::nullopt, watched ? &*watched : nullptr);
     std::unique_ptr<rig::Operator> person;  // behind its drawing, which a program makes
     if (rig.operator_driver == "console" && request.progress_style == ProgressStyle::json) {
       person = std::move(devices.person);
       devices.person = make_drawing_operator(*person, *request.asked);
     }
+    if (watched && rig.operator_driver == "console" && !request.live.empty())
+      watch_placing(rig, devices, request.live, *watched);
     record_calibration(rig, plan, devices, request.out, show_step, interrupted);
     leave_at_zero(rig, *devices.turntable);
     utc = devices.clock->utc();

@@ -15,6 +15,7 @@ struct CalibrateRequest {
   // "camera", "platform", "light" or "response": these pictures are taken again; empty: what is missing is taken.
   std::string only;
   bool solve_only = false;            // pictures are there already
+  std::filesystem::path live;         // JPEG of what the camera sees while a target is put down; empty: none
   rig::AskedPerson* asked = nullptr;  // none: refused when the rig needs a person
   ProgressStyle progress_style = ProgressStyle::automatic;
 };

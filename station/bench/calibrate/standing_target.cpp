@@ -14,12 +14,6 @@ namespace {
 using calibration::turned;
 using Eigen::Isometry3d, Eigen::Vector2d, Eigen::Vector3d;
 
-const calibration::TagLayout& tags_of(const RigFile& rig, rig::BenchObject object) {
-  if (object == rig::BenchObject::board) return rig.board;
-  if (object == rig::BenchObject::colour_chart) return rig.colour_chart.value().tags;
-  return rig.spectralon.tags;
-}
-
 // Width and height of the plate; the board's goes on beyond its tags by half a gap.
 Vector2d plate_mm(const RigFile& rig, rig::BenchObject object) {
   if (object == rig::BenchObject::colour_chart) return Vector2d::Constant(rig.colour_chart.value().plate_mm);
@@ -31,17 +25,28 @@ Vector2d plate_mm(const RigFile& rig, rig::BenchObject object) {
   return 2 * half;
 }
 
-// The turn about the vertical that brings `b` nearest to `a`.
-double turn_between(const Isometry3d& a, const Isometry3d& b) {
-  const Eigen::Matrix3d between = a.linear() * b.linear().transpose();
-  return std::atan2(between(1, 0) - between(0, 1), between(0, 0) + between(1, 1));
-}
-
 int light_of(CalibrationRole role) {
   return role == CalibrationRole::front_light ? 0 : role == CalibrationRole::back_light ? 1 : -1;
 }
 
 }  // namespace
+
+const calibration::TagLayout& target_tags(const RigFile& rig, rig::BenchObject object) {
+  if (object == rig::BenchObject::board) return rig.board;
+  if (object == rig::BenchObject::colour_chart) return rig.colour_chart.value().tags;
+  return rig.spectralon.tags;
+}
+
+std::array<Vector3d, 4> target_outline(const RigFile& rig, rig::BenchObject object) {
+  const Vector2d half = plate_mm(rig, object) / 2;
+  return {
+      Vector3d(-half.x(), -half.y(), 0), {half.x(), -half.y(), 0}, {half.x(), half.y(), 0}, {-half.x(), half.y(), 0}};
+}
+
+double turn_between(const Isometry3d& a, const Isometry3d& b) {
+  const Eigen::Matrix3d between = a.linear() * b.linear().transpose();
+  return std::atan2(between(1, 0) - between(0, 1), between(0, 0) + between(1, 1));
+}
 
 bool share_a_mounting(const CalibrationStep& a, const CalibrationStep& b) {
   return a.role == b.role && rig::same_arrangement(a.arrangement, b.arrangement);
@@ -62,7 +67,7 @@ double platform_limit_rad(const RigFile& rig) {
 
 std::optional<Isometry3d> find_target(const RigFile& rig, const rig::Arrangement& wanted,
                                       const calibration::TagObservation& seen, cv::Size size, double reading_rad) {
-  const auto found = calibration::fit_pose(engraved_lens(rig, size), tags_of(rig, wanted.object), seen);
+  const auto found = calibration::fit_pose(engraved_lens(rig, size), target_tags(rig, wanted.object), seen);
   if (!found) return std::nullopt;
   const Isometry3d world_from_object = rig.world_from_camera_by_tape * found->camera_from_object;
   // The distance is as good as the guessed focal length; that the target stands on its stand is known better.
@@ -101,15 +106,10 @@ std::optional<std::vector<double>> angles_for(const RigFile& rig, const std::vec
   return angles;
 }
 
-std::string how_to_stand(const rig::Arrangement& wanted, const std::optional<Isometry3d>& standing) {
-  const std::string name = rig::object_name(wanted.object);
-  const std::string put = " Put stand " + std::to_string(wanted.stand) +
-                          " in the middle of the platform, its face towards the camera" +
-                          (wanted.room_light ? "." : ", and see that the flashlight is on.");
-  if (!standing) return "None of the tags on " + name + " is in the picture." + put;
-  const Vector3d off = standing->translation() - wanted.pose.translation();
+std::string how_far_off(const rig::Arrangement& wanted, const Isometry3d& standing) {
+  const Vector3d off = standing.translation() - wanted.pose.translation();
   const long forward = std::lround(off.x() / 10), right = std::lround(off.y() / 10),
-             turn = std::lround(turn_between(*standing, wanted.pose) * 180 / std::numbers::pi);
+             turn = std::lround(turn_between(standing, wanted.pose) * 180 / std::numbers::pi);
   std::vector<std::string> wrong;
   if (forward != 0)
     wrong.push_back(std::to_string(std::abs(forward)) + " cm too " + (forward > 0 ? "near" : "far back"));
@@ -118,8 +118,18 @@ std::string how_to_stand(const rig::Arrangement& wanted, const std::optional<Iso
   if (turn != 0)
     wrong.push_back("turned " + std::to_string(std::abs(turn)) + " degrees to the " + (turn > 0 ? "right" : "left"));
   std::string what;
-  for (const std::string& part : wrong) what += (what.empty() ? ", " : " and ") + part;
-  return "The camera does not see enough of " + name + what + "." + put;
+  for (const std::string& part : wrong) what += (what.empty() ? "" : " and ") + part;
+  return what;
+}
+
+std::string how_to_stand(const rig::Arrangement& wanted, const std::optional<Isometry3d>& standing) {
+  const std::string name = rig::object_name(wanted.object);
+  const std::string put = " Put stand " + std::to_string(wanted.stand) +
+                          " in the middle of the platform, its face towards the camera" +
+                          (wanted.room_light ? "." : ", and see that the flashlight is on.");
+  if (!standing) return "None of the tags on " + name + " is in the picture." + put;
+  const std::string off = how_far_off(wanted, *standing);
+  return "The camera does not see enough of " + name + (off.empty() ? "" : ", " + off) + "." + put;
 }
 
 }  // namespace station

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,16 @@ Eigen::Isometry3d standing_pose(const RigFile& rig, rig::BenchObject object, int
 
 // How far the platform is turned either way while a target stands on it.
 double platform_limit_rad(const RigFile& rig);
+
+const calibration::TagLayout& target_tags(const RigFile& rig, rig::BenchObject object);
+// The corners of its plate, in its frame (mm).
+std::array<Eigen::Vector3d, 4> target_outline(const RigFile& rig, rig::BenchObject object);
+
+// The turn about the vertical that brings `b` nearest to `a`, in radians.
+double turn_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b);
+
+// "3 cm too near and turned 20 degrees to the left": where it stands against where it should; empty: as it should.
+std::string how_far_off(const rig::Arrangement& wanted, const Eigen::Isometry3d& standing);
 
 // Where the target that was wanted stands, from its tags in a picture of `size` with the platform at `reading_rad`.
 // Std::nullopt when none of them is seen.

@@ -29,12 +29,12 @@ export function showJob() {
 function showQuestion(job) {
   const shown = byId("question"), question = job && job.question;
   shown.hidden = !question;
+  if (question) byId("remark").textContent = question.remark || "";  // changes with what the camera sees
   if (!question || shown.dataset.number === `${job.number} ${question.id}`) return;
   shown.dataset.number = `${job.number} ${question.id}`;
   byId("choices").replaceChildren(...question.choices.map((choice, i) => make("button", {
     type: "button", className: i === 0 ? "primary" : "", textContent: i === 0 ? `${choice.label} ${text("by_enter")}` : choice.label,
     onclick: () => answer(question, choice.answer)})));
-  byId("remark").textContent = question.remark || "";
   byId("step-count").textContent = question.step ? `${text("step")} ${question.step} / ${question.of}` : "";
   items(byId("instructions"), question.text.split("\n"));
   const typed = byId("typed-form");

@@ -59,6 +59,7 @@ function front(wanted) {
 }
 
 function howItStands(wanted) {
+  if (wanted.object === "nothing") return "object_nothing";
   if (wanted.object === "holder") return `threads_${wanted.mounting}`;
   if (wanted.kept_moving) return "kept_moving";
   if (wanted.stand) return wanted.on_its_side ? "on_its_side" : "upright_on_stand";

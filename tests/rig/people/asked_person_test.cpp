@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <mutex>
+#include <sstream>
+
 #include "tests/rig/people/terminal.h"
 
 namespace {
@@ -93,4 +96,34 @@ TEST_F(BehindProgram, ADeclinedQuestionEndsTheWork) {
 TEST_F(BehindProgram, ATextWithBytesThatAreNoTextIsAskedAllTheSame) {
   with("{\"id\": 1, \"answer\": \"done\"}\n");
   EXPECT_EQ(person->ask({.text = "Put \xff on the holder."}), rig::kDone);
+}
+
+// The person types nothing until the program has answered by itself; then the line belongs to the next question.
+TEST_F(BehindProgram, WhatIsSeenMayAnswerAndALateLineAnswersNothing) {
+  std::mutex typing;
+  struct HeldLine : std::stringbuf {
+    HeldLine(std::mutex& until, const std::string& text) : std::stringbuf(text), mutex(until) {}
+    int_type underflow() override {
+      const std::scoped_lock wait(mutex);
+      return std::stringbuf::underflow();
+    }
+    std::mutex& mutex;
+  } held(typing, "");
+  std::istream slow(&held);
+  auto person_behind = rig::make_person_behind_program(slow, out);
+  typing.lock();
+  int looks = 0;
+  const rig::Question watched{.text = "Put it down.", .meanwhile = [&]() -> std::optional<std::string> {
+                                person_behind->remark("not yet");
+                                return ++looks == 3 ? std::optional<std::string>(rig::kDone) : std::nullopt;
+                              }};
+  EXPECT_EQ(person_behind->ask(watched), rig::kDone);
+  held.str("{\"id\": 1, \"answer\": \"done\"}\n{\"id\": 2, \"answer\": \"decline\"}\n");
+  typing.unlock();
+  EXPECT_EQ(person_behind->ask({.text = "Do that."}), rig::kDecline);
+  EXPECT_EQ(looks, 3);
+  const std::vector<json> lines = said();
+  EXPECT_EQ(lines.at(1), (json{{"remark", {{"id", 1}, {"text", "not yet"}}}}));
+  EXPECT_EQ(lines.at(4), (json{{"answered", 1}}));
+  EXPECT_THAT(lines.at(6).at("note").get<std::string>(), HasSubstr("was not taken: question 2 is open"));
 }

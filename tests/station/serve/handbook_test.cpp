@@ -1,5 +1,5 @@
-// The handbook: its links lead somewhere, its drawings are those that its script makes, its commands exist, and the page
-// serves it.
+// The handbook: its links lead somewhere, its drawings are those that its script makes, its commands exist, and the
+// page serves it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,0 +1,74 @@
+// What the camera sees while a person puts a target down: the outline where it is wanted, what is not yet right, and
+// that it stands still, sharp and right, so that the run may go on by itself.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "calibration/geometry/tags.h"
+#include "rig/devices/camera.h"
+#include "rig/people/asked_person.h"
+#include "station/bench/rig_devices.h"
+#include "station/documents/rig_file.h"
+
+namespace station {
+
+class PlacingWatch {
+ public:
+  using Clock = std::function<double()>;  // seconds that only grow
+  // Both must outlive it. `live`: the JPEG that is written for each frame.
+  PlacingWatch(const RigFile& rig, rig::Camera& camera, std::filesystem::path live, Clock now);
+
+  // From now on `wanted` is looked for, with the platform at `angle_rad`. `before`: how the bench stood, if that is
+  // known.
+  void begin(const std::optional<rig::Arrangement>& before, const rig::Arrangement& wanted, double angle_rad);
+  void end() { wanted_.reset(); }
+  // Whether there is a target to be seen.
+  bool watches() const { return wanted_.has_value(); }
+
+  struct Look {
+    std::string remark;   // a sentence
+    bool stands = false;  // as wanted, sharp, and still for a second
+  };
+  // Takes one frame. Errors: those of the camera and of the file.
+  Look look();
+  // Whether what was asked is all done when the target stands: the lights were not to be changed as well.
+  bool all_is_seen() const { return only_the_target_; }
+
+ private:
+  std::string fault(const calibration::TagObservation& seen, const cv::Mat1f& grey) const;
+
+  const RigFile& rig_;
+  rig::Camera& camera_;
+  std::filesystem::path live_;
+  Clock now_;
+  std::optional<rig::Arrangement> wanted_;
+  bool only_the_target_ = false;
+  double angle_rad_ = 0;
+  calibration::TagObservation before_;
+  std::optional<double> still_since_s_;
+};
+
+// Passes questions on; while a watch is set and has something to look at, it looks until somebody answers.
+class WatchedPerson final : public rig::AskedPerson {
+ public:
+  explicit WatchedPerson(rig::AskedPerson& person) : person_(person) {}
+  void set_watch(PlacingWatch* watch) { watch_ = watch; }
+
+  std::optional<std::string> ask(const rig::Question& question) override;
+  void prepare(const nlohmann::json& context, const std::string& drawing) override {
+    person_.prepare(context, drawing);
+  }
+  void remark(const std::string& seen) override { person_.remark(seen); }
+
+ private:
+  rig::AskedPerson& person_;
+  PlacingWatch* watch_ = nullptr;
+};
+
+// Has `devices.person`, who asks `asked`, watched while targets are put down.
+void watch_placing(const RigFile& rig, RigDevices& devices, const std::filesystem::path& live, WatchedPerson& asked);
+
+}  // namespace station

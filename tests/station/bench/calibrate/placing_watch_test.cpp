@@ -1,0 +1,150 @@
+// What the live view says while a target is put down on the simulated bench.
+#include "station/bench/calibrate/placing_watch.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "rig/devices/clock.h"
+#include "rig/simulated/simulated_bench.h"
+#include "station/bench/bench_picture.h"
+#include "station/bench/calibrate/calibration_plan.h"
+#include "station/documents/degree.h"
+#include "tests/places.h"
+#include "tests/station/commands/program.h"
+
+namespace station {
+namespace {
+
+using testing::HasSubstr;
+
+struct Placing : testing::Test {
+  RigFile rig = read_rig(std::string(DATA_DIR) + "/rigs/simulated.json");
+  station_test::TemporaryFolder folder;
+  rig::SimulatedClock clock{0, 0};
+  rig::SimulatedBench bench{rig.simulation->truth, make_bench_picture(rig, std::nullopt)};
+  std::unique_ptr<rig::Camera> camera = rig::make_simulated_camera(bench, clock, rig::CameraMake::sony);
+  double now_s = 0;
+  PlacingWatch watch{rig, *camera, folder / "live.jpg", [this] { return now_s; }};
+  // How the board is first wanted: on stand 1, in the room's light.
+  rig::Arrangement wanted = [this] {
+    for (const CalibrationStep& step : make_calibration_plan(rig))
+      if (step.role == CalibrationRole::lens) return step.arrangement;
+    throw std::runtime_error("no board in the plan");
+  }();
+
+  PlacingWatch::Look after(double seconds) {
+    now_s += seconds;
+    return watch.look();
+  }
+};
+
+TEST_F(Placing, ABoardThatStandsAsAskedIsTakenAfterASecondOfStillness) {
+  bench.place(wanted);
+  watch.begin(wanted, wanted, 0);
+  ASSERT_TRUE(watch.watches());
+  EXPECT_FALSE(after(0).stands) << "one frame says nothing of stillness";
+  EXPECT_FALSE(after(0.4).stands);
+  EXPECT_THAT(after(0.4).remark, HasSubstr("let go of it"));
+  EXPECT_TRUE(after(0.7).stands);
+  EXPECT_TRUE(watch.all_is_seen());
+}
+
+TEST_F(Placing, WhereTheBoardIsMissingTheOutlineShowsWhereItIsWanted) {
+  bench.place({.room_light = true});
+  watch.begin(wanted, wanted, 0);
+  const PlacingWatch::Look empty = after(0);
+  EXPECT_FALSE(empty.stands);
+  EXPECT_THAT(empty.remark, HasSubstr("Not enough of the printed target is seen"));
+  const cv::Mat3b frame = cv::imread(folder / "live.jpg", cv::IMREAD_COLOR);
+  ASSERT_EQ(frame.size(), cv::Size(600, 400));
+  cv::Mat1b yellow;
+  cv::inRange(frame, cv::Scalar(0, 140, 200), cv::Scalar(90, 255, 255), yellow);
+  EXPECT_GT(cv::countNonZero(yellow), 300) << "the outline";
+}
+
+TEST_F(Placing, AnotherStandAnotherSideAndAnotherPlaceAreNotTakenForIt) {
+  std::vector<rig::Arrangement> boards;
+  for (const CalibrationStep& step : make_calibration_plan(rig))
+    if (step.role == CalibrationRole::lens && (boards.empty() || boards.back().stand != step.arrangement.stand))
+      boards.push_back(step.arrangement);
+  ASSERT_EQ(boards.size(), 3U);
+  for (const rig::Arrangement& placed : boards)
+    for (const rig::Arrangement& asked : boards) {
+      bench.place(placed);
+      watch.begin(asked, asked, 0);
+      for (int i = 0; i < 3; ++i) after(0.6);
+      EXPECT_EQ(after(0.6).stands, placed.stand == asked.stand) << placed.stand << " for " << asked.stand;
+    }
+  rig::Arrangement aside = wanted;
+  aside.pose.pretranslate(Eigen::Vector3d(0, 90, 0));
+  bench.place(aside);
+  watch.begin(wanted, wanted, 0);
+  EXPECT_THAT(after(0).remark, HasSubstr("cm too far to the right"));
+}
+
+TEST_F(Placing, AHandThatStillMovesItIsWaitedFor) {
+  watch.begin(wanted, wanted, 0);
+  for (int i = 0; i < 4; ++i) {
+    rig::Arrangement moving = wanted;
+    moving.pose.pretranslate(Eigen::Vector3d(0, 3.0 * i, 0));
+    bench.place(moving);
+    EXPECT_FALSE(after(0.6).stands) << i;
+  }
+}
+
+TEST_F(Placing, WhereLightsAreToBeSwitchedAPersonSaysThatItIsDone) {
+  bench.place(wanted);
+  rig::Arrangement dark = wanted;
+  dark.room_light = false;
+  watch.begin(dark, wanted, 0);
+  for (int i = 0; i < 3; ++i) after(0.6);
+  EXPECT_FALSE(watch.all_is_seen());
+  EXPECT_THAT(after(0.6).remark, HasSubstr("when the light is as asked for"));
+  watch.begin(wanted, {.room_light = true}, 0);
+  EXPECT_FALSE(watch.watches()) << "an empty platform has no target";
+}
+
+TEST_F(Placing, LiveViewChangesNothingInThePicturesThatComeAfterIt) {
+  bench.place(wanted);
+  rig::SimulatedBench other(rig.simulation->truth, make_bench_picture(rig, std::nullopt));
+  other.place(wanted);
+  const auto looked_at = rig::make_simulated_camera(other, clock, rig::CameraMake::sony);
+  looked_at->preview();
+  looked_at->preview();
+  camera->configure({.exposure_s = 0.25});
+  looked_at->configure({.exposure_s = 0.25});
+  EXPECT_EQ(camera->capture().bytes, looked_at->capture().bytes);
+}
+
+// Answers nothing by itself.
+struct SilentPerson final : rig::AskedPerson {
+  std::optional<std::string> ask(const rig::Question& question) override {
+    for (int i = 0; question.meanwhile && i < 20; ++i) {
+      *now_s += 0.6;
+      if (auto answer = question.meanwhile()) return answer;
+    }
+    return std::nullopt;
+  }
+  void prepare(const nlohmann::json&, const std::string&) override {}
+  void remark(const std::string& seen) override { last = seen; }
+  double* now_s = nullptr;
+  std::string last;
+};
+
+TEST_F(Placing, AQuestionIsAnsweredByWhatIsSeenAndOnlyWhereThereIsATarget) {
+  SilentPerson silent;
+  silent.now_s = &now_s;
+  WatchedPerson asked(silent);
+  bench.place(wanted);
+  EXPECT_EQ(asked.ask({.text = "Put it down."}), std::nullopt) << "nobody watches yet";
+  asked.set_watch(&watch);
+  EXPECT_EQ(asked.ask({.text = "Put it down."}), std::nullopt) << "nothing is looked for";
+  watch.begin(wanted, wanted, 0);
+  EXPECT_EQ(asked.ask({.text = "Put it down."}), rig::kDone);
+  EXPECT_EQ(silent.last, "It stands well.");
+}
+
+}  // namespace
+}  // namespace station
