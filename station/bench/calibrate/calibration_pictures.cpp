@@ -153,6 +153,7 @@ std::vector<CalibrationPicture> record_calibration(const RigFile& rig, const std
   devices.turntable->home();
   double exposure_s = 0.125;
   std::optional<Eigen::Isometry3d> standing;  // of what is on a stand
+  std::optional<rig::Arrangement> arranged;   // how the bench stands, as far as a person was asked
   std::vector<double> angles;                 // of the steps that share a place and a role
   std::size_t begin = 0;                      // the first of them
   for (std::size_t i = 0; i < plan.size(); ++i) {
@@ -168,7 +169,11 @@ std::vector<CalibrationPicture> record_calibration(const RigFile& rig, const std
       devices.turntable->stop();
       throw std::runtime_error("calibration interrupted; the same command goes on from here");
     }
+    const bool put_down =
+        step.arrangement.stand > 0 && !(arranged && rig::same_arrangement(*arranged, step.arrangement));
+    if (put_down) devices.turntable->move_to(0);  // "its face towards the camera" is the platform's front then
     devices.person->arrange(step.arrangement);
+    arranged = step.arrangement;
     if (step.follows_target && angles.empty()) angles = angles_of(rig, plan, begin, devices, standing, exposure_s);
     devices.turntable->move_to(step.follows_target ? angles.at(i - begin) : step.platform_angle_rad);
     const rig::Picture picture = step.exposure_of.empty()
