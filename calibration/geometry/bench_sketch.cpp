@@ -35,16 +35,6 @@ std::vector<std::vector<Corner>> matched(const TagLayout& ring, const std::vecto
   return all;
 }
 
-Lens plain_lens(double focal_length_px, cv::Size picture) {
-  return {picture.width,
-          picture.height,
-          focal_length_px,
-          focal_length_px,
-          0.5 * (picture.width - 1),
-          0.5 * (picture.height - 1),
-          {}};
-}
-
 struct Poses {
   std::vector<Eigen::Isometry3d> ring_from_camera;
   double rms_px = 0;
@@ -54,7 +44,7 @@ Poses poses_for(double focal_length_px, cv::Size picture, const std::vector<std:
   Poses poses;
   double squares = 0, count = 0;
   for (const std::vector<Corner>& seen : corners) {
-    const auto fit = fit_pose(plain_lens(focal_length_px, picture), seen);
+    const auto fit = fit_pose(plain_lens(focal_length_px, picture.width, picture.height), seen);
     poses.ring_from_camera.push_back(fit->camera_from_object.inverse());
     squares += fit->rms_px * fit->rms_px * static_cast<double>(seen.size());
     count += static_cast<double>(seen.size());

@@ -4,6 +4,10 @@
 
 namespace calibration {
 
+Lens plain_lens(double focal_length_px, int width_px, int height_px) {
+  return {width_px, height_px, focal_length_px, focal_length_px, 0.5 * (width_px - 1), 0.5 * (height_px - 1), {}};
+}
+
 std::vector<Eigen::Vector2d> undistort_points(const Lens& lens, const std::vector<Eigen::Vector2d>& pixels) {
   if (pixels.empty()) return {};
   const cv::Matx33d matrix(lens.fx_px, 0, lens.cx_px, 0, lens.fy_px, lens.cy_px, 0, 0, 1);

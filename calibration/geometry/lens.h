@@ -14,6 +14,9 @@ struct Lens {
   std::array<double, 5> distortion{};  // k1 k2 p1 p2 k3
 };
 
+// A lens without distortion, centred on the picture.
+Lens plain_lens(double focal_length_px, int width_px, int height_px);
+
 // Pixel positions with the distortion removed (same intrinsic matrix, zero distortion).
 std::vector<Eigen::Vector2d> undistort_points(const Lens& lens, const std::vector<Eigen::Vector2d>& pixels);
 

@@ -146,6 +146,12 @@ TagLayout make_tag_board(const std::string& name, int rows, int columns, double 
   return layout;
 }
 
+long tags_seen(const TagLayout& layout, const TagObservation& seen) {
+  return std::count_if(seen.begin(), seen.end(), [&](const TagDetection& one) {
+    return std::any_of(layout.tags.begin(), layout.tags.end(), [&](const Tag& tag) { return tag.id == one.id; });
+  });
+}
+
 std::array<Eigen::Vector3d, 4> corners_in_object(const Tag& tag) {
   const double h = 0.5 * tag.size_mm;
   return {tag.object_from_tag * Eigen::Vector3d(-h, -h, 0.0), tag.object_from_tag * Eigen::Vector3d(h, -h, 0.0),

@@ -49,6 +49,9 @@ struct TagsSeen {
 };
 TagsSeen see_tags(const cv::Mat1f& grey);
 
+// How many of the layout's tags are in the picture.
+long tags_seen(const TagLayout& layout, const TagObservation& seen);
+
 // The printed bitmap of a tag: 10 x 10 cells (black square of 8 x 8 cells inside a white border), 0 or 255, top row
 // first as seen. Throws std::runtime_error for an id that the family does not have.
 cv::Mat1b tag_bitmap(int id);

@@ -29,8 +29,7 @@ struct SpotModel {
 namespace {
 
 // (predicted - measured) / sigma of a spot, RGB. Parameters: position, beam, lamp, droop, table, vignetting, log
-// output.
-// Automatic derivatives are taken of the panel's factor only; the others multiply it.
+// output. Automatic derivatives are taken of the panel's factor only; the others multiply it.
 class SpotCost final : public ceres::SizedCostFunction<3, 3, 2, 4, 2, 1, 2, 1> {
  public:
   explicit SpotCost(SpotModel model) : model_(std::move(model)) {}

@@ -1,6 +1,5 @@
 #include "station/bench/check_picture.h"
 
-#include <algorithm>
 #include <optional>
 #include <sstream>
 
@@ -27,15 +26,9 @@ std::string words(const Parts&... parts) {
   return text.str();
 }
 
-int seen_of(const calibration::TagLayout& layout, const calibration::TagObservation& seen) {
-  return static_cast<int>(std::ranges::count_if(seen, [&](const calibration::TagDetection& one) {
-    return std::ranges::any_of(layout.tags, [&](const calibration::Tag& tag) { return tag.id == one.id; });
-  }));
-}
-
 rig::ContractRow tags_row(const calibration::TagLayout& layout, const std::string& where, int fewest,
                           const calibration::TagObservation& seen) {
-  const int count = seen_of(layout, seen);
+  const long count = calibration::tags_seen(layout, seen);
   return {"tags " + where + " are seen", count >= fewest,
           words(count, " of ", layout.tags.size(),
                 count >= fewest ? "" : "; light them evenly, clear what covers them and point the camera at them")};

@@ -1,6 +1,5 @@
 #include "station/bench/mounted_holder.h"
 
-#include <algorithm>
 #include <numbers>
 #include <stdexcept>
 
@@ -36,11 +35,7 @@ Eigen::Isometry3d nominal_pose(const RigFile& rig, const Spool& spool, rig::Moun
 }
 
 long tags_of_holder(const PosePicture& picture, const calibration::TagLayout& holder) {
-  const auto of_holder = [&](const calibration::TagDetection& seen) {
-    return std::any_of(holder.tags.begin(), holder.tags.end(),
-                       [&](const calibration::Tag& tag) { return tag.id == seen.id; });
-  };
-  return std::count_if(picture.seen.begin(), picture.seen.end(), of_holder);
+  return calibration::tags_seen(holder, picture.seen);
 }
 
 bool shows_holder(const PosePicture& picture, const calibration::TagLayout& holder) {

@@ -83,10 +83,8 @@ void add_tags(json& document, cv::Mat1f grey, const RigFile& rig) {
                                       {"table", &rig.table_tags},
                                       {"holder", &rig.holder_tags},
                                       {"board", &rig.board}}) {
-    const auto found = std::ranges::count_if(seen, [&](const calibration::TagDetection& one) {
-      return std::ranges::any_of(layout->tags, [&](const calibration::Tag& tag) { return tag.id == one.id; });
-    });
-    document["tags"].push_back({{"where", where}, {"seen", found}, {"printed", layout->tags.size()}});
+    document["tags"].push_back(
+        {{"where", where}, {"seen", calibration::tags_seen(*layout, seen)}, {"printed", layout->tags.size()}});
   }
 }
 

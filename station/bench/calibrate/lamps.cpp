@@ -25,8 +25,7 @@ calibration::LightOptions light_options(const RigFile& rig, cv::Size picture) {
 }
 
 calibration::Lens engraved_lens(const RigFile& rig, cv::Size picture) {
-  const double f = rig.focal_length_guess_px;
-  return {picture.width, picture.height, f, f, 0.5 * (picture.width - 1), 0.5 * (picture.height - 1), {}};
+  return calibration::plain_lens(rig.focal_length_guess_px, picture.width, picture.height);
 }
 
 calibration::PanelBench panel_bench(const RigFile& rig) {

@@ -18,6 +18,7 @@
 #include "station/documents/degree.h"
 #include "station/documents/disk/file_system.h"
 #include "station/documents/disk/stored_file.h"
+#include "station/output/interrupt.h"
 
 namespace station {
 namespace {
@@ -34,16 +35,8 @@ const cv::Scalar kWanted(0, 200, 255), kRight(80, 220, 80);  // BGR
 
 // The lens by its engraving, for frames that are smaller than pictures.
 calibration::Lens lens_for(const RigFile& rig, cv::Size frame) {
-  calibration::Lens lens = engraved_lens(rig, frame);
   const double scale = static_cast<double>(frame.width) / panel_bench(rig).camera.lens.width_px;
-  lens.fx_px *= scale, lens.fy_px *= scale;
-  return lens;
-}
-
-std::size_t tags_seen(const calibration::TagLayout& layout, const calibration::TagObservation& seen) {
-  return static_cast<std::size_t>(std::ranges::count_if(seen, [&](const calibration::TagDetection& one) {
-    return std::ranges::any_of(layout.tags, [&](const calibration::Tag& tag) { return tag.id == one.id; });
-  }));
+  return calibration::plain_lens(scale * rig.focal_length_guess_px, frame.width, frame.height);
 }
 
 std::vector<cv::Point> outline_in(const RigFile& rig, const rig::Arrangement& wanted, double angle_rad,
@@ -82,7 +75,8 @@ std::string PlacingWatch::fault(const calibration::TagObservation& seen, const c
   const std::string name = rig::object_name(wanted_->object);
   const calibration::TagLayout& tags = target_tags(rig_, wanted_->object);
   const auto fit = calibration::fit_pose(lens_for(rig_, grey.size()), tags, seen);
-  if (!fit || static_cast<double>(tags_seen(tags, seen)) < kFewestTags * static_cast<double>(tags.tags.size()))
+  if (!fit ||
+      static_cast<double>(calibration::tags_seen(tags, seen)) < kFewestTags * static_cast<double>(tags.tags.size()))
     return "Not enough of " + name + " is seen: the outline shows where it is wanted.";
   const Isometry3d world_from_target = rig_.world_from_camera_by_tape * fit->camera_from_object;
   const Isometry3d upright = calibration::turned(turn_between(world_from_target, wanted_->pose), wanted_->pose);
@@ -134,12 +128,21 @@ PlacingWatch::Look PlacingWatch::look() {
 }
 
 std::optional<std::string> WatchedPerson::ask(const rig::Question& question) {
-  if (!watch_ || !watch_->watches()) return person_.ask(question);
+  if (!watch_) return person_.ask(question);
   rig::Question watched = question;
+  // A wait with something to do is not ended by a signal, so ctrl-C is looked for in every question.
   watched.meanwhile = [this]() -> std::optional<std::string> {
-    const PlacingWatch::Look seen = watch_->look();
-    person_.remark(seen.remark);
-    return seen.stands && watch_->all_is_seen() ? std::optional<std::string>(rig::kDone) : std::nullopt;
+    if (interrupted()) return rig::kDecline;
+    if (!watch_->watches()) return std::nullopt;
+    try {
+      const PlacingWatch::Look seen = watch_->look();
+      person_.remark(seen.remark);
+      if (seen.stands && watch_->all_is_seen()) return rig::kDone;
+    } catch (const std::runtime_error& problem) {  // without its help the person is asked all the same
+      person_.remark(std::string("There is no live view: ") + problem.what());
+      watch_->end();
+    }
+    return std::nullopt;
   };
   return person_.ask(watched);
 }

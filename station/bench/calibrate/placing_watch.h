@@ -51,7 +51,7 @@ class PlacingWatch {
   std::optional<double> still_since_s_;
 };
 
-// Passes questions on; while a watch is set and has something to look at, it looks until somebody answers.
+// Passes questions on. While a watch is set, it looks until somebody answers, and ctrl-C declines.
 class WatchedPerson final : public rig::AskedPerson {
  public:
   explicit WatchedPerson(rig::AskedPerson& person) : person_(person) {}

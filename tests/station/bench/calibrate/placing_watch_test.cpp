@@ -4,13 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <opencv2/imgcodecs.hpp>
 
 #include "rig/devices/clock.h"
 #include "rig/simulated/simulated_bench.h"
 #include "station/bench/bench_picture.h"
 #include "station/bench/calibrate/calibration_plan.h"
-#include "station/documents/degree.h"
+#include "station/output/interrupt.h"
 #include "tests/places.h"
 #include "tests/station/commands/program.h"
 
@@ -151,6 +152,34 @@ TEST_F(Placing, AQuestionIsAnsweredByWhatIsSeenAndOnlyWhereThereIsATarget) {
   watch.begin(wanted, wanted, 0);
   EXPECT_EQ(asked.ask({.text = "Put it down."}), rig::kDone);
   EXPECT_EQ(silent.last, "It stands well.");
+}
+
+TEST_F(Placing, CtrlCEndsAQuestionWhetherOrNotATargetIsLookedFor) {
+  SilentPerson silent;
+  silent.now_s = &now_s;
+  WatchedPerson asked(silent);
+  asked.set_watch(&watch);
+  bench.place({.room_light = true});
+  watch_interrupts();
+  std::raise(SIGINT);
+  EXPECT_EQ(asked.ask({.text = "Switch the light off."}), rig::kDecline);
+  watch.begin(wanted, wanted, 0);
+  EXPECT_EQ(asked.ask({.text = "Put it down."}), rig::kDecline);
+  watch_interrupts();
+  let_interrupts_end();
+}
+
+TEST_F(Placing, ALiveViewThatFailsIsSaidAndThePersonIsAskedAllTheSame) {
+  SilentPerson silent;
+  silent.now_s = &now_s;
+  WatchedPerson asked(silent);
+  PlacingWatch nowhere(rig, *camera, folder / "none" / "live.jpg", [this] { return now_s; });
+  asked.set_watch(&nowhere);
+  bench.place(wanted);
+  nowhere.begin(wanted, wanted, 0);
+  EXPECT_EQ(asked.ask({.text = "Put it down."}), std::nullopt);
+  EXPECT_THAT(silent.last, HasSubstr("There is no live view: "));
+  EXPECT_FALSE(nowhere.watches());
 }
 
 }  // namespace
