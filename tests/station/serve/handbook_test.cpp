@@ -67,7 +67,7 @@ TEST(Handbook, ItsCommandsAreThoseOfTheProgram) {
   EXPECT_GE(commands.size(), 8U);
   for (const std::string& words : commands) {
     const ProgramResult help = run_shell(std::string(THREADSTATION_PROGRAM) + " " + words + " --help");
-    EXPECT_EQ(help.status, 0) << "threadstation " << words << ": " << help.error;
+    EXPECT_THAT(help.out, testing::HasSubstr("Usage: threadstation " + words)) << help.error;
   }
 }
 
