@@ -179,6 +179,14 @@ std::vector<TargetSheet> target_sheets(const RigFile& rig) {
                     .advice = "Cut along both squares; glue it on the matt black plate around the white square.",
                     .tags = drawn(rig.spectralon.tags, bar, x, y),
                     .squares_mm = {rig.spectralon.white_mm, rig.spectralon.plate_mm}});
+  if (rig.colour_chart)
+    sheets.push_back(
+        {.file = "colour_chart",
+         .title = "Surround of the colour chart",
+         .advice =
+             "Cut along the square; glue it on the matt black plate, the chart in its middle, brown at the top left.",
+         .tags = drawn(rig.colour_chart->tags, bar, x, y),
+         .squares_mm = {rig.colour_chart->plate_mm}});
   sheets.push_back({.file = "holder",
                     .title = "Tags on the spool holder",
                     .advice = "Cut out the tags with their white borders; glue them on the frame in these places.",

@@ -49,7 +49,10 @@ constexpr Guide kGuides[] = {
     {"library add", kParts, "library add session"},
     {"library list", kParts, "library list silk"},
     {"library show", kParts, "library show 1"},
+    {"library edit", kParts, "library edit 1 --lot B7"},
     {"library export", kParts, "library export 1 --out thread_1"},
+    {"library remove", kParts, "library remove 1"},
+    {"library restore", kParts, "library restore 1"},
 
     {"weave", "Predict cloth", "weave --draft DATA/drafts/twill_2_2.json --out twill.json --view twill.png"},
     {"cloth", "Predict cloth", "cloth session --draft DATA/drafts/twill_2_2.json --quick"},

@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <iostream>
+#include <optional>
 
 #include "rig/devices/clock.h"
 #include "station/commands/commands.h"
@@ -10,6 +11,7 @@ namespace {
 
 struct LibraryArguments {
   std::string folder = "library", words, what, out;
+  std::optional<std::string> barcode, name, lot, material, colour, note;
   int number = 0;
   bool json = false;
 };
@@ -43,6 +45,13 @@ void print_all(const LibraryThread& thread) {
   if (thread.relative_rmse) std::printf("agreement   %.1f %% relative RMSE\n", 100 * *thread.relative_rmse);
 }
 
+void print(const LibraryThread& thread, bool json) {
+  if (json)
+    std::cout << to_json(thread).dump() << "\n";
+  else
+    print_line(thread);
+}
+
 void list(const LibraryArguments& arguments) {
   const auto threads = Library(arguments.folder, false).list(arguments.words);
   if (arguments.json) {
@@ -53,6 +62,18 @@ void list(const LibraryArguments& arguments) {
   }
   for (const LibraryThread& thread : threads) print_line(thread);
   std::printf("%zu thread(s)\n", threads.size());
+}
+
+void edit(const LibraryArguments& arguments) {
+  Library library(arguments.folder, false);
+  Sample sample = library.show(arguments.number).sample;
+  sample.barcode = arguments.barcode.value_or(sample.barcode);
+  sample.name = arguments.name.value_or(sample.name);
+  sample.lot = arguments.lot.value_or(sample.lot);
+  sample.material = arguments.material.value_or(sample.material);
+  sample.colour = arguments.colour.value_or(sample.colour);
+  sample.note = arguments.note.value_or(sample.note);
+  print(library.edit(arguments.number, sample), arguments.json);
 }
 
 }  // namespace
@@ -71,11 +92,7 @@ void add_library_command(CLI::App& app) {
   added->add_flag("--json", arguments->json, "as JSON, for machines");
   added->callback([arguments] {
     rig::SystemClock clock;
-    const LibraryThread thread = Library(arguments->folder, true).add(arguments->what, clock.utc());
-    if (arguments->json)
-      std::cout << to_json(thread).dump() << "\n";
-    else
-      print_line(thread);
+    print(Library(arguments->folder, true).add(arguments->what, clock.utc()), arguments->json);
   });
   CLI::App* listed = add("list", "one line for each thread");
   listed->add_option("words", arguments->words, "only threads with this text in name, barcode, lot, material, ...");
@@ -90,6 +107,30 @@ void add_library_command(CLI::App& app) {
       std::cout << to_json(thread).dump() << "\n";
     else
       print_all(thread);
+  });
+  CLI::App* edited = add("edit", "write anew what the lab knows of a thread's spool");
+  edited->add_option("number", arguments->number, "of the thread in the list")->required();
+  edited->add_option("--barcode", arguments->barcode, "of the spool");
+  edited->add_option("--name", arguments->name, "of the spool");
+  edited->add_option("--lot", arguments->lot, "of the spool");
+  edited->add_option("--material", arguments->material, "its fiber");
+  edited->add_option("--colour", arguments->colour, "in words");
+  edited->add_option("--note", arguments->note, "any text");
+  edited->add_flag("--json", arguments->json, "as JSON, for machines");
+  edited->callback([arguments] { edit(*arguments); });
+  CLI::App* removed = add("remove", "take a thread out of the list; its file and number stay");
+  removed->add_option("number", arguments->number, "of the thread in the list")->required();
+  removed->callback([arguments] {
+    rig::SystemClock clock;
+    Library(arguments->folder, false).remove(arguments->number, clock.utc());
+    std::cout << "taken out: " << arguments->number << "; threadstation library restore puts it back\n";
+  });
+  CLI::App* restored = add("restore", "put back a thread that was taken out");
+  restored->add_option("number", arguments->number, "that the thread had")->required();
+  restored->callback([arguments] {
+    Library library(arguments->folder, false);
+    library.restore(arguments->number);
+    print_line(library.show(arguments->number));
   });
   CLI::App* exported = add("export", "one thread with its sample and hashes, in a folder of its own");
   exported->add_option("number", arguments->number, "of the thread in the list")->required();

@@ -12,4 +12,7 @@ namespace station {
 // since 1970; null: never}.
 nlohmann::json checked_devices(const Workspace& workspace, const RigFile& rig);
 
+// {"passed": whether all devices passed the last check (null: never checked), "checked_ms": when}
+nlohmann::json devices_summary(const Workspace& workspace);
+
 }  // namespace station

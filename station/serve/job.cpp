@@ -69,20 +69,21 @@ bool takes(const nlohmann::json& question, const std::string& answer) {
 class Job::Process {
  public:
   Process(const JobRequest& request, std::function<void()> changed)
-      : title_(request.title),
+      : request_(request),
         changed_(std::move(changed)),
         output_(with_ending(request.said, ".out")),
         progress_(with_ending(request.said, ".progress")),
         process_file_(with_ending(request.said, kProcessFile)) {
-    start(request);
-    note_process(process_file_, process_);
+    for (const char* ending : {".out", ".progress"})
+      std::ofstream(with_ending(request.said, ending), std::ios::trunc).flush();
+    start();
     follower_ = std::jthread([this](const std::stop_token& stop) { follow(stop); });
   }
 
   ~Process() {
     follower_.request_stop();
     if (follower_.joinable()) follower_.join();
-    close(input_);
+    if (input_ >= 0) close(input_);
   }
 
   bool running() const {
@@ -92,10 +93,25 @@ class Job::Process {
 
   nlohmann::json state() const {
     const std::scoped_lock lock(mutex_);
-    nlohmann::json state{{"title", title_},         {"running", !status_},   {"status", nullptr},
-                         {"done", done_},           {"total", total_},       {"label", label_},
-                         {"seconds_left", nullptr}, {"question", question_}, {"lines", lines_}};
+    nlohmann::json state{{"title", request_.title},
+                         {"running", !status_},
+                         {"status", nullptr},
+                         {"outcome", nullptr},
+                         {"done", done_},
+                         {"total", total_},
+                         {"label", label_},
+                         {"seconds_left", nullptr},
+                         {"question", question_},
+                         {"lines", lines_},
+                         {"steps", nlohmann::json::array()}};
     if (status_) state["status"] = *status_;
+    if (status_) state["outcome"] = outcome();
+    for (std::size_t i = 0; i < request_.steps.size(); ++i)
+      state["steps"].push_back({{"kind", request_.steps[i].kind},
+                                {"state", i < step_   ? "well"
+                                          : i > step_ ? "waiting"
+                                          : status_   ? outcome()
+                                                      : "running"}});
     if (seconds_left_ >= 0) state["seconds_left"] = seconds_left_;
     return state;
   }
@@ -112,6 +128,8 @@ class Job::Process {
 
   void signal(int times) {
     const std::scoped_lock lock(mutex_);
+    if (status_) return;
+    signals_ = std::max(signals_, times);
     for (int i = 0; i < times && !gone_; ++i) {
       if (i > 0) std::this_thread::sleep_for(kBetweenSignals);
       kill(process_, SIGINT);
@@ -119,8 +137,14 @@ class Job::Process {
   }
 
  private:
-  void start(const JobRequest& request) {
-    std::vector<std::string> words = request.arguments;
+  // Of a job that has ended.
+  const char* outcome() const {
+    return *status_ == 0 ? "well" : signals_ == 0 ? "badly" : signals_ == 1 ? "paused" : "stopped";
+  }
+
+  // Begins the step `step_`.
+  void start() {
+    std::vector<std::string> words = request_.steps[step_].arguments;
     words.insert(words.begin(), "threadstation");
     words.emplace_back("--json");
     std::vector<char*> arguments;
@@ -128,45 +152,69 @@ class Job::Process {
     arguments.push_back(nullptr);
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0)
-      throw std::runtime_error("cannot start " + request.title + ": " + std::strerror(errno));
-    const std::filesystem::path out = with_ending(request.said, ".out"),
-                                progress = with_ending(request.said, ".progress");
+      throw std::runtime_error("cannot start " + request_.title + ": " + std::strerror(errno));
+    const std::filesystem::path out = with_ending(request_.said, ".out"),
+                                progress = with_ending(request_.said, ".progress");
+    constexpr int kAdd = O_WRONLY | O_CREAT | O_APPEND;
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, progress.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), kAdd, 0644);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, progress.c_str(), kAdd, 0644);
     // Nothing else of ours: a connection that the process kept open would look alive to its browser for ever.
     posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // ctrl-C in the server's terminal is not the run's
     const int failed =
-        posix_spawn(&process_, request.program.c_str(), &actions, &attributes, arguments.data(), environ);
+        posix_spawn(&process_, request_.program.c_str(), &actions, &attributes, arguments.data(), environ);
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     close(ends[0]);
+    if (input_ >= 0) close(input_);
     input_ = ends[1];
-    if (failed == 0) return;
-    close(input_);
-    throw std::runtime_error("cannot start " + request.title + ": " + std::strerror(failed));
+    if (failed != 0) {
+      close(input_);
+      input_ = -1;
+      throw std::runtime_error("cannot start " + request_.title + ": " + std::strerror(failed));
+    }
+    gone_ = false;
+    note_process(process_file_, process_);
   }
 
   void follow(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
       int status = 0;
       const bool ended = reaped(status);  // before the last look
-      if (look() | ended) {
-        if (ended) {
-          const std::scoped_lock lock(mutex_);
-          status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-          question_ = nullptr;
-        }
-        changed_();
-      }
-      if (ended) std::filesystem::remove(process_file_);
-      if (ended) return;
+      const bool said = look();
+      if (ended) next(WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), stop);
+      if (said || ended) changed_();
+      if (!running()) std::filesystem::remove(process_file_);
+      if (!running()) return;
       std::this_thread::sleep_for(kBetweenLooks);
+    }
+  }
+
+  // After a step has ended so: the next one, or the end.
+  void next(int status, const std::stop_token& stop) {
+    const std::scoped_lock lock(mutex_);
+    question_ = nullptr;
+    const bool last = step_ + 1 == request_.steps.size();
+    if (status != 0 || last || signals_ > 0 || stop.stop_requested()) {
+      // A step that was through when a person asked for a pause has not been paused, but what follows has.
+      status_ = status == 0 && !last ? 1 : status;
+      step_ += status == 0 && !last ? 1 : 0;
+      return;
+    }
+    ++step_;
+    done_ = total_ = 0;
+    label_.clear();
+    seconds_left_ = -1;
+    try {
+      start();
+    } catch (const std::runtime_error& problem) {
+      add_line(problem.what());
+      status_ = 1;
     }
   }
 
@@ -211,7 +259,7 @@ class Job::Process {
     seconds_left_ = said.value("seconds_left", -1.0);
   }
 
-  const std::string title_;
+  const JobRequest request_;
   const std::function<void()> changed_;
   pid_t process_ = -1;
   int input_ = -1;
@@ -219,6 +267,8 @@ class Job::Process {
   const std::filesystem::path process_file_;
 
   mutable std::mutex mutex_;
+  std::size_t step_ = 0;
+  int signals_ = 0;  // the most that a person sent at once
   std::optional<int> status_;
   bool gone_ = false;  // its number may be another process's by now
   int done_ = 0, total_ = 0;

@@ -3,9 +3,12 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <set>
+#include <utility>
 
 #include "station/data/data_folder.h"
 #include "station/serve/page_answers.h"
+#include "station/session/spool_queue.h"
 
 namespace station {
 namespace {
@@ -22,6 +25,8 @@ struct Asked {
   const fs::path& rig;
 
   std::string name() const { return name_of(fields, "name"); }
+  // Of what is made now, as a person writes it: with spaces, umlauts and the like.
+  std::string new_name() const { return checked_name(safe_name(text("name"))); }
   fs::path session() const { return workspace.existing_session(name()); }
   fs::path calibration() const { return workspace.calibration(name_of(fields, "calibration")); }
   std::string text(const char* key) const {
@@ -64,7 +69,7 @@ Words capture(const Asked& asked) {
               "--spool",
               asked.workspace.spool(spool),
               "--out",
-              asked.workspace.session(asked.name())};
+              asked.workspace.session(asked.new_name())};
   add_person(words, asked);
   if (fs::exists(asked.workspace.sample(spool)))
     words.insert(words.end(), {"--sample", asked.workspace.sample(spool).string()});
@@ -78,10 +83,48 @@ Words queue(const Asked& asked) {
   return words;
 }
 
-Words invert(const Asked& asked) {
-  Words words{"invert", asked.session()};
+Words develop(const fs::path& session) {
+  return {"develop", session};
+}
+
+Words invert(const Asked& asked, const fs::path& session) {
+  Words words{"invert", session};
   if (asked.flag("quick")) words.insert(words.end(), {"--paths", "128", "--paths", "256", "--spp", "4"});
   return words;
+}
+
+Words report(const fs::path& session) {
+  return {"report", session};
+}
+
+Words add(const Asked& asked, const fs::path& session) {
+  return {"library", "add", session, "--library", asked.workspace.threads_folder()};
+}
+
+Words resume(const Asked& asked) {
+  return {"capture", "--resume", "--out", asked.session()};
+}
+
+std::vector<JobStep> digitize(const Asked& asked) {
+  const fs::path session = asked.workspace.session(asked.new_name());
+  return {{"capture", capture(asked)},
+          {"develop", develop(session)},
+          {"invert", invert(asked, session)},
+          {"report", report(session)},
+          {"add", add(asked, session)}};
+}
+
+std::vector<JobStep> process(const Asked& asked) {
+  const fs::path session = asked.session();
+  const std::set<std::string> left = asked.workspace.work_left(asked.name());
+  std::vector<JobStep> steps;
+  if (left.contains("capture")) steps.push_back({"resume", resume(asked)});
+  if (left.contains("develop")) steps.push_back({"develop", develop(session)});
+  if (left.contains("invert")) steps.push_back({"invert", invert(asked, session)});
+  if (left.contains("report")) steps.push_back({"report", report(session)});
+  if (left.contains("add")) steps.push_back({"add", add(asked, session)});
+  if (steps.empty()) throw Refused(409, "the session " + asked.name() + " lacks nothing: it is in the library");
+  return steps;
 }
 
 Words cloth(const Asked& asked) {
@@ -147,7 +190,7 @@ const Commands kKinds{
                     "--rig",
                     asked.rig,
                     "--out",
-                    asked.workspace.calibration(asked.name()),
+                    asked.workspace.calibration(asked.new_name()),
                     "--live",
                     asked.workspace.preview()};
      }},
@@ -159,49 +202,48 @@ const Commands kKinds{
      }},
     {"rig",
      [](const Asked& asked) {
-       return Words{"rig", "new", "--like", asked.rig, "--out", asked.workspace.rig(asked.name())};
+       return Words{"rig", "new", "--like", asked.rig, "--out", asked.workspace.rig(asked.new_name())};
      }},
     {"capture", capture},
     {"queue", queue},
-    {"resume",
-     [](const Asked& asked) {
-       return Words{"capture", "--resume", "--out", asked.session()};
-     }},
+    {"resume", resume},
     {"reshoot",
      [](const Asked& asked) {
        return Words{"capture", "--out", asked.session(), "--reshoot", std::to_string(asked.number("view"))};
      }},
-    {"develop",
-     [](const Asked& asked) {
-       return Words{"develop", asked.session()};
-     }},
-    {"invert", invert},
-    {"report",
-     [](const Asked& asked) {
-       return Words{"report", asked.session()};
-     }},
+    {"develop", [](const Asked& asked) { return develop(asked.session()); }},
+    {"invert", [](const Asked& asked) { return invert(asked, asked.session()); }},
+    {"report", [](const Asked& asked) { return report(asked.session()); }},
     {"cloth", cloth},
-    {"add",
-     [](const Asked& asked) {
-       return Words{"library", "add", asked.session(), "--library", asked.workspace.threads_folder()};
-     }},
+    {"add", [](const Asked& asked) { return add(asked, asked.session()); }},
     {"export", exported},
 };
+
+// Those that are several of the others, one after the other.
+const std::map<std::string, std::function<std::vector<JobStep>(const Asked&)>> kSequences{{"digitize", digitize},
+                                                                                          {"process", process}};
 
 std::string all_kinds() {
   std::string names;
   for (const auto& [name, words] : kKinds) names += (names.empty() ? "" : ", ") + name;
+  for (const auto& [name, steps] : kSequences) names += ", " + name;
   return names;
+}
+
+std::vector<JobStep> steps_of(const std::string& kind, const Asked& asked) {
+  if (const auto found = kSequences.find(kind); found != kSequences.end()) return found->second(asked);
+  const auto found = kKinds.find(kind);
+  if (found == kKinds.end()) throw Refused(400, "expected \"kind\": one of " + all_kinds());
+  return {{kind, found->second(asked)}};
 }
 
 }  // namespace
 
 JobCommand job_command(const json& asked, const Workspace& workspace, const fs::path& rig) {
   const std::string kind = text_of(asked, "kind");
-  const auto found = kKinds.find(kind);
-  if (found == kKinds.end()) throw Refused(400, "expected \"kind\": one of " + all_kinds());
+  std::vector<JobStep> steps = steps_of(kind, {asked, workspace, rig});
   const std::string name = text_of(asked, "name");
-  return {.title = kind + (name.empty() ? "" : " " + name), .arguments = found->second({asked, workspace, rig})};
+  return {.title = kind + (name.empty() ? "" : " " + name), .steps = std::move(steps)};
 }
 
 std::vector<std::string> export_formats() {

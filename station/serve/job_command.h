@@ -6,23 +6,26 @@
 #include <string>
 #include <vector>
 
+#include "station/serve/job.h"
 #include "station/serve/workspace.h"
 
 namespace station {
 
-// The command of a job. Its kinds, and what each needs beside "name" (of a calibration, session, queue or export):
-//   check (calibration, may be empty), preview          no name
-//   calibrate
+// The commands of a job. Its kinds, and what each needs beside "name" (of a calibration, session, queue or export):
+//   check (calibration, may be empty), preview, home    no name
+//   calibrate, rig
 //   capture (calibration, spool, person), resume, reshoot (view), queue (calibration, person)
 //   develop, invert (quick), report, cloth (draft, warp_colour, weft_colour, quick), add
+//   digitize: capture, and then develop, invert, report and add; process: those of them that a session still lacks
 //   export (number, format)
 struct JobCommand {
-  std::string title;                   // for people
-  std::vector<std::string> arguments;  // of this program
+  std::string title;  // for people
+  std::vector<JobStep> steps;
 };
 
 // Every name is whitelisted before it becomes a part of a path, and no argument is anything but a name, a number or a
-// text behind its option's "=". Throws Refused for what may not be asked.
+// text behind its option's "=". The name of what is new may be any text; its file is called by safe_name(). Throws
+// Refused for what may not be asked.
 JobCommand job_command(const nlohmann::json& asked, const Workspace& workspace, const std::filesystem::path& rig);
 
 // The forms in which a thread of the library may be exported.

@@ -14,6 +14,7 @@
 #include "station/output/display.h"
 #include "station/serve/job_command.h"
 #include "station/serve/page_answers.h"
+#include "station/session/record/picture_record.h"
 #include "station/session/results.h"
 #include "station/thread/invert/invert_session.h"
 #include "station/thread/report/fitted_twins.h"
@@ -22,6 +23,7 @@ namespace station {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::json;
 
 struct Asked {
   const HttpRequest& request;
@@ -51,12 +53,13 @@ cv::Mat3b narrowed(const cv::Mat3b& picture, int width_px) {
   return small;
 }
 
+// A tile of the contact sheet, or with "size=large" as large as a screen shows.
 HttpResponse raw(const Asked& asked) {
-  constexpr int kTile_px = 320;
+  constexpr int kTile_px = 320, kLarge_px = 2400;
   const fs::path session = asked.workspace.existing_session(asked.word("session"));
   const auto file = picture_of_step(session, asked.name("step"));
   if (!file) throw Refused(404, "there is no picture of " + asked.word("step") + " yet");
-  return png(narrowed(shown_sensor_file(*file), kTile_px));
+  return png(narrowed(shown_sensor_file(*file), asked.word("size") == "large" ? kLarge_px : kTile_px));
 }
 
 HttpResponse twin(const Asked& asked, const std::string& which) {
@@ -81,6 +84,22 @@ HttpResponse cloth(const Asked& asked) {
   return png_file(session / "result" / "cloth" / (asked.name("view") + ".png"));
 }
 
+// How a thread of the library looks: the cloth of its session, or else its spool in the first view.
+HttpResponse thread(const Asked& asked) {
+  constexpr int kTile_px = 320;
+  const json lines = asked.workspace.library_lines();
+  const auto line = std::ranges::find_if(
+      lines, [&](const json& one) { return std::to_string(one.at("number").get<int>()) == asked.word("number"); });
+  if (line == lines.end()) throw Refused(404, "there is no such thread in the library");
+  const fs::path session = asked.workspace.existing_session(line->at("session").get<std::string>());
+  if (const fs::path swatch = session / "result" / "cloth" / "swatch.png"; fs::is_regular_file(swatch))
+    return png_file(swatch);
+  for (const auto& [step, picture] : taken_pictures(read_journal(session / "journal.jsonl").records))
+    if (const auto file = step.starts_with("reflection") ? picture_of_step(session, step) : std::nullopt)
+      return png(narrowed(shown_sensor_file(*file), kTile_px));
+  throw Refused(404, "there is no picture of this thread");
+}
+
 HttpResponse draft(const Asked& asked) {
   return {.content_type = "image/svg+xml", .body = draw_draft_svg(read_draft(ready_draft(asked.word("name"))))};
 }
@@ -94,6 +113,7 @@ HttpResponse page_picture(const HttpRequest& request, const Workspace& workspace
       {"fitted", [](const Asked& asked) { return twin(asked, "fitted"); }},
       {"residual", [](const Asked& asked) { return twin(asked, "residual"); }},
       {"cloth", cloth},
+      {"thread", thread},
       {"draft", draft}};
   const Asked asked{request, workspace};
   if (asked.word("of") == "frame") return png(frame.picture());

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 
+#include "calibration/light/colour_chart.h"
 #include "inversion/fit/energy_bands.h"
 #include "station/cloth/cloth_preview.h"
 #include "station/documents/number_text.h"
@@ -34,13 +35,25 @@ std::optional<Eigen::MatrixXd> covariance_of(const ThreadFile& thread) {
   }
 }
 
-std::string colour_of(const std::vector<inversion::EnergyBand>& bands, const ThreadFile& thread) {
-  cv::Vec3f albedo(0, 0, 0);
+// Linear sRGB of all the light that the thread scatters, of what meets it from all sides in a plane along it.
+Eigen::Vector3d linear_colour(const std::vector<inversion::EnergyBand>& bands, const ThreadFile& thread) {
+  Eigen::Vector3d albedo = Eigen::Vector3d::Zero();
   for (const inversion::EnergyBand& band : bands)
     for (int c = 0; c < 3; ++c)
-      albedo[c] += static_cast<float>(band.albedo[static_cast<std::size_t>(c)] / static_cast<double>(bands.size()));
-  const cv::Mat3b shown = display(cv::Mat3f(1, 1, albedo), 1, thread.linear_srgb_from_camera);
-  return formatted("#%02x%02x%02x", shown(0, 0)[0], shown(0, 0)[1], shown(0, 0)[2]);
+      albedo[c] += band.albedo[static_cast<std::size_t>(c)] / static_cast<double>(bands.size());
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(thread.linear_srgb_from_camera.data()) * albedo;
+}
+
+json colour_document(const Eigen::Vector3d& linear) {
+  constexpr double kSeen = 0.002;  // less than a step of a screen's eight bits
+  const cv::Mat3b shown = display(
+      cv::Mat3f(1, 1,
+                cv::Vec3f(static_cast<float>(linear[0]), static_cast<float>(linear[1]), static_cast<float>(linear[2]))),
+      1, {1, 0, 0, 0, 1, 0, 0, 0, 1});
+  const Eigen::Vector3d lab = calibration::lab_of_linear_srgb(linear);
+  return {{"srgb", formatted("#%02x%02x%02x", shown(0, 0)[0], shown(0, 0)[1], shown(0, 0)[2])},
+          {"lab", {lab[0], lab[1], lab[2]}},
+          {"clipped", linear.minCoeff() < -kSeen || linear.maxCoeff() > 1 + kSeen}};
 }
 
 json part_of(const json& fit, const char* key) {
@@ -88,7 +101,7 @@ json thread_document(const ThreadFile& thread) {
           {"curves", curves},
           {"views", views},
           {"doubts", part_of(thread.fit, "doubts")},
-          {"colour", colour_of(bands, thread)}};
+          {"colour", colour_document(linear_colour(bands, thread))}};
 }
 
 json result_document(const std::filesystem::path& session) {
@@ -102,6 +115,14 @@ json result_document(const std::filesystem::path& session) {
   }
   document["cloth_made_of"] = cloth_made_of(session);
   return document;
+}
+
+double colour_difference(const json& document, const json& other) {
+  const auto lab = [](const json& of) {
+    const json& values = of.at("colour").at("lab");
+    return Eigen::Vector3d(values.at(0), values.at(1), values.at(2));
+  };
+  return calibration::delta_e_2000(lab(document), lab(other));
 }
 
 }  // namespace station

@@ -13,10 +13,14 @@ namespace station {
 //  "unknowns": [{"name", "value", "sigma", "at_bound"}],
 //  "curves": [{"cosine", "lambda": [R, TT, TRT], "sigma" (absent where the file has no covariance)}],
 //  "views": [{"id", "relative_rmse", "relative_bias", "held_out"}],
-//  "doubts", "colour": "#rrggbb" (the albedo under light from all sides, sRGB)}
+//  "doubts", "colour": {"srgb": "#rrggbb", "lab": CIE 1976, D50, "clipped": whether sRGB cannot show it} (the albedo
+//  under light from all sides)}
 nlohmann::json thread_document(const ThreadFile& thread);
 
 // The thread of a session's result, and "cloth": what of its preview is there, with what it was made of.
 nlohmann::json result_document(const std::filesystem::path& session);
+
+// CIEDE2000 between the "colour" of two such documents.
+double colour_difference(const nlohmann::json& document, const nlohmann::json& other);
 
 }  // namespace station

@@ -20,7 +20,9 @@ fs::path ready_spools() {
   return data_folder() / "spools";
 }
 
-Sample sample_of(const json& form) {
+}  // namespace
+
+Sample sample_of_form(const json& form) {
   Sample sample{.barcode = text_of(form, "barcode"),
                 .name = text_of(form, "name"),
                 .lot = text_of(form, "lot"),
@@ -34,6 +36,8 @@ Sample sample_of(const json& form) {
   if (sample.name.empty()) throw Refused(400, "neither barcode nor name is filled in; give one of them");
   return sample;
 }
+
+namespace {
 
 json spool_of(const json& form, const Sample& sample, const fs::path& rig) {
   const json bench = read_json_file(rig);
@@ -60,7 +64,7 @@ json spool_of(const json& form, const Sample& sample, const fs::path& rig) {
 }  // namespace
 
 std::string write_spool(const json& form, const Workspace& workspace, const fs::path& rig) {
-  const Sample sample = sample_of(form);
+  const Sample sample = sample_of_form(form);
   const json document = spool_of(form, sample, rig);
   try {
     const Spool spool = parse_spool(document, "the spool");

@@ -6,9 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "station/documents/sample.h"
 #include "station/serve/workspace.h"
 
 namespace station {
+
+// The sample that a form describes. Throws Refused (400) for one without any name, or with too long a text.
+Sample sample_of_form(const nlohmann::json& form);
 
 // {"barcode", "name" (one of the two filled in), "lot", "material", "colour", "note": texts; "turns", "diameter_mm":
 // numbers; "sheets"; "simulated": on a simulated rig the ready spool whose fibers stand on the bench}. The holder is

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <thread>
 
+#include "rig/devices/clock.h"
 #include "station/documents/disk/whole_file.h"
 #include "station/serve/checked_devices.h"
 #include "station/serve/handbook_page.h"
@@ -14,6 +15,7 @@
 #include "station/serve/page_pictures.h"
 #include "station/serve/result_document.h"
 #include "station/serve/spool_form.h"
+#include "station/serve/zip_download.h"
 #include "station/thread/library.h"
 
 namespace station {
@@ -40,17 +42,28 @@ json result_of(const Workspace& workspace, const std::string& name) {
   return result_document(session);
 }
 
-json thread_of(const Workspace& workspace, const std::string& number_text) {
+// With another thread's number, also "delta_e_2000": how far their colours are apart.
+json thread_of(const Workspace& workspace, const std::string& number_text, const std::string& other = {}) {
   int number = 0;
   const char* end = number_text.data() + number_text.size();
   if (std::from_chars(number_text.data(), end, number) != std::from_chars_result{end, std::errc()})
     throw Refused(400, "expected the number of a thread");
   if (!fs::exists(workspace.threads_folder() / "index.sqlite")) throw Refused(404, "the library is empty");
   try {
-    return thread_document(read_thread(Library(workspace.threads_folder(), false).thread_file(number)));
+    json document = thread_document(read_thread(Library(workspace.threads_folder(), false).thread_file(number)));
+    if (!other.empty()) document["delta_e_2000"] = colour_difference(document, thread_of(workspace, other));
+    return document;
   } catch (const std::runtime_error& problem) {
     throw Refused(404, problem.what());
   }
+}
+
+// A page that this program wrote: no scripts, nothing from elsewhere.
+HttpResponse own_page(const fs::path& file) {
+  return {.content_type = "text/html; charset=utf-8",
+          .body = text_of_file(file),
+          .headers = {{"Content-Security-Policy",
+                       "default-src 'none'; img-src data:; style-src 'unsafe-inline'; frame-ancestors 'self'"}}};
 }
 
 }  // namespace
@@ -115,11 +128,16 @@ HttpResponse TechnicianPage::get(const HttpRequest& request) {
   if (request.path == "/api/state") return answered(state());
   if (request.path == "/api/events") return {.stream = true};
   if (request.path == "/api/bench") return answered(bench());
+  if (request.path == "/api/calibration")
+    return answered(calibration_in_full(workspace_.existing_calibration(word_of(request, "name"))));
   if (request.path == "/api/session") return answered(workspace_.session_document(word_of(request, "name")));
   if (request.path == "/api/result") return answered(result_of(workspace_, word_of(request, "name")));
-  if (request.path == "/api/thread") return answered(thread_of(workspace_, word_of(request, "number")));
+  if (request.path == "/api/thread")
+    return answered(thread_of(workspace_, word_of(request, "number"), word_of(request, "with")));
   if (request.path == "/picture") return page_picture(request, workspace_, frame_);
+  if (request.path == "/download") return zip_of(workspace_.exported(checked_name(word_of(request, "name"))));
   if (request.path == "/report") return report(word_of(request, "name"));
+  if (request.path == "/calibration") return calibration_report(word_of(request, "name"));
   refuse_path(request);
 }
 
@@ -128,10 +146,13 @@ HttpResponse TechnicianPage::post(const HttpRequest& request) {
   if (!asked.is_object()) throw Refused(400, "expected a JSON object");
   if (request.path == "/api/control") return take_control(asked);
   const auto& path = request.path;
-  if (path != "/api/job" && path != "/api/answer" && path != "/api/pause" && path != "/api/spool") refuse_path(request);
+  if (path != "/api/job" && path != "/api/answer" && path != "/api/pause" && path != "/api/spool" &&
+      path != "/api/thread")
+    refuse_path(request);
   if (!in_control(asked)) throw Refused(409, "another browser is in control; take control first");
   if (path == "/api/job") return start(asked);
   if (path == "/api/answer") return answer(asked);
+  if (path == "/api/thread") return change_thread(asked);
   if (path == "/api/spool") {
     const std::string name = write_spool(asked, workspace_, rig_file_);
     changed_();
@@ -140,6 +161,30 @@ HttpResponse TechnicianPage::post(const HttpRequest& request) {
   }
   running_job()->pause();
   return said(200, "pausing at the next safe point");
+}
+
+HttpResponse TechnicianPage::change_thread(const json& asked) {
+  const auto number = asked.find("number");
+  if (number == asked.end() || !number->is_number_integer()) throw Refused(400, "expected \"number\": of a thread");
+  const auto removed = asked.find("removed");
+  try {
+    Library library(workspace_.threads_folder(), false);
+    if (removed != asked.end() && removed->is_boolean()) {
+      rig::SystemClock clock;
+      if (*removed == true)
+        library.remove(number->get<int>(), clock.utc());
+      else
+        library.restore(number->get<int>());
+    } else {
+      library.edit(number->get<int>(), sample_of_form(asked));
+    }
+  } catch (const Refused&) {
+    throw;
+  } catch (const std::runtime_error& problem) {
+    throw Refused(409, problem.what());
+  }
+  changed_();
+  return said(200, removed == asked.end() ? "written" : *removed == true ? "taken out of the library" : "put back");
 }
 
 HttpResponse TechnicianPage::answer(const json& asked) {
@@ -174,6 +219,8 @@ json TechnicianPage::state() {
   document["drafts"] = ready_drafts();
   document["export_formats"] = export_formats();
   document["simulated_spools"] = rig_.simulation ? simulated_spools() : std::vector<std::string>();
+  document["calibration_valid_days"] = rig_.calibration_valid_days;
+  document["devices"] = devices_summary(workspace_);
   document["job"] = nullptr;
   if (const std::shared_ptr<Job> of = job()) document["job"] = of->state();
   const std::scoped_lock lock(mutex_);
@@ -191,10 +238,13 @@ json TechnicianPage::bench() {
 HttpResponse TechnicianPage::report(const std::string& name) const {
   const fs::path file = workspace_.session(checked_name(name)) / "report.html";
   if (!fs::is_regular_file(file)) throw Refused(404, "the session " + name + " has no report yet");
-  return {.content_type = "text/html; charset=utf-8",
-          .body = text_of_file(file),
-          .headers = {{"Content-Security-Policy",
-                       "default-src 'none'; img-src data:; style-src 'unsafe-inline'; frame-ancestors 'self'"}}};
+  return own_page(file);
+}
+
+HttpResponse TechnicianPage::calibration_report(const std::string& name) const {
+  const fs::path file = workspace_.existing_calibration(name) / "calibration.html";
+  if (!fs::is_regular_file(file)) throw Refused(404, "the calibration " + name + " has no report");
+  return own_page(file);
 }
 
 // The camera is the next job's as soon as the live view has left it.
@@ -228,8 +278,7 @@ HttpResponse TechnicianPage::start(const json& asked) {
     job_kind_ = text_of(asked, "kind");
     job_said_ = workspace_.folder() / "jobs" / (std::to_string(number) + "-" + job_kind_);
     job_ = std::make_shared<Job>(
-        JobRequest{.title = command.title, .arguments = command.arguments, .said = job_said_, .program = program_},
-        changed_);
+        JobRequest{.title = command.title, .steps = command.steps, .said = job_said_, .program = program_}, changed_);
     ++jobs_;
   }
   changed_();

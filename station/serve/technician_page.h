@@ -2,18 +2,23 @@
 // (workspace.h) holds, and one job at a time.
 //
 //   GET  /                     the page; its other files by their names
-//   GET  /api/state            {"rig", "job", "control", "drafts", "export_formats", "simulated_spools", and the
-//                              workspace's contents}
+//   GET  /api/state            {"rig", "job", "control", "drafts", "export_formats", "simulated_spools",
+//                              "calibration_valid_days", "devices": {"passed" (null: never checked), "checked_ms"},
+//                              and the workspace's contents}
 //   GET  /api/events           event stream: a line when something has changed
 //   GET  /api/bench            {"frame": last_frame.h, "devices": as `check` found them last, "checked_ms": when}
+//   GET  /api/calibration?name= calibration_line.h
 //   GET  /api/session?name=    workspace.h
 //   GET  /api/result?name=     result_document.h, of a session
-//   GET  /api/thread?number=   result_document.h, of a thread in the library
+//   GET  /api/thread?number=   result_document.h, of a thread in the library; with=: of another one, the difference
 //   GET  /picture?of=...       page_pictures.h
 //   GET  /report?name=         the session's report.html
+//   GET  /calibration?name=    the calibration's calibration.html
+//   GET  /download?name=       exports/<name> as a ZIP archive
 //   POST /api/control {"client", "take"}          one browser controls, the others watch
 //   POST /api/job {"client", "kind", ...}         job_command.h; a live view ends for it
 //   POST /api/spool {"client", ...}               spool_form.h
+//   POST /api/thread {"client", "number", "removed": whether it is out of the library | the fields of its sample}
 //   POST /api/answer {"client", "question", "answer"}  to the question with this id that the job asks (job.h)
 //   POST /api/pause {"client"}
 //   POST /api/stop          emergency stop: any browser's, at once, also of a job that an earlier server has left
@@ -52,9 +57,11 @@ class TechnicianPage {
   nlohmann::json state();
   nlohmann::json bench();
   HttpResponse report(const std::string& name) const;
+  HttpResponse calibration_report(const std::string& name) const;
   HttpResponse take_control(const nlohmann::json& asked);
   HttpResponse start(const nlohmann::json& asked);
   HttpResponse answer(const nlohmann::json& asked);
+  HttpResponse change_thread(const nlohmann::json& asked);
   void end_live_view();
   bool in_control(const nlohmann::json& asked) const;
   std::shared_ptr<Job> job() const;

@@ -6,13 +6,16 @@
 
 #include "station/documents/disk/file_name.h"
 #include "station/documents/disk/folder_lock.h"
+#include "station/documents/disk/sha256.h"
 #include "station/documents/disk/stored_file.h"
+#include "station/documents/disk/whole_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
 #include "station/serve/page_answers.h"
 #include "station/session/record/picture_record.h"
 #include "station/session/record/run_state.h"
 #include "station/session/record/session_folder.h"
+#include "station/session/results.h"
 #include "station/session/spool_queue.h"
 #include "station/thread/library.h"
 
@@ -32,7 +35,7 @@ std::vector<std::string> names_in(const fs::path& folder,
   return names;
 }
 
-json library_lines(const fs::path& folder) {
+json library_lines_of(const fs::path& folder) {
   json lines = json::array();
   if (!fs::exists(folder / "index.sqlite")) return lines;
   for (const LibraryThread& thread : Library(folder, false).list()) {
@@ -46,6 +49,29 @@ json library_lines(const fs::path& folder) {
     if (thread.relative_rmse) lines.back()["relative_rmse"] = *thread.relative_rmse;
   }
   return lines;
+}
+
+// Whether the file is there and not older than all that it is made from.
+bool is_made(const fs::path& file, const std::vector<fs::path>& from) {
+  std::error_code error;
+  const auto made = fs::last_write_time(file, error);
+  if (error) return false;
+  return std::ranges::none_of(from, [&](const fs::path& one) {
+    const auto time = fs::last_write_time(one, error);
+    return !error && time > made;
+  });
+}
+
+// As work_left() says, but for the library.
+std::set<std::string> work_left_of(const fs::path& session, bool complete) {
+  const fs::path views = session / "linear" / "views.json", thread = thread_file_of(session);
+  std::set<std::string> left;
+  if (!complete) left.insert("capture");
+  if (!complete || !is_made(views, {session / "journal.jsonl"})) left.insert("develop");
+  if (left.contains("develop") || !is_made(thread, {views})) left.insert("invert");
+  if (left.contains("invert") || !is_made(session / "report.html", {thread, cloth_made_of_file(session)}))
+    left.insert("report");
+  return left;
 }
 
 // A spool as its form has it.
@@ -106,7 +132,13 @@ json Workspace::session_line(const fs::path& folder) {
     now.line = {{"name", name}, {"state", "unreadable"}};
     try {
       const SessionFile session = read_session_file(folder);
-      now.line["state"] = state_name(state_of(read_journal(journal).records, now.in_use));
+      const auto records = read_journal(journal).records;
+      now.line["state"] = state_name(state_of(records, now.in_use));
+      const auto taken = taken_pictures(records);
+      const auto is_view = [](const PlanStep& step) { return step.kind == StepKind::view; };
+      now.line["views"] = std::ranges::count_if(session.plan.steps, is_view);
+      now.line["taken"] = std::ranges::count_if(
+          session.plan.steps, [&](const PlanStep& step) { return is_view(step) && taken.contains(step.id); });
       now.line["spool"] = session.sample && !session.sample->name.empty() ? session.sample->name : session.spool.name;
       now.line["utc"] = session.utc;
     } catch (const std::exception& problem) {
@@ -115,11 +147,17 @@ json Workspace::session_line(const fs::path& folder) {
     known = std::move(now);
   }
   json line = known.line;
-  line["developed"] = fs::exists(folder / "linear", error);
   line["inverted"] = fs::exists(folder / "result" / "thread.json", error);
   line["cloth"] = fs::exists(folder / "result" / "cloth" / "swatch.png", error);
   line["report"] = fs::exists(folder / "report.html", error);
+  line["left"] = json::array();
+  if (!known.line.contains("problem"))
+    line["left"] = work_left_of(folder, line["state"] == state_name(RunState::complete));
   return line;
+}
+
+json Workspace::library_lines() const {
+  return library_lines_of(threads_folder());
 }
 
 json Workspace::queue_line(const std::string& name) {
@@ -137,12 +175,11 @@ json Workspace::queue_line(const std::string& name) {
 }
 
 json Workspace::contents() {
-  json document{{"calibrations", folders_in(folder_ / "calibrations")},
-                {"spools", json::array()},
-                {"sessions", json::array()},
-                {"queues", json::array()},
-                {"threads", library_lines(threads_folder())},
-                {"exports", folders_in(folder_ / "exports")}};
+  json document{{"calibrations", json::array()}, {"spools", json::array()},
+                {"sessions", json::array()},     {"queues", json::array()},
+                {"threads", library_lines()},    {"exports", folders_in(folder_ / "exports")}};
+  for (const std::string& name : folders_in(folder_ / "calibrations"))
+    document["calibrations"].push_back(calibrations_.line(calibration(name)));
   for (const std::string& name : files_in(folder_ / "spools", ".json"))
     document["spools"].push_back(spool_line(spool(name), sample(name)));
   for (const std::string& name : folders_in(folder_ / "sessions"))
@@ -164,6 +201,25 @@ fs::path Workspace::existing_session(const std::string& name) const {
   const fs::path found = session(checked_name(name));
   if (!is_session(found)) throw Refused(404, "there is no session " + name);
   return found;
+}
+
+fs::path Workspace::existing_calibration(const std::string& name) const {
+  const fs::path found = calibration(checked_name(name));
+  if (!fs::exists(found / "calibration.json")) throw Refused(404, "there is no calibration " + name + " yet");
+  return found;
+}
+
+std::set<std::string> Workspace::work_left(const std::string& name) const {
+  const fs::path folder = existing_session(name);
+  const RunState state = state_of(read_journal(folder / "journal.jsonl").records, folder_in_use(folder));
+  std::set<std::string> left = work_left_of(folder, state == RunState::complete);
+  const auto has = [&](const LibraryThread& thread) {
+    return thread.sha256 == sha256_hex(text_of_file(thread_file_of(folder)));
+  };
+  const bool kept = !left.contains("invert") && fs::exists(threads_folder() / "index.sqlite") &&
+                    std::ranges::any_of(Library(threads_folder(), false).list(), has);
+  if (!kept) left.insert("add");
+  return left;
 }
 
 json Workspace::session_document(const std::string& name) {

@@ -12,8 +12,11 @@
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
+
+#include "station/serve/calibration_line.h"
 
 namespace station {
 
@@ -36,13 +39,20 @@ class Workspace {
   std::filesystem::path rig(const std::string& name) const { return folder_ / "rigs" / (name + ".json"); }
   std::filesystem::path preview() const { return folder_ / "preview.jpg"; }
 
-  // {"calibrations", "spools", "sessions", "threads", "queues", "exports"}
+  // A line for each thread of the library: {"number", "name", "sample", "added_utc", "diameter_mm", "session" (its
+  // folder's name), "relative_rmse"}.
+  nlohmann::json library_lines() const;
+  // {"calibrations" (calibration_line.h), "spools", "sessions", "threads", "queues", "exports"}
   nlohmann::json contents();
   // One session: its line in contents(), and "views" with "number", "step", "grade", "reason", "picture" (which file it
   // is, absent without one). Throws Refused (404) when there is none.
   nlohmann::json session_document(const std::string& name);
   // Throws Refused (404) when there is no such session.
   std::filesystem::path existing_session(const std::string& name) const;
+  std::filesystem::path existing_calibration(const std::string& name) const;  // likewise
+  // What a session still lacks of "capture", "develop", "invert", "report" and "add" (to the library). What is older
+  // than what it was made from is lacking.
+  std::set<std::string> work_left(const std::string& name) const;
 
  private:
   nlohmann::json session_line(const std::filesystem::path& folder);
@@ -59,6 +69,7 @@ class Workspace {
   };
   std::mutex sessions_mutex_;
   std::map<std::string, ReadSession> sessions_;
+  CalibrationLines calibrations_;
 };
 
 // The names of the folders in `folder` that may be parts of paths, sorted.

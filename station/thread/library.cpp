@@ -18,7 +18,7 @@ namespace station {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr const char* kTables = R"(
 CREATE TABLE IF NOT EXISTS spools (id INTEGER PRIMARY KEY, barcode TEXT NOT NULL, name TEXT NOT NULL, lot TEXT NOT NULL,
   material TEXT NOT NULL, colour TEXT NOT NULL, note TEXT NOT NULL, UNIQUE (barcode, name, lot));
@@ -28,6 +28,8 @@ CREATE TABLE IF NOT EXISTS threads (id INTEGER PRIMARY KEY AUTOINCREMENT, spool 
   session INTEGER REFERENCES sessions (id), name TEXT NOT NULL, sha256 TEXT NOT NULL UNIQUE, added_utc TEXT NOT NULL,
   diameter_mm REAL NOT NULL, relative_rmse REAL);
 )";
+// What version 2 added.
+constexpr const char* kRemoved = "ALTER TABLE threads ADD COLUMN removed_utc TEXT";
 constexpr const char* kSelect =
     "SELECT threads.id, barcode, spools.name, lot, material, colour, note, threads.name, added_utc, sha256, "
     "coalesce(sessions.folder, ''), coalesce(sessions.utc, ''), relative_rmse, diameter_mm "
@@ -51,8 +53,15 @@ class Library::Index {
                                "; install the later one");
     run("PRAGMA foreign_keys = ON", {});
     run("PRAGMA synchronous = FULL", {});
-    execute(kTables);
-    execute("PRAGMA user_version = 1");
+    if (version == kVersion) return;
+    execute("BEGIN IMMEDIATE");  // two programs may open it at once
+    run("PRAGMA user_version", {}, [&](sqlite3_stmt* row) { version = sqlite3_column_int(row, 0); });
+    if (version < kVersion) {
+      execute(kTables);
+      execute(kRemoved);
+      execute("PRAGMA user_version = 2");
+    }
+    execute("COMMIT");
   }
   ~Index() { sqlite3_close(db_); }
   Index(const Index&) = delete;
@@ -155,6 +164,13 @@ LibraryThread Library::add(const fs::path& session_or_thread, const std::string&
     if (other.sha256 == sha256)
       throw std::runtime_error("'" + file.string() + "' is in the library already, as number " +
                                std::to_string(other.number));
+  int taken_out = 0;
+  index_->run("SELECT id FROM threads WHERE sha256 = ?", {sha256},
+              [&](sqlite3_stmt* row) { taken_out = sqlite3_column_int(row, 0); });
+  if (taken_out > 0)
+    throw std::runtime_error("'" + file.string() + "' was taken out of the library, as number " +
+                             std::to_string(taken_out) + "; put it back with threadstation library restore " +
+                             std::to_string(taken_out));
   Sample sample{.barcode = {}, .name = thread.name, .lot = {}, .material = {}, .colour = {}, .note = {}};
   std::string session_utc;
   if (from_session) {
@@ -202,7 +218,7 @@ std::vector<LibraryThread> Library::list(const std::string& words) const {
   index_->run(
       std::string(kSelect) +
           "WHERE instr(lower(barcode || ' ' || spools.name || ' ' || lot || ' ' || material || ' ' || colour || "
-          "' ' || note || ' ' || threads.name), lower(?)) > 0 ORDER BY threads.id",
+          "' ' || note || ' ' || threads.name), lower(?)) > 0 AND removed_utc IS NULL ORDER BY threads.id",
       {words}, [&](sqlite3_stmt* row) { threads.push_back(thread_of(row, Index::text)); });
   return threads;
 }
@@ -215,6 +231,49 @@ LibraryThread Library::show(int number) const {
     throw std::runtime_error("the library '" + folder_.string() + "' has no thread number " + std::to_string(number) +
                              "; see threadstation library list");
   return *thread;
+}
+
+LibraryThread Library::edit(int number, const Sample& sample) {
+  show(number);
+  if (sample.name.empty() && sample.barcode.empty())
+    throw std::runtime_error("thread number " + std::to_string(number) +
+                             " was to have neither name nor barcode; give one of them");
+  index_->execute("BEGIN IMMEDIATE");
+  try {
+    const std::string spool = index_->id_of(
+        "INSERT OR IGNORE INTO spools (barcode, name, lot, material, colour, note) VALUES (?, ?, ?, ?, ?, ?)",
+        "SELECT id FROM spools WHERE barcode = ? AND name = ? AND lot = ?",
+        {sample.barcode, sample.name, sample.lot, sample.material, sample.colour, sample.note},
+        {sample.barcode, sample.name, sample.lot});
+    index_->run("UPDATE spools SET material = ?, colour = ?, note = ? WHERE id = ?",
+                {sample.material, sample.colour, sample.note, spool});
+    index_->run("UPDATE threads SET spool = ? WHERE id = CAST(? AS INTEGER)", {spool, std::to_string(number)});
+    index_->execute("COMMIT");
+  } catch (...) {
+    index_->run("ROLLBACK", {});
+    throw;
+  }
+  return show(number);
+}
+
+void Library::remove(int number, const std::string& utc) {
+  set_removed(number, utc);
+}
+
+void Library::restore(int number) {
+  set_removed(number, "");
+}
+
+void Library::set_removed(int number, const std::string& utc) {
+  const std::string id = std::to_string(number);
+  show(number);
+  bool out = false;
+  index_->run("SELECT removed_utc IS NOT NULL FROM threads WHERE id = CAST(? AS INTEGER)", {id},
+              [&](sqlite3_stmt* row) { out = sqlite3_column_int(row, 0) != 0; });
+  if (out == !utc.empty())
+    throw std::runtime_error("thread number " + id + " is " + (out ? "out of" : "in") + " the library '" +
+                             folder_.string() + "' already; see threadstation library list");
+  index_->run("UPDATE threads SET removed_utc = nullif(?, '') WHERE id = CAST(? AS INTEGER)", {utc, id});
 }
 
 void Library::export_thread(int number, const fs::path& out) const {

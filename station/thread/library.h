@@ -1,6 +1,7 @@
 // The lab's collection of digitized threads: a folder with an index of spools, sessions and threads (SQLite).
 //
-//   <library>/index.sqlite   tables spools, sessions, threads; can be made again from the sessions
+//   <library>/index.sqlite   tables spools, sessions, threads; can be made again from the sessions. A thread that was
+//                            taken out keeps its row, with the time
 //   <library>/threads/<number>.json   thread files as they were added
 //
 // Errors: std::runtime_error, one line: the library, what was found and what to do.
@@ -40,6 +41,13 @@ class Library {
   // ignored.
   std::vector<LibraryThread> list(const std::string& words = {}) const;
   LibraryThread show(int number) const;  // one entry
+  // What the lab knows of the thread's spool, written anew; other threads of the same spool (barcode, name and lot)
+  // share it only as long as these three are the same. Errors: as above, also for a sample without any name.
+  LibraryThread edit(int number, const Sample& sample);
+  // Takes a thread out of the list, and puts it back; its file and its number stay. Errors: as above, also where it is
+  // out, or in, already.
+  void remove(int number, const std::string& utc);
+  void restore(int number);
   // Writes thread.json, sample.json and the hashes of both (manifest.json) into a new or empty folder. Errors: as
   // above, also when the file in the library is not what was added.
   void export_thread(int number, const std::filesystem::path& out) const;
@@ -47,6 +55,7 @@ class Library {
 
  private:
   class Index;
+  void set_removed(int number, const std::string& utc);
   std::filesystem::path folder_;
   std::unique_ptr<Index> index_;
 };

@@ -1,76 +1,67 @@
-// The technician's page: screens, keys, themes; each screen is a module of its own.
+// The technician's page: its screens, and which of them is shown (#/screen/name, so that reload and back lead there).
 
 import {beginBench, showBench, showJob} from "/bench.js";
+import {beginCalibrations, chooseCalibration, showCalibrations} from "/calibration.js";
 import {beginForms, showForms} from "/capture.js";
 import {byId, readTexts, text} from "/document.js";
+import {beginFrame, showFrame} from "/frame.js";
+import {beginKeys} from "/keys.js";
 import {beginLibrary, showLibrary} from "/library.js";
+import {showOverview} from "/overview.js";
 import {beginResult, showResult} from "/result.js";
-import {beginSession, chooseSession, showSession, showSessionChoice} from "/session.js";
-import {follow, inControl, oneAtATime, post, state} from "/station.js";
+import {beginSession, chooseSession, session, showSession, showSessionChoice} from "/session.js";
+import {follow, oneAtATime, post, state} from "/station.js";
 
-let screen = "bench";
+const shows = {overview: showOverview, bench: showBench, calibrate: showCalibrations, capture: showForms, session: showSession, result: showResult,
+               library: showLibrary};
 
-const toBench = () => show("bench");
-const shows = {bench: showBench, session: () => showSession(toBench), result: showResult, library: showLibrary};
+let screen = "";
+
 const showScreen = oneAtATime(() => state && shows[screen] ? shows[screen]() : null);
-const stop = () => post("/api/stop");
 
-function show(name) {
-  screen = name;
-  for (const section of document.querySelectorAll("main > section")) section.hidden = section.id !== name;
-  for (const button of document.querySelectorAll("#screens button")) {
-    if (button.dataset.screen === name) button.setAttribute("aria-current", "page");
-    else button.removeAttribute("aria-current");
+// What the address says.
+function route() {
+  const [name, ...of] = location.hash.replace(/^#\//, "").split("/").map(decodeURIComponent);
+  const wanted = shows[name] ? name : "overview";
+  if (of[0] && (wanted === "session" || wanted === "result")) chooseSession(of[0]);
+  if (of[0] && wanted === "calibrate") chooseCalibration(of[0]);
+  if (wanted !== screen) {
+    screen = wanted;
+    for (const section of document.querySelectorAll("main > section")) section.hidden = section.id !== screen;
+    for (const link of document.querySelectorAll("#screens a")) {
+      if (link.dataset.screen === screen) link.setAttribute("aria-current", "page");
+      else link.removeAttribute("aria-current");
+    }
+    scrollTo(0, 0);
   }
-  scrollTo(0, 0);
   showScreen();
 }
 
 function render() {
-  byId("rig").textContent = "· " + state.rig;
-  const control = byId("control");
-  control.textContent = text(inControl() ? "control_mine" : state.control ? "control_other" : "control_free");
-  control.disabled = inControl();
-  showJob();
-  for (const button of document.querySelectorAll("form button, #choices button, #pause, [data-kind]")) button.disabled = !inControl();
-  showForms();
   showSessionChoice();
+  showJob();
+  showFrame();
+  showForms();
   showScreen();
-}
-
-function setTheme(name) {
-  document.body.dataset.theme = localStorage.theme = name;
-  byId("theme").textContent = text(name === "red" ? "theme_dark" : "theme_red");
-}
-
-function key(event) {
-  if (event.key === "Escape") { event.preventDefault(); stop(); return; }
-  const on = event.target.tagName;
-  if (event.ctrlKey || event.altKey || event.metaKey || /^(INPUT|SELECT|TEXTAREA)$/.test(on)) return;
-  if (event.key === "Enter" && !/^(BUTTON|A)$/.test(on) && !byId("question").hidden) byId("choices").firstChild.click();
-  if (event.key === "p" && !byId("progress").hidden && inControl()) post("/api/pause");
-  if (event.key === "t") byId("theme").click();
-  const screens = [...document.querySelectorAll("#screens button")], wanted = screens[Number(event.key) - 1];
-  if (wanted) wanted.click();
 }
 
 async function begin() {
   await readTexts();
-  setTheme(localStorage.theme || "dark");
-  for (const button of document.querySelectorAll("#screens button")) button.onclick = () => show(button.dataset.screen);
   for (const list of ["session-choice", "result-choice"])
-    byId(list).onchange = event => { chooseSession(event.target.value); show(screen); };
-  byId("control").onclick = () => post("/api/control", {take: Boolean(state && state.control)});
-  byId("theme").onclick = () => setTheme(document.body.dataset.theme === "red" ? "dark" : "red");
-  byId("stop").onclick = stop;
-  addEventListener("keydown", key);
+    byId(list).onchange = event => { location.hash = `#/${screen}/${encodeURIComponent(event.target.value)}`; };
+  beginFrame();
+  beginKeys();
   beginBench();
-  beginForms(toBench);
-  beginSession(toBench);
-  beginResult(toBench);
+  beginCalibrations();
+  beginForms();
+  beginSession();
+  beginResult();
   beginLibrary();
-  show("bench");
+  addEventListener("hashchange", route);
+  route();
   await follow(render);
+  // Whoever comes first is in control without asking for it.
+  if (state && !state.control) await post("/api/control", {}, false);
 }
 
 begin();

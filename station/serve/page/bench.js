@@ -1,7 +1,9 @@
 // Bench: the next instruction and its big button; what the camera sees, and how the bench stands.
 
-import {byId, draw, items, make, text, time} from "/document.js";
-import {ask, inControl, picture, post, startJob, state} from "/station.js";
+import {allow, byId, draw, items, make, show, text, time} from "/document.js";
+import {outcomeText} from "/frame.js";
+import {beginLive, newFrame} from "/live.js";
+import {ask, inControl, jobRuns, picture, post, startJob, state, whyNot} from "/station.js";
 import {stepPicture} from "/step_picture.js";
 
 let shownFrame = "", shownArrangement = "";
@@ -9,20 +11,34 @@ let shownFrame = "", shownArrangement = "";
 export function showJob() {
   const job = state.job;
   document.body.dataset.job = !job ? "none" : `${job.number} ${job.running ? "running" : "ended"}`;
-  byId("job-title").textContent = !job ? text("idle")
-    : `${text("kind_" + job.kind)} · ${job.title}: ${job.running ? text("running") : job.status === 0 ? text("ended_well") : text("ended_badly")}`;
-  byId("job-title").className = !job || job.running ? "" : job.status === 0 ? "well" : "badly";
+  byId("job-title").textContent = !job ? text("idle") : `${text("kind_" + job.kind)} · ${job.title}: ${outcomeText(job)}`;
+  byId("job-title").className = !job || job.running ? "" : job.outcome === "well" ? "well" : job.outcome === "badly" ? "badly" : "doubtfully";
+  showSteps(job);
   showQuestion(job);
+  const live = Boolean(job && job.kind === "preview");
   byId("progress").hidden = !(job && job.running && !job.question);
-  byId("preview").disabled = !inControl() || Boolean(job && job.running);
+  byId("bar-of").hidden = live;  // nobody waits for its end
+  const why = whyNot() || (live && job.running ? text("live_runs") : "");
+  allow(byId("preview"), why);
+  byId("log").hidden = !job;
   if (!job) return;
-  byId("label").textContent = `${job.done} / ${job.total} ${job.label}`;
-  byId("bar").value = job.total ? job.done / job.total : 0;
+  byId("label").textContent = job.total ? `${job.done} / ${job.total} ${job.label}` : job.label || text("begins");
+  if (job.total) byId("bar").value = job.done / job.total;
+  else byId("bar").removeAttribute("value");
   byId("left").textContent = job.seconds_left === null ? "" : `${time(job.seconds_left)} ${text("left")}`;
-  byId("pause").textContent = text(job.kind === "preview" ? "end_preview" : "pause");
+  byId("pause").textContent = text(live ? "end_preview" : "pause");
   const lines = byId("lines"), end = lines.scrollTop + lines.clientHeight >= lines.scrollHeight - 4;
   lines.textContent = job.lines.join("\n");
   if (end) lines.scrollTop = lines.scrollHeight;
+  if (job.outcome === "badly") byId("log").open = true;
+}
+
+// What follows what, of a job of several commands.
+function showSteps(job) {
+  const steps = job && job.steps.length > 1 ? job.steps : [];
+  byId("steps").hidden = steps.length === 0;
+  show(byId("steps"), steps, () => steps.map(step => make("li", {className: `step ${step.state}`},
+    make("strong", {textContent: text(`step_${step.kind}`)}), ` ${text(step.state === "running" || step.state === "waiting" ? `step_is_${step.state}` : `ended_${step.state}`)}`)));
 }
 
 // A question is shown once: its buttons stay the same until it has been answered.
@@ -119,19 +135,21 @@ export async function showBench() {
   const frame = bench.frame;
   byId("no-frame").hidden = frame !== null;
   byId("frame").hidden = frame === null;
-  if (frame === null || frame.id === shownFrame) return;
-  shownFrame = frame.id;
-  byId("frame-source").textContent = `${frame.source || text("live_view")} · ${frame.width_px} × ${frame.height_px}`;
+  if (frame === null || `${frame.id} ${jobRuns()}` === shownFrame) return;
+  shownFrame = `${frame.id} ${jobRuns()}`;
+  byId("frame-source").textContent = `${frame.source || text(jobRuns() ? "live_view" : "live_view_ended")} · ${frame.width_px} × ${frame.height_px}`;
   byId("histogram").replaceChildren(histogram(frame.histogram));
   byId("measures").replaceChildren(...measures(frame));
   byId("frame-picture").src = picture({of: "frame", id: frame.id});
   await byId("frame-picture").decode().catch(() => {});  // the next picture waits for this one, or none would ever be seen
+  newFrame();
 }
 
 // Answers the question that the person has read, not one that has come meanwhile.
 const answer = (question, chosen) => post("/api/answer", {question: question.id, answer: chosen});
 
 export function beginBench() {
+  beginLive();
   byId("pause").onclick = () => post("/api/pause");
   byId("preview").onclick = () => startJob({kind: "preview"});
   byId("home").onclick = () => startJob({kind: "home"});

@@ -1,7 +1,8 @@
-// Calibrate, and capture: the spool form with its barcode, and the queue.
+// Capture: the spool form with its barcode, one spool, the queue.
 
-import {byId, fill, make, row, text} from "/document.js";
-import {post, startJob, state} from "/station.js";
+import {calibrationVerdict, newestCalibration} from "/calibration.js";
+import {allow, byId, fill, row, show, text} from "/document.js";
+import {post, startJob, state, whyNot} from "/station.js";
 
 const numbers = ["turns", "diameter_mm"];
 
@@ -9,33 +10,54 @@ export function showForms() {
   const spools = state.spools.map(spool => spool.name);
   const titles = state.spools.map(spool => spool.sample && spool.sample.name ? `${spool.name} · ${spool.sample.name}` : spool.name);
   fill(byId("capture-form").spool, spools, titles);
-  for (const form of ["capture-form", "queue-form"]) fill(byId(form).calibration, state.calibrations);
-  fill(byId("check-form").calibration, ["", ...state.calibrations], [text("no_calibration"), ...state.calibrations]);
+  const solved = state.calibrations.filter(one => one.utc), names = solved.map(one => one.name), newest = newestCalibration();
+  const verdicts = solved.map(one => `${one.name} · ${text("calibration_" + calibrationVerdict(one))}`);
+  for (const form of ["capture-form", "queue-form"]) {
+    const list = byId(form).calibration, empty = list.options.length === 0;
+    fill(list, names, verdicts);
+    if (empty && newest) list.value = newest.name;
+  }
+  fill(byId("check-form").calibration, ["", ...names], [text("no_calibration"), ...verdicts]);
   fill(byId("queue-form").queue, state.queues.map(queue => queue.name));
   fill(byId("spool-form").simulated, state.simulated_spools);
+  // A wound frame has two runs of thread; the simulated bench has the front one alone unless it is told otherwise.
+  if (!byId("spool-form").sheets.chosen) byId("spool-form").sheets.value = state.simulated_spools.length ? "front" : "front_and_back";
+  byId("spool-form").sheets.chosen = true;
   byId("simulated").hidden = state.simulated_spools.length === 0;
   byId("queue-form").hidden = state.queues.length === 0;
-  byId("calibrations").replaceChildren(...state.calibrations.map(name => make("li", {textContent: name})));
+  const why = whyNot() || (spools.length === 0 ? text("no_spool") : names.length === 0 ? text("no_calibration_yet") : "");
+  allow(byId("capture-form").querySelector(".primary"), why);
+  byId("capture-why").textContent = why;
+  fill(byId("people"), [...new Set(people())]);
   showQueue();
+}
+
+// Who captured here before, for the browser to complete.
+const people = () => JSON.parse(localStorage.people || "[]");
+
+function remember(person) {
+  if (person) localStorage.people = JSON.stringify([person, ...people().filter(one => one !== person)].slice(0, 20));
 }
 
 function showQueue() {
   const queue = state.queues.find(one => one.name === byId("queue-form").queue.value);
   byId("queue-problem").textContent = queue && queue.problem ? queue.problem : "";
-  byId("queue-rows").replaceChildren(...(queue ? queue.spools : []).map(spool =>
+  show(byId("queue-rows"), queue, () => (queue ? queue.spools : []).map(spool =>
     row(spool.session, spool.sample.name, spool.sample.lot, spool.sample.material, spool.sample.colour, spool.state || text("waiting"))));
 }
 
-// A scanner types the barcode and Enter: of a spool that is known, everything else is filled in.
-function scanned(form) {
-  const known = state.spools.find(spool => spool.sample && spool.sample.barcode === form.barcode.value.trim());
+// Of a spool that is known, everything else is filled in.
+export function scanned(barcode) {
+  const form = byId("spool-form"), wanted = barcode.trim();
+  form.barcode.value = wanted;
+  const known = state.spools.find(spool => spool.sample && spool.sample.barcode === wanted);
   if (known) {
-    for (const key of ["name", "lot", "material", "colour", "note"]) form[key].value = known.sample[key];
+    for (const key of ["name", "lot", "material", "colour", "note"]) form.elements[key].value = known.sample[key];
     for (const key of numbers) if (known[key] !== undefined) form[key].value = known[key];
     byId("capture-form").spool.value = known.name;
   }
   byId("spool-said").textContent = text(known ? "spool_known" : "spool_new");
-  form.name.focus();
+  form.elements.name.focus();
 }
 
 async function writeSpool(event) {
@@ -49,26 +71,29 @@ async function writeSpool(event) {
   const capture = byId("capture-form");
   if (![...capture.spool.options].some(option => option.value === answer.name)) capture.spool.append(new Option(answer.name, answer.name));
   capture.spool.value = answer.name;
-  if (!capture.name.value) capture.name.value = answer.name;
+  capture.elements.name.value = answer.name;
   capture.person.focus();
 }
 
-export function beginForms(started) {
-  const submit = (id, fields) => {
-    byId(id).onsubmit = event => {
-      event.preventDefault();
-      startJob(fields(Object.fromEntries(new FormData(event.target)))).then(answer => answer.ok && started());
-    };
+export function beginForms() {
+  byId("capture-form").onsubmit = event => {
+    event.preventDefault();
+    const {whole, ...fields} = Object.fromEntries(new FormData(event.target));
+    remember(fields.person);
+    startJob({kind: whole ? "digitize" : "capture", ...fields});
   };
-  submit("calibrate-form", fields => ({kind: "calibrate", ...fields}));
-  submit("capture-form", fields => ({kind: "capture", ...fields}));
-  submit("queue-form", ({queue, ...fields}) => ({kind: "queue", name: queue, ...fields}));
+  byId("queue-form").onsubmit = event => {
+    event.preventDefault();
+    const {queue, ...fields} = Object.fromEntries(new FormData(event.target));
+    remember(fields.person);
+    startJob({kind: "queue", name: queue, ...fields});
+  };
   byId("queue-form").queue.onchange = showQueue;
   const spool = byId("spool-form");
   spool.onsubmit = writeSpool;
   spool.barcode.onkeydown = event => {
     if (event.key !== "Enter") return;
     event.preventDefault();
-    scanned(spool);
+    scanned(spool.barcode.value);
   };
 }

@@ -1,15 +1,19 @@
-// Library: search, two threads side by side, export.
+// Library: pictures, search, duplicates by barcode, edit, taking out and putting back, two threads side by side, export.
 
-import {byId, fill, make, percent, row, text} from "/document.js";
+import {ago, allow, byId, fill, make, percent, row, show, text} from "/document.js";
 import {curves} from "/curves.js";
-import {ask, inControl, picture, startJob, state} from "/station.js";
-import {unknownRows} from "/result.js";
+import {threadPicture} from "/overview.js";
+import {ask, post, startJob, state, whyNot} from "/station.js";
+import {colourWords, unknownRows} from "/result.js";
 
-let chosen = [];  // numbers, the last two that were marked
-let shown = "";   // what the table was made of; made again only for something else, so that the focus stays where it is
+const kFields = ["name", "barcode", "lot", "material", "colour", "note"];
+
+let chosen = [];   // numbers, the last two that were marked
+let edited = 0;    // the number of the thread whose form is open
+let takenOut = 0;  // the number that can be put back
 
 function matches(thread, words) {
-  const all = [thread.name, thread.session, thread.added_utc, ...Object.values(thread.sample)].join(" ").toLowerCase();
+  const all = [thread.number, thread.name, thread.session, thread.added_utc, ...Object.values(thread.sample)].join(" ").toLowerCase();
   return words.toLowerCase().split(/\s+/).every(word => all.includes(word));
 }
 
@@ -26,28 +30,65 @@ function choice(thread) {
   return box;
 }
 
-function exportButton(thread) {
+function button(key, thread, act, why = "") {
+  const made = make("button", {type: "button", textContent: text(key), onclick: act});
+  made.setAttribute("aria-label", `${text(key)} ${thread.number}`);
+  allow(made, why);
+  return made;
+}
+
+function exported(thread) {
   const format = byId("export-format").value, name = `thread-${thread.number}-${format}`;
-  if (state.exports.includes(name)) return make("span", {textContent: `${text("exported")}: exports/${name}`});
-  const button = make("button", {type: "button", textContent: text("export"), disabled: !inControl()});
-  button.setAttribute("aria-label", `${text("export")} ${thread.number}`);
-  button.dataset.export = thread.number;
-  button.onclick = () => startJob({kind: "export", number: thread.number, format, name});
-  return button;
+  if (state.exports.includes(name))
+    return make("a", {href: "/download?" + new URLSearchParams({name}), download: `${name}.zip`, textContent: `${text("download")} ${name}.zip`});
+  const made = button("export", thread, () => startJob({kind: "export", number: thread.number, format, name}), whyNot());
+  made.dataset.export = thread.number;
+  return made;
+}
+
+async function change(fields) {
+  const answer = await post("/api/thread", fields);
+  if (answer.ok && "removed" in fields) takenOut = fields.removed ? fields.number : 0;
+  if (answer.ok) edited = 0;
+  showLibrary();
+}
+
+function editForm(thread) {
+  const form = make("form", {className: "edit"}, ...kFields.map(key => make("label", {}, make("span", {textContent: text(key === "material" ? "fiber" : key)}),
+    make("input", {name: key, value: thread.sample[key], maxLength: 100, autocomplete: "off"}))), make("button", {textContent: text("keep")}),
+    button("cancel", thread, () => { edited = 0; showLibrary(); }));
+  form.onsubmit = event => {
+    event.preventDefault();
+    change({number: thread.number, ...Object.fromEntries(new FormData(form))});
+  };
+  return make("tr", {}, make("td", {colSpan: 9}, form));
+}
+
+function lines(thread, twins) {
+  const name = make("span", {}, make("strong", {textContent: thread.name}));
+  if (twins > 1) name.append(make("span", {className: "badge", textContent: text("same_barcode", {n: twins})}));
+  name.append(make("span", {className: "about", textContent: `${ago(thread.added_utc)}${thread.sample.note ? ` · ${thread.sample.note}` : ""}`}));
+  const actions = make("div", {className: "row tight"}, exported(thread),
+    button("edit", thread, () => { edited = edited === thread.number ? 0 : thread.number; showLibrary(); }),
+    button("take_out", thread, () => change({number: thread.number, removed: true})));
+  const shown = row(choice(thread), make("span", {className: "thumb"}, ...threadPicture(thread)), thread.number, name, thread.sample.barcode, thread.sample.lot,
+                    [thread.sample.material, thread.sample.colour].filter(Boolean).join(", "), [`${thread.diameter_mm} mm`, percent(thread.relative_rmse)].filter(Boolean).join(" · "), actions);
+  return edited === thread.number ? [shown, editForm(thread)] : [shown];
 }
 
 async function showComparison() {
-  const threads = (await Promise.all(chosen.map(number => ask("/api/thread", {number})))).filter(Boolean);
+  const [first, second] = chosen;
+  const threads = (await Promise.all(chosen.map(number => ask("/api/thread", number === second ? {number, with: first} : {number})))).filter(Boolean);
   byId("comparison").hidden = threads.length === 0;
   byId("compared").replaceChildren(...threads.map((thread, i) => {
     const line = state.threads.find(one => one.number === chosen[i]);
     const column = make("div", {className: "thread"}, make("h4", {textContent: `${chosen[i]} · ${thread.name}`}));
     const swatch = make("div", {className: "swatch"});
-    swatch.style.backgroundColor = thread.colour;
-    const woven = line && state.sessions.some(one => one.name === line.session && one.cloth);
-    column.append(swatch, make("p", {textContent: `${thread.diameter_mm} mm · ${text("fit")} ${percent(thread.relative_rmse)}`}),
-      ...(woven ? [make("img", {src: picture({of: "cloth", session: line.session, view: "swatch"}), alt: text("cloth_swatch")})] : []),
-      make("table", {}, make("tbody", {}, ...unknownRows(thread))));
+    swatch.style.backgroundColor = thread.colour.srgb;
+    column.append(swatch, make("p", {textContent: colourWords(thread.colour)}),
+      make("p", {textContent: `${thread.diameter_mm} mm · ${text("fit")} ${percent(thread.relative_rmse)}`}),
+      ...("delta_e_2000" in thread ? [make("p", {textContent: text("colour_difference", {value: thread.delta_e_2000.toFixed(1)})})] : []),
+      ...(line ? threadPicture(line) : []), make("div", {className: "wide", tabIndex: 0}, make("table", {}, make("tbody", {}, ...unknownRows(thread)))));
     return column;
   }));
   byId("compared-curves").replaceChildren(...(threads.length ? [curves(threads)] : []));
@@ -56,13 +97,14 @@ async function showComparison() {
 export function showLibrary() {
   const words = byId("search").value.trim(), found = state.threads.filter(thread => matches(thread, words));
   fill(byId("export-format"), state.export_formats, state.export_formats.map(format => text(`export_${format}`)));
-  const mark = JSON.stringify([found, chosen, state.exports, byId("export-format").value, inControl()]);
-  if (mark === shown) return;
-  shown = mark;
   byId("found").textContent = `${found.length} / ${state.threads.length}`;
-  byId("threads").replaceChildren(...found.map(thread => row(choice(thread), thread.number, thread.name, thread.sample.barcode,
-    thread.sample.lot, thread.sample.colour, thread.diameter_mm, percent(thread.relative_rmse), exportButton(thread))));
-  return showComparison();
+  byId("undo").hidden = takenOut === 0;
+  byId("undo-words").textContent = text("was_taken_out", {number: takenOut});
+  byId("undo-button").onclick = () => change({number: takenOut, removed: false});
+  const twins = thread => thread.sample.barcode ? state.threads.filter(other => other.sample.barcode === thread.sample.barcode).length : 1;
+  const before = byId("threads").shown;
+  show(byId("threads"), [found, chosen, edited, state.exports, byId("export-format").value, whyNot()], () => found.flatMap(thread => lines(thread, twins(thread))));
+  if (before !== byId("threads").shown) return showComparison();
 }
 
 export function beginLibrary() {

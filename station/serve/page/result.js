@@ -1,9 +1,11 @@
 // Result: photograph against fit, view by view; parameters and curves with their errors; cloth in a weave and colours to choose.
 
-import {byId, fill, make, percent, row, text} from "/document.js";
+import {allow, byId, fill, hasText, make, percent, row, text} from "/document.js";
 import {curves} from "/curves.js";
-import {ask, picture, startJob, state} from "/station.js";
+import {ask, picture, startJob, state, whyNot} from "/station.js";
 import {session} from "/session.js";
+
+const kGood = 0.1, kUsable = 0.2;  // relative RMSE of a fit
 
 let shown = "", result = null;
 
@@ -22,8 +24,26 @@ function showView() {
 
 function wipe() { byId("fitted").style.clipPath = `inset(0 0 0 ${byId("wipe").value}%)`; byId("wipe-line").style.left = `${byId("wipe").value}%`; }
 
+// Each by its name in words and a sentence; its symbol after that.
 export function unknownRows(thread) {
-  return thread.unknowns.map(one => row(one.name, one.value.toPrecision(3), `± ${one.sigma.toPrecision(2)}`, one.at_bound ? text("at_bound") : ""));
+  return thread.unknowns.map(one => {
+    const name = make("span", {}, make("strong", {textContent: hasText(`name_${one.name}`) ? text(`name_${one.name}`) : one.name}),
+                      make("span", {className: "dim symbol", textContent: ` ${one.name}`}));
+    if (hasText(`about_${one.name}`)) name.append(make("span", {className: "about", textContent: text(`about_${one.name}`)}));
+    return row(name, one.value.toPrecision(3), `± ${one.sigma.toPrecision(2)}`, one.at_bound ? text("at_bound") : "");
+  });
+}
+
+// In words first: whether to believe it.
+function verdict() {
+  const off = result.relative_rmse, grade = off === null ? "not" : off <= kGood ? "good" : off <= kUsable ? "usable" : "not";
+  byId("fit-verdict").className = `verdict-line ${grade}`;
+  byId("fit-verdict").replaceChildren(make("strong", {textContent: text(`fit_${grade}`)}), ` · ${text(`fit_${grade}_means`)}`);
+}
+
+export function colourWords(colour) {
+  const [l, a, b] = colour.lab;
+  return `${colour.srgb} · Lab ${l.toFixed(1)}, ${a.toFixed(1)}, ${b.toFixed(1)}${colour.clipped ? ` · ${text("colour_clipped")}` : ""}`;
 }
 
 function showCloth() {
@@ -44,6 +64,9 @@ export async function showResult() {
   if (!byId("draft-picture").src && state.drafts.length) showDraft();
   const line = state.sessions.find(one => one.name === session), fitted = Boolean(line && line.inverted);
   byId("no-result").hidden = fitted;
+  const why = whyNot();
+  allow(byId("cloth-form").querySelector(".primary"), why);
+  byId("cloth-why").textContent = why;
   byId("fit").hidden = !fitted;
   if (!fitted) return;
   const found = await ask("/api/result", {name: session});
@@ -51,7 +74,9 @@ export async function showResult() {
   shown = JSON.stringify([session, found]);
   result = found;
   byId("fit-figures").textContent = `${result.name} · ${result.diameter_mm} mm · ${text("fit")} ${percent(result.relative_rmse)}`;
-  byId("swatch").style.backgroundColor = result.colour;
+  verdict();
+  byId("swatch").style.backgroundColor = result.colour.srgb;
+  byId("colour-words").textContent = colourWords(result.colour);
   byId("doubts").replaceChildren(...result.doubts.map(doubt => make("li", {textContent: doubt})));
   byId("unknowns").replaceChildren(...unknownRows(result));
   byId("curves").replaceChildren(curves([result]));
@@ -60,17 +85,20 @@ export async function showResult() {
   showCloth();
 }
 
-export function beginResult(started) {
+export function beginResult() {
   byId("view-choice").onchange = showView;
   byId("compare-with").onchange = showView;
   byId("wipe").oninput = wipe;
   wipe();
   const form = byId("cloth-form");
   form.draft.onchange = showDraft;
+  const colours = () => { byId("chosen-colours").hidden = form.own.value !== "chosen"; };
+  form.own.onchange = colours;
+  colours();
   form.onsubmit = event => {
     event.preventDefault();
     const fields = {kind: "cloth", name: session, draft: form.draft.value, quick: form.quick.checked};
     if (form.own.value === "chosen") Object.assign(fields, {warp_colour: form.warp.value, weft_colour: form.weft.value});
-    startJob(fields).then(answer => answer.ok && started());
+    startJob(fields);
   };
 }

@@ -8,6 +8,15 @@ const client = sessionStorage.client || (sessionStorage.client = crypto.randomUU
 
 export let state = null;
 export const inControl = () => state !== null && state.control === client;
+export const jobRuns = () => Boolean(state && state.job && state.job.running);
+
+// Why nothing can be started now; empty when it can. A live view ends for the next job.
+export function whyNot() {
+  if (!inControl()) return text("not_in_control");
+  return jobRuns() && state.job.kind !== "preview" ? text("job_runs", {job: text(`kind_${state.job.kind}`)}) : "";
+}
+
+export const go = (screen, name = "") => { location.hash = `#/${screen}${name ? "/" + encodeURIComponent(name) : ""}`; };
 
 // What the station says to everybody who hears this page, and everybody who reads the line.
 export function say(words) { byId("said").textContent = words; }
@@ -23,7 +32,7 @@ export async function ask(path, query = {}) {
 }
 
 // The answer with "ok".
-export async function post(path, fields = {}) {
+export async function post(path, fields = {}, told = true) {
   try {
     const answer = await fetch(path, {
       method: "POST",
@@ -31,7 +40,7 @@ export async function post(path, fields = {}) {
       body: JSON.stringify({client, ...fields}),
     });
     const found = await answer.json();
-    say(found.message);
+    if (told) say(found.message);
     return {...found, ok: answer.ok};
   } catch {
     say(text("lost"));
@@ -39,7 +48,19 @@ export async function post(path, fields = {}) {
   }
 }
 
-export const startJob = fields => post("/api/job", fields);
+// What was started is seen on the bench.
+export async function startJob(fields) {
+  const answer = await post("/api/job", fields);
+  if (answer.ok) go("bench");
+  return answer;
+}
+
+// The emergency stop. That it has not reached the station must be seen by somebody who looks at the bench.
+export async function stop() {
+  const answer = await post("/api/stop");
+  byId("not-stopped").hidden = answer.ok;
+}
+
 export const picture = query => "/picture?" + new URLSearchParams(query);
 
 // `work`, which is not begun again before it has ended: what was asked for meanwhile is done once, soon after.
@@ -63,6 +84,7 @@ export function oneAtATime(work) {
 export async function follow(changed) {
   const refresh = oneAtATime(async () => {
     const found = await ask("/api/state");
+    document.body.dataset.reached = Boolean(found);
     if (!found) { setTimeout(refresh, kLater_ms); return; }
     state = found;
     changed();

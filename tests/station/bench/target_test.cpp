@@ -52,7 +52,7 @@ TEST(Target, EveryTagIsDrawnToScaleOnBothPapers) {
         run_threadstation({"target", "--rig", fixture_rig(), "--out", folder / name, "--paper", name});
     ASSERT_EQ(result.status, 0) << result.error;
     const std::vector<station::TargetSheet> sheets = station::target_sheets(station::read_rig(fixture_rig()));
-    EXPECT_EQ(sheets.size(), 6U);
+    EXPECT_EQ(sheets.size(), 7U);
     for (const char* file : {"stand_1.svg", "stand_4.svg", "stand_1.pdf", "stand_4.pdf"})
       EXPECT_GT(std::filesystem::file_size(folder.path() / name / file), 1000U) << file;
     for (const station::TargetSheet& sheet : sheets) {

@@ -14,6 +14,7 @@
 #include <fstream>
 #include <future>
 #include <iostream>
+#include <iterator>
 #include <mutex>
 #include <random>
 #include <regex>
@@ -80,9 +81,12 @@ struct Way {
 
 // The arguments, by the names of the options that the command's help lists.
 std::vector<std::string> arguments_for(const Way& way, const Lab& lab) {
-  const std::string help = run_threadstation({way.command, "--help"}).out;
+  std::istringstream words(way.command);
+  std::vector<std::string> arguments{std::istream_iterator<std::string>(words), {}};
+  std::vector<std::string> for_help = arguments;
+  for_help.emplace_back("--help");
+  const std::string help = run_threadstation(for_help).out;
   const std::string data = DATA_DIR;
-  std::vector<std::string> arguments{way.command};
   for (const std::string& word : way.besides)
     arguments.push_back(word.ends_with(".csv") ? lab.in(word).string() : word);
   const auto add = [&](const std::string& option, const std::string& value) {
@@ -91,6 +95,7 @@ std::vector<std::string> arguments_for(const Way& way, const Lab& lab) {
   add("--out", lab.in("out"));
   if (way.goes_on()) return arguments;
   add("--rig", lab.rig_file());
+  add("--like", lab.rig_file());
   add("--calibration", data + "/calibrations/simulated.json");
   if (way.besides.empty()) add("--spool", data + "/spools/silk_red.json");
   if (help.find("--accept-calibration") != std::string::npos) arguments.emplace_back("--accept-calibration");
@@ -191,8 +196,9 @@ struct Case {
   Ending ending;
 };
 
-// Every command that the program lists on every board with every ending; and the further ways of capture, and check's
-// turn to its test picture, with each of them at least once. (Without a switch that one turns nothing.)
+// Every command that the program lists on every board with every ending; and the further ways of capture, the interview
+// of a new rig, and check's turn to its test picture, with each of them at least once. (Without a switch that one turns
+// nothing.)
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   for (int ending = 0; ending < kEndings; ++ending) {
@@ -203,6 +209,7 @@ std::vector<Case> all_cases() {
     const auto board = static_cast<Board>(ending % kBoards);
     for (const auto& besides : {std::vector<std::string>{"--queue", "spools.csv"}, {"--resume"}, {"--reshoot", "1"}})
       cases.push_back({{"capture", besides}, board, static_cast<Ending>(ending)});
+    cases.push_back({{"rig new"}, board, static_cast<Ending>(ending)});
     constexpr std::array kWithSwitch{Board::grbl_with_switch, Board::documented_with_switch, Board::zaber};
     const Board found = kWithSwitch.at(static_cast<std::size_t>(ending) % kWithSwitch.size());
     cases.push_back({{.command = "check", .opening = 2}, found, static_cast<Ending>(ending)});

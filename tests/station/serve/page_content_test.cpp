@@ -1,4 +1,9 @@
 // What the technician's page shows, and what its forms write: sessions, pictures, queues, devices, threads, spools.
+#include <cctype>
+#include <cmath>
+#include <regex>
+#include <set>
+
 #include "rig/devices/clock.h"
 #include "station/documents/sample.h"
 #include "station/documents/spool.h"
@@ -39,9 +44,11 @@ TEST_F(TechnicianPage, AViewThatTheFitHasNotSeenIsToldApart) {
 }
 
 TEST_F(TechnicianPage, ThePageAndItsPartsAreThere) {
-  for (const char* path :
-       {"/", "/app.js", "/bench.js", "/capture.js", "/curves.js", "/document.js", "/library.js", "/result.js",
-        "/session.js", "/station.js", "/step_picture.js", "/style.css", "/texts.json"}) {
+  for (const char* path : {"/",           "/app.js",     "/bench.js",      "/calibration.js",
+                           "/capture.js", "/curves.js",  "/document.js",   "/frame.js",
+                           "/keys.js",    "/library.js", "/live.js",       "/overview.js",
+                           "/result.js",  "/session.js", "/station.js",    "/step_picture.js",
+                           "/viewer.js",  "/style.css",  "/texts.de.json", "/texts.en.json"}) {
     const HttpResponse answer = page_->handle({.method = "GET", .path = path});
     EXPECT_EQ(answer.status, 200) << path;
     EXPECT_GT(answer.body.size(), 500U) << path;
@@ -49,7 +56,7 @@ TEST_F(TechnicianPage, ThePageAndItsPartsAreThere) {
   EXPECT_EQ(page_->handle({.method = "GET", .path = "/../rig.json"}).status, 404);
   EXPECT_EQ(page_->handle({.method = "GET", .path = "/\xff\xfe"}).status, 404);
   // Every text that the page asks for is in the one file.
-  const json texts = json::parse(page_->handle({.method = "GET", .path = "/texts.json"}).body);
+  const json texts = json::parse(page_->handle({.method = "GET", .path = "/texts.en.json"}).body);
   const std::string page = page_->handle({.method = "GET", .path = "/"}).body;
   for (std::size_t at = 0; (at = page.find("data-text=\"", at)) != std::string::npos;) {
     at += 11;
@@ -58,19 +65,40 @@ TEST_F(TechnicianPage, ThePageAndItsPartsAreThere) {
 }
 
 TEST_F(TechnicianPage, EveryTextThatTheScriptsAskForIsInTheOneFile) {
-  const json texts = json::parse(asked("/texts.json").body);
+  const json texts = json::parse(asked("/texts.en.json").body);
   int found = 0;
-  for (const char* file : {"/app.js", "/bench.js", "/capture.js", "/curves.js", "/library.js", "/result.js",
-                           "/session.js", "/station.js", "/step_picture.js"}) {
+  for (const char* file : {"/app.js", "/bench.js", "/calibration.js", "/capture.js", "/curves.js", "/document.js",
+                           "/frame.js", "/keys.js", "/library.js", "/live.js", "/overview.js", "/result.js",
+                           "/session.js", "/station.js", "/step_picture.js", "/viewer.js"}) {
     const std::string script = asked(file).body;
     for (std::size_t at = 0; (at = script.find("text(\"", at)) != std::string::npos; ++found) {
       at += 6;
+      if (std::isalnum(static_cast<unsigned char>(script[at - 7])) != 0) continue;  // getContext and the like
       const std::string key = script.substr(at, script.find('"', at) - at);
       if (key.ends_with("_")) continue;  // goes on with a kind
       EXPECT_TRUE(texts.contains(key)) << file << ": " << key;
     }
   }
   EXPECT_GT(found, 40);
+}
+
+// The same texts in both languages, each with the same places for values, and none left in the first one's words.
+TEST_F(TechnicianPage, EveryTextIsThereInBothLanguages) {
+  const json english = json::parse(asked("/texts.en.json").body), german = json::parse(asked("/texts.de.json").body);
+  const auto places = [](const std::string& text) {
+    std::multiset<std::string> found;
+    const std::regex place("\\{[a-z]+\\}");
+    for (std::sregex_iterator at(text.begin(), text.end(), place), end; at != end; ++at) found.insert(at->str());
+    return found;
+  };
+  int same = 0;
+  for (const auto& [key, text] : english.items()) {
+    ASSERT_TRUE(german.contains(key)) << key;
+    EXPECT_EQ(places(text), places(german[key])) << key;
+    same += text == german[key] ? 1 : 0;
+  }
+  EXPECT_EQ(english.size(), german.size());
+  EXPECT_LT(same, 15) << "texts that are alike in both";
 }
 
 TEST_F(TechnicianPage, WhatIsNotThereIsSaidInOneLine) {
@@ -82,6 +110,10 @@ TEST_F(TechnicianPage, WhatIsNotThereIsSaidInOneLine) {
            {"/picture", {{"of", "fitted"}, {"session", "silk_red"}, {"view", "reflection-horizontal-1"}}},
            {"/picture", {{"of", "cloth"}, {"session", "silk_red"}, {"view", "swatch"}}},
            {"/picture", {{"of", "draft"}, {"name", "none"}}},
+           {"/picture", {{"of", "thread"}, {"number", "7"}}},
+           {"/api/calibration", {{"name", "monday"}}},
+           {"/calibration", {{"name", "monday"}}},
+           {"/download", {{"name", "nothing"}}},
            {"/picture", {{"of", "anything"}}},
            {"/picture", {}}}) {
     const HttpResponse answer = asked(path, query);
@@ -196,6 +228,80 @@ TEST_F(TechnicianPage, AJournalThatNamesAFileElsewhereShowsNoPicture) {
   }
 }
 
+// What was made before what it is made of is left to do, and a new fit is another thread.
+TEST_F(TechnicianPage, ASessionSaysWhatIsLeftToDo) {
+  copy_session();
+  const std::filesystem::path session = folder_ / "bench/sessions/silk_red";
+  const auto left = [&] { return get("/api/state").at("sessions")[0].at("left"); };
+  EXPECT_EQ(left(), (json{"develop", "invert", "report"}));
+  const auto write = [&](const char* file, int minutes) {
+    std::filesystem::create_directories((session / file).parent_path());
+    std::ofstream(session / file) << "{}";
+    std::filesystem::last_write_time(session / file,
+                                     std::filesystem::file_time_type::clock::now() + std::chrono::minutes(minutes));
+  };
+  write("linear/views.json", 1);
+  EXPECT_EQ(left(), (json{"invert", "report"}));
+  write("result/thread.json", 2);
+  write("report.html", 3);
+  EXPECT_EQ(left(), json::array());
+  write("result/thread.json", 4);
+  EXPECT_EQ(left(), (json{"report"}));
+  write("linear/views.json", 5);
+  EXPECT_EQ(left(), (json{"invert", "report"}));
+}
+
+TEST_F(TechnicianPage, ACalibrationIsShownWithItsGatesAndItsBudget) {
+  const std::filesystem::path folder = folder_ / "bench/calibrations/ready";
+  std::filesystem::create_directories(folder);
+  EXPECT_FALSE(get("/api/state").at("calibrations")[0].contains("utc"));
+  std::filesystem::copy_file(std::filesystem::path(DATA_DIR) / "calibrations/simulated.json",
+                             folder / "calibration.json");
+  const json line = get("/api/state").at("calibrations").at(0), full = get("/api/calibration", "ready");
+  EXPECT_EQ(line.at("gates"), full.at("gates"));
+  EXPECT_GT(line.at("gates").size(), 10U);
+  for (const json& gate : full["gates"])
+    EXPECT_EQ(gate.at("passed"),
+              gate.at("at_least") ? gate.at("value") >= gate.at("limit") : gate.at("value") <= gate.at("limit"))
+        << gate;
+  double squares = 0;
+  for (std::size_t i = 0; i + 1 < full["budget"].size(); ++i)
+    squares += std::pow(full["budget"][i].at("front").get<double>(), 2);
+  EXPECT_NEAR(line.at("error_front").get<double>(), std::sqrt(squares), 1e-9);
+  std::ofstream(folder / "calibration.json") << "{";
+  EXPECT_TRUE(get("/api/state").at("calibrations")[0].contains("problem"));
+}
+
+TEST_F(TechnicianPage, AThreadIsEditedTakenOutAndPutBack) {
+  station::Library(folder_ / "bench/library", true)
+      .add(std::filesystem::path(DATA_DIR) / "threads/silk_blue.json", "2026-11-21T10:20:30.123Z");
+  EXPECT_EQ(refused_with("/api/thread", {{"client", "me"}, {"number", 1}, {"removed", true}}), 409);
+  post("/api/control", {{"client", "me"}});
+  EXPECT_EQ(post("/api/thread", {{"client", "me"}, {"number", 1}, {"name", "Seide, blau"}, {"lot", "7"}}).status, 200);
+  EXPECT_EQ(get("/api/state").at("threads")[0].at("sample").at("lot"), "7");
+  EXPECT_EQ(refused_with("/api/thread", {{"client", "me"}, {"number", 1}, {"lot", "7"}}), 400);
+  EXPECT_EQ(refused_with("/api/thread", {{"client", "me"}, {"number", "1; DROP TABLE threads"}, {"lot", "7"}}), 400);
+  EXPECT_EQ(refused_with("/api/thread", {{"client", "me"}, {"number", 2}, {"removed", true}}), 409);
+  EXPECT_EQ(post("/api/thread", {{"client", "me"}, {"number", 1}, {"removed", true}}).status, 200);
+  EXPECT_EQ(get("/api/state").at("threads").size(), 0U);
+  EXPECT_EQ(refused_with("/api/thread", {{"client", "me"}, {"number", 1}, {"removed", true}}), 409);
+  EXPECT_EQ(post("/api/thread", {{"client", "me"}, {"number", 1}, {"removed", false}}).status, 200);
+  EXPECT_EQ(get("/api/state").at("threads").size(), 1U);
+}
+
+TEST_F(TechnicianPage, AnExportIsDownloadedAsOneFile) {
+  std::filesystem::create_directories(folder_ / "bench/exports/thread-1/textures");
+  std::ofstream(folder_ / "bench/exports/thread-1/textures/a.txt") << "some words";
+  std::ofstream(folder_ / "outside.txt") << "not for others";
+  std::filesystem::create_symlink(folder_ / "outside.txt", folder_ / "bench/exports/thread-1/link.txt");
+  const HttpResponse packed = asked("/download", {{"name", "thread-1"}});
+  ASSERT_EQ(packed.status, 200);
+  EXPECT_EQ(packed.body.substr(0, 2), "PK");
+  EXPECT_NE(packed.body.find("thread-1/textures/a.txt"), std::string::npos);
+  EXPECT_EQ(packed.body.find("link.txt"), std::string::npos) << "what lies elsewhere is not given away";
+  EXPECT_EQ(asked("/download", {{"name", "../sessions"}}).status, 400);
+}
+
 TEST_F(TechnicianPage, AThreadOfTheLibraryIsShownWithItsCurves) {
   station::Library(folder_ / "bench/library", true)
       .add(std::string(DATA_DIR) + "/threads/silk_red.json", "2026-01-01T00:00:00Z");
@@ -204,7 +310,7 @@ TEST_F(TechnicianPage, AThreadOfTheLibraryIsShownWithItsCurves) {
   EXPECT_EQ(thread["curves"][0].at("cosine"), 0);
   EXPECT_EQ(thread["curves"][0].at("lambda")[1], 0);    // r1 c
   EXPECT_FALSE(thread["curves"][0].contains("sigma"));  // it was never fitted
-  const std::string colour = thread.at("colour");
+  const std::string colour = thread.at("colour").at("srgb");
   EXPECT_GT(colour.substr(1, 2), colour.substr(3, 2));  // red silk
   EXPECT_EQ(get("/api/state").at("threads")[0].at("number"), 1);
 }

@@ -241,5 +241,59 @@ TEST_F(TechnicianPage, TheEmergencyStopReachesAJobThatAnEarlierServerHasLeft) {
   EXPECT_TRUE(eventually([&] { return stop() == "nothing is running"; }));
 }
 
+// Shells in the program's place: steps that end as they are told.
+struct JobSteps : testing::Test {
+  station::JobRequest request(const std::vector<std::string>& scripts) {
+    station::JobRequest asked{.title = "a job", .steps = {}, .said = folder_ / "said", .program = "/bin/sh"};
+    for (const std::string& script : scripts)
+      asked.steps.push_back({"step", {"-c", "cd " + folder_.path().string() + "; " + script}});
+    return asked;
+  }
+  json ended(station::Job& job) {
+    for (int i = 0; i < 600 && job.running(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    return job.state();
+  }
+  static std::vector<std::string> states(const json& job) {
+    std::vector<std::string> found;
+    for (const json& step : job.at("steps")) found.push_back(step.at("state"));
+    return found;
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(JobSteps, FollowEachOtherAndWhatTheySayIsKept) {
+  station::Job job(request({"echo one; touch first", "test -e first && echo two"}), [] {});
+  const json state = ended(job);
+  EXPECT_EQ(state.at("outcome"), "well");
+  EXPECT_EQ(states(state), (std::vector<std::string>{"well", "well"}));
+  EXPECT_EQ(state.at("lines"), (json{"one", "two"}));
+}
+
+TEST_F(JobSteps, OneThatFailsKeepsTheOthersFromBeginning) {
+  station::Job job(request({"true", "exit 3", "touch third"}), [] {});
+  const json state = ended(job);
+  EXPECT_EQ(state.at("outcome"), "badly");
+  EXPECT_EQ(state.at("status"), 3);
+  EXPECT_EQ(states(state), (std::vector<std::string>{"well", "badly", "waiting"}));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "third"));
+}
+
+// The step may be through before it hears of a pause, or of a stop: what follows must not begin all the same.
+TEST_F(JobSteps, APauseAndAStopKeepTheNextOneFromBeginning) {
+  for (const bool stops : {false, true}) {
+    station::Job job(request({"trap 'exit 0' INT; touch begun; while true; do sleep 0.05; done", "touch second"}),
+                     [] {});
+    for (int i = 0; i < 600 && !std::filesystem::exists(folder_ / "begun"); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    stops ? job.stop_now() : job.pause();
+    const json state = ended(job);
+    EXPECT_EQ(state.at("outcome"), stops ? "stopped" : "paused");
+    EXPECT_EQ(states(state)[0], "well");
+    EXPECT_EQ(states(state)[1], stops ? "stopped" : "paused");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "second"));
+    std::filesystem::remove(folder_ / "begun");
+  }
+}
+
 }  // namespace
 }  // namespace station_test

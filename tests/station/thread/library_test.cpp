@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include "station/documents/manifest.h"
 #include "tests/places.h"
@@ -44,6 +45,54 @@ TEST_F(ThreadLibrary, RefusesWhatItHasAlreadyAndWhatIsNoThread) {
   EXPECT_THAT(message_of([&] { Library(folder / "none", false); }), HasSubstr("no library"));
   write_text(folder / "letter.txt", "not ours");
   EXPECT_THAT(message_of([&] { Library((folder / "letter.txt").parent_path(), true); }), HasSubstr("other files"));
+}
+
+TEST_F(ThreadLibrary, EditsTheSampleOfOneThreadOnly) {
+  Library library(place, true);
+  library.add(thread("silk_blue"), kNow);
+  library.add(thread("silk_red"), kNow);
+  Sample sample = library.show(1).sample;
+  sample.barcode = "4006381333948";
+  sample.lot = "B 7";
+  EXPECT_EQ(library.edit(1, sample).sample.lot, "B 7");
+  EXPECT_EQ(library.list("b 7").size(), 1U);
+  EXPECT_EQ(library.show(2).sample.lot, "");
+  EXPECT_EQ(text_of(library.thread_file(1)), text_of(thread("silk_blue"))) << "the file stays as it was added";
+  EXPECT_THAT(message_of([&] { library.edit(1, {}); }), HasSubstr("neither name nor barcode"));
+  EXPECT_THAT(message_of([&] { library.edit(3, sample); }), HasSubstr("no thread number 3"));
+}
+
+TEST_F(ThreadLibrary, TakesOutAndPutsBackWithoutLosingAnything) {
+  Library library(place, true);
+  library.add(thread("silk_blue"), kNow);
+  library.add(thread("silk_red"), kNow);
+  library.remove(1, kNow);
+  ASSERT_EQ(library.list().size(), 1U);
+  EXPECT_EQ(library.list().front().number, 2);
+  EXPECT_THAT(message_of([&] { library.remove(1, kNow); }), HasSubstr("out of the library"));
+  EXPECT_THAT(message_of([&] { library.add(thread("silk_blue"), kNow); }), HasSubstr("library restore 1"));
+  library.restore(1);
+  EXPECT_EQ(library.list().size(), 2U);
+  EXPECT_THAT(message_of([&] { library.restore(1); }), HasSubstr("in the library"));
+  library.export_thread(1, folder / "out");
+}
+
+// A library of version 1, as it was made before threads could be taken out.
+TEST_F(ThreadLibrary, ReadsOneOfTheVersionBefore) {
+  {
+    Library library(place, true);
+    library.add(thread("silk_blue"), kNow);
+  }
+  sqlite3* index = nullptr;
+  ASSERT_EQ(sqlite3_open((place / "index.sqlite").c_str(), &index), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(index, "ALTER TABLE threads DROP COLUMN removed_utc; PRAGMA user_version = 1", nullptr,
+                         nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(index);
+  Library library(place, false);
+  ASSERT_EQ(library.list().size(), 1U);
+  library.remove(1, kNow);
+  EXPECT_EQ(Library(place, false).list().size(), 0U);
 }
 
 // A flipped bit is not passed on.
