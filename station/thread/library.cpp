@@ -93,6 +93,14 @@ class Library::Index {
     return id;
   }
 
+  // The id of the row of a spool: one barcode, name and lot.
+  std::string spool_of(const Sample& sample) {
+    return id_of("INSERT OR IGNORE INTO spools (barcode, name, lot, material, colour, note) VALUES (?, ?, ?, ?, ?, ?)",
+                 "SELECT id FROM spools WHERE barcode = ? AND name = ? AND lot = ?",
+                 {sample.barcode, sample.name, sample.lot, sample.material, sample.colour, sample.note},
+                 {sample.barcode, sample.name, sample.lot});
+  }
+
   static std::string text(sqlite3_stmt* row, int column) {
     const auto* value = reinterpret_cast<const char*>(sqlite3_column_text(row, column));
     return value == nullptr ? "" : value;
@@ -183,11 +191,7 @@ LibraryThread Library::add(const fs::path& session_or_thread, const std::string&
   int number = 0;
   index_->execute("BEGIN IMMEDIATE");
   try {
-    const std::string spool = index_->id_of(
-        "INSERT OR IGNORE INTO spools (barcode, name, lot, material, colour, note) VALUES (?, ?, ?, ?, ?, ?)",
-        "SELECT id FROM spools WHERE barcode = ? AND name = ? AND lot = ?",
-        {sample.barcode, sample.name, sample.lot, sample.material, sample.colour, sample.note},
-        {sample.barcode, sample.name, sample.lot});
+    const std::string spool = index_->spool_of(sample);
     std::string session;
     if (from_session) {
       const std::string place = fs::absolute(session_or_thread).lexically_normal().string();
@@ -240,11 +244,7 @@ LibraryThread Library::edit(int number, const Sample& sample) {
                              " was to have neither name nor barcode; give one of them");
   index_->execute("BEGIN IMMEDIATE");
   try {
-    const std::string spool = index_->id_of(
-        "INSERT OR IGNORE INTO spools (barcode, name, lot, material, colour, note) VALUES (?, ?, ?, ?, ?, ?)",
-        "SELECT id FROM spools WHERE barcode = ? AND name = ? AND lot = ?",
-        {sample.barcode, sample.name, sample.lot, sample.material, sample.colour, sample.note},
-        {sample.barcode, sample.name, sample.lot});
+    const std::string spool = index_->spool_of(sample);
     index_->run("UPDATE spools SET material = ?, colour = ?, note = ? WHERE id = ?",
                 {sample.material, sample.colour, sample.note, spool});
     index_->run("UPDATE threads SET spool = ? WHERE id = CAST(? AS INTEGER)", {spool, std::to_string(number)});

@@ -16,6 +16,7 @@ namespace {
 
 using nlohmann::json;
 
+constexpr const char* kNetwork = "ptpip:";
 constexpr const char* kEnd = ", or q and Enter to end: ";
 const rig::Choice kDeclined{rig::kDecline, "q", "End, and go on another time"};
 
@@ -175,7 +176,12 @@ std::string ask_for_ready_rig(rig::AskedPerson& asked) {
 }
 
 void ask_for_ports(RigDraft& draft, rig::AskedPerson& asked) {
-  if (draft.contains("camera_connection") && draft["camera_connection"]["port"] != "simulated") {
+  const std::string now = draft.contains("camera_connection") ? shown(draft["camera_connection"]["port"]) : "simulated";
+  if (now.starts_with(kNetwork)) {  // cannot be found by looking
+    if (const auto typed = ask_text(asked, "At which address of the network does the camera answer?", now,
+                                    "an address such as ptpip:192.168.1.40", ""))
+      draft["camera_connection"]["port"] = (typed->starts_with(kNetwork) ? "" : kNetwork) + *typed;
+  } else if (now != "simulated") {
     const rig::FoundDevice camera =
         ask_for_device(asked, rig::find_cameras, "camera",
                        "No camera is found. Plug it in by USB, switch it on, and set its USB connection to PC Remote "

@@ -42,9 +42,8 @@ function jobChip() {
   const job = state.job;
   if (!job) return chip("bench", "", text("job"), text("idle_short"));
   const left = job.running && job.seconds_left !== null && job.kind !== "preview" ? `, ${time(job.seconds_left)} ${text("left")}` : "";
-  const words = job.question ? text("asks") : outcomeText(job) + left;
-  return chip("bench", job.question ? "asking" : job.running ? "" : job.outcome === "well" ? "well" : job.outcome === "badly" ? "badly" : "doubtfully",
-              text(`kind_${job.kind}`), words);
+  const grade = job.question ? "asking" : job.running ? "" : job.outcome === "well" ? "well" : job.outcome === "badly" ? "badly" : "doubtfully";
+  return chip("bench", grade, text("job"), `${text(`kind_${job.kind}`)} ${job.question ? text("asks") : outcomeText(job) + left}`);
 }
 
 function title() {
