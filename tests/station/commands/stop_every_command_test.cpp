@@ -196,9 +196,8 @@ struct Case {
   Ending ending;
 };
 
-// Every command that the program lists on every board with every ending; and the further ways of capture, the interview
-// of a new rig, and check's turn to its test picture, with each of them at least once. (Without a switch that one turns
-// nothing.)
+// Every command that the program lists on every board with every ending; and the further ways of capture, and check's
+// turn to its test picture, with each of them at least once. (Without a switch that one turns nothing.)
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   for (int ending = 0; ending < kEndings; ++ending) {
@@ -209,7 +208,6 @@ std::vector<Case> all_cases() {
     const auto board = static_cast<Board>(ending % kBoards);
     for (const auto& besides : {std::vector<std::string>{"--queue", "spools.csv"}, {"--resume"}, {"--reshoot", "1"}})
       cases.push_back({{"capture", besides}, board, static_cast<Ending>(ending)});
-    cases.push_back({{"rig new"}, board, static_cast<Ending>(ending)});
     constexpr std::array kWithSwitch{Board::grbl_with_switch, Board::documented_with_switch, Board::zaber};
     const Board found = kWithSwitch.at(static_cast<std::size_t>(ending) % kWithSwitch.size());
     cases.push_back({{.command = "check", .opening = 2}, found, static_cast<Ending>(ending)});
@@ -256,6 +254,15 @@ TEST(StopEveryCommand, ThePagesEmergencyStopEndsACheckThatTurns) {
     EXPECT_EQ(state().at("running"), false);
     EXPECT_NE(state().at("status"), 0);
     EXPECT_THAT(state().at("lines").dump(), testing::HasSubstr("the check was stopped"));
+  }
+}
+
+// The interview of a new rig, which turns the platform to look at it, by every ending.
+TEST(StopEveryCommand, TheInterviewOfANewRigIsStoppedInItsMotions) {
+  for (int ending = 0; ending < kEndings; ++ending) {
+    const Stopped result =
+        stop({"rig new"}, static_cast<Board>(ending % kBoards), static_cast<Ending>(ending), 2, 0.2 * ending);
+    EXPECT_EQ(result.problem, "") << result.what;
   }
 }
 
