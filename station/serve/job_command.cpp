@@ -1,7 +1,9 @@
 #include "station/serve/job_command.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -105,24 +107,27 @@ Words resume(const Asked& asked) {
   return {"capture", "--resume", "--out", asked.session()};
 }
 
+// What follows a capture, as far as it is left to do.
+void add_processing(std::vector<JobStep>& steps, const Asked& asked, const fs::path& session,
+                    const std::set<std::string>& left) {
+  const std::vector<JobStep> all{{"develop", develop(session)},
+                                 {"invert", invert(asked, session)},
+                                 {"report", report(session)},
+                                 {"add", add(asked, session)}};
+  std::ranges::copy_if(all, std::back_inserter(steps), [&](const JobStep& step) { return left.contains(step.kind); });
+}
+
 std::vector<JobStep> digitize(const Asked& asked) {
-  const fs::path session = asked.workspace.session(asked.new_name());
-  return {{"capture", capture(asked)},
-          {"develop", develop(session)},
-          {"invert", invert(asked, session)},
-          {"report", report(session)},
-          {"add", add(asked, session)}};
+  std::vector<JobStep> steps{{"capture", capture(asked)}};
+  add_processing(steps, asked, asked.workspace.session(asked.new_name()), {"develop", "invert", "report", "add"});
+  return steps;
 }
 
 std::vector<JobStep> process(const Asked& asked) {
-  const fs::path session = asked.session();
   const std::set<std::string> left = asked.workspace.work_left(asked.name());
   std::vector<JobStep> steps;
   if (left.contains("capture")) steps.push_back({"resume", resume(asked)});
-  if (left.contains("develop")) steps.push_back({"develop", develop(session)});
-  if (left.contains("invert")) steps.push_back({"invert", invert(asked, session)});
-  if (left.contains("report")) steps.push_back({"report", report(session)});
-  if (left.contains("add")) steps.push_back({"add", add(asked, session)});
+  add_processing(steps, asked, asked.session(), left);
   if (steps.empty()) throw Refused(409, "the session " + asked.name() + " lacks nothing: it is in the library");
   return steps;
 }

@@ -25,6 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+constexpr int kTile_px = 320;
+
 struct Asked {
   const HttpRequest& request;
   const Workspace& workspace;
@@ -55,7 +57,7 @@ cv::Mat3b narrowed(const cv::Mat3b& picture, int width_px) {
 
 // A tile of the contact sheet, or with "size=large" as large as a screen shows.
 HttpResponse raw(const Asked& asked) {
-  constexpr int kTile_px = 320, kLarge_px = 2400;
+  constexpr int kLarge_px = 2400;
   const fs::path session = asked.workspace.existing_session(asked.word("session"));
   const auto file = picture_of_step(session, asked.name("step"));
   if (!file) throw Refused(404, "there is no picture of " + asked.word("step") + " yet");
@@ -81,18 +83,17 @@ HttpResponse twin(const Asked& asked, const std::string& which) {
 
 HttpResponse cloth(const Asked& asked) {
   const fs::path session = asked.workspace.existing_session(asked.word("session"));
-  return png_file(session / "result" / "cloth" / (asked.name("view") + ".png"));
+  return png_file(cloth_folder(session) / (asked.name("view") + ".png"));
 }
 
 // How a thread of the library looks: the cloth of its session, or else its spool in the first view.
 HttpResponse thread(const Asked& asked) {
-  constexpr int kTile_px = 320;
-  const json lines = asked.workspace.library_lines();
+  const json lines = asked.workspace.thread_lines();
   const auto line = std::ranges::find_if(
       lines, [&](const json& one) { return std::to_string(one.at("number").get<int>()) == asked.word("number"); });
   if (line == lines.end()) throw Refused(404, "there is no such thread in the library");
   const fs::path session = asked.workspace.existing_session(line->at("session").get<std::string>());
-  if (const fs::path swatch = session / "result" / "cloth" / "swatch.png"; fs::is_regular_file(swatch))
+  if (const fs::path swatch = cloth_folder(session) / "swatch.png"; fs::is_regular_file(swatch))
     return png_file(swatch);
   for (const auto& [step, picture] : taken_pictures(read_journal(session / "journal.jsonl").records))
     if (const auto file = step.starts_with("reflection") ? picture_of_step(session, step) : std::nullopt)

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <chrono>
+#include <limits>
 #include <thread>
 
 #include "rig/devices/clock.h"
@@ -165,7 +166,8 @@ HttpResponse TechnicianPage::post(const HttpRequest& request) {
 
 HttpResponse TechnicianPage::change_thread(const json& asked) {
   const auto number = asked.find("number");
-  if (number == asked.end() || !number->is_number_integer()) throw Refused(400, "expected \"number\": of a thread");
+  if (number == asked.end() || !number->is_number_unsigned() || *number > std::numeric_limits<int>::max())
+    throw Refused(400, "expected \"number\": of a thread");
   const auto removed = asked.find("removed");
   try {
     Library library(workspace_.threads_folder(), false);

@@ -35,7 +35,7 @@ std::vector<std::string> names_in(const fs::path& folder,
   return names;
 }
 
-json library_lines_of(const fs::path& folder) {
+json thread_lines_of(const fs::path& folder) {
   json lines = json::array();
   if (!fs::exists(folder / "index.sqlite")) return lines;
   for (const LibraryThread& thread : Library(folder, false).list()) {
@@ -156,8 +156,8 @@ json Workspace::session_line(const fs::path& folder) {
   return line;
 }
 
-json Workspace::library_lines() const {
-  return library_lines_of(threads_folder());
+json Workspace::thread_lines() const {
+  return thread_lines_of(threads_folder());
 }
 
 json Workspace::queue_line(const std::string& name) {
@@ -177,7 +177,7 @@ json Workspace::queue_line(const std::string& name) {
 json Workspace::contents() {
   json document{{"calibrations", json::array()}, {"spools", json::array()},
                 {"sessions", json::array()},     {"queues", json::array()},
-                {"threads", library_lines()},    {"exports", folders_in(folder_ / "exports")}};
+                {"threads", thread_lines()},     {"exports", folders_in(folder_ / "exports")}};
   for (const std::string& name : folders_in(folder_ / "calibrations"))
     document["calibrations"].push_back(calibrations_.line(calibration(name)));
   for (const std::string& name : files_in(folder_ / "spools", ".json"))
@@ -213,12 +213,14 @@ std::set<std::string> Workspace::work_left(const std::string& name) const {
   const fs::path folder = existing_session(name);
   const RunState state = state_of(read_journal(folder / "journal.jsonl").records, folder_in_use(folder));
   std::set<std::string> left = work_left_of(folder, state == RunState::complete);
-  const auto has = [&](const LibraryThread& thread) {
-    return thread.sha256 == sha256_hex(text_of_file(thread_file_of(folder)));
-  };
-  const bool kept = !left.contains("invert") && fs::exists(threads_folder() / "index.sqlite") &&
-                    std::ranges::any_of(Library(threads_folder(), false).list(), has);
-  if (!kept) left.insert("add");
+  if (left.contains("invert") || !fs::exists(threads_folder() / "index.sqlite")) {
+    left.insert("add");
+    return left;
+  }
+  const std::string sha256 = sha256_hex(text_of_file(thread_file_of(folder)));
+  if (std::ranges::none_of(Library(threads_folder(), false).list(),
+                           [&](const LibraryThread& thread) { return thread.sha256 == sha256; }))
+    left.insert("add");
   return left;
 }
 

@@ -41,7 +41,7 @@ class Workspace {
 
   // A line for each thread of the library: {"number", "name", "sample", "added_utc", "diameter_mm", "session" (its
   // folder's name), "relative_rmse"}.
-  nlohmann::json library_lines() const;
+  nlohmann::json thread_lines() const;
   // {"calibrations" (calibration_line.h), "spools", "sessions", "threads", "queues", "exports"}
   nlohmann::json contents();
   // One session: its line in contents(), and "views" with "number", "step", "grade", "reason", "picture" (which file it

@@ -12,7 +12,7 @@ import {beginResult, showResult} from "/result.js";
 import {beginSession, chooseSession, session, showSession, showSessionChoice} from "/session.js";
 import {follow, oneAtATime, post, state} from "/station.js";
 
-const shows = {overview: showOverview, bench: showBench, calibrate: showCalibrations, capture: showForms, session: showSession, result: showResult,
+const shows = {overview: showOverview, bench: showBench, calibrate: showCalibrations, capture: () => null, session: showSession, result: showResult,
                library: showLibrary};
 
 let screen = "";

@@ -14,7 +14,6 @@ export async function readTexts() {
   for (const element of document.querySelectorAll("[data-text]")) element.textContent = text(element.dataset.text);
   for (const element of document.querySelectorAll("[data-label]")) element.setAttribute("aria-label", text(element.dataset.label));
   for (const element of document.querySelectorAll("[data-alt]")) element.alt = text(element.dataset.alt);
-  for (const element of document.querySelectorAll("[data-hint]")) element.placeholder = text(element.dataset.hint);
 }
 
 export function nextLanguage() {

@@ -1,11 +1,10 @@
 // Keys of the page, and the barcode scanner, which types like a person, but faster than one, and ends with Enter.
 
 import {scanned} from "/capture.js";
-import {byId} from "/document.js";
-import {closeViewer} from "/viewer.js";
+import {byId, text} from "/document.js";
 import {nextTheme} from "/frame.js";
 import {go, inControl, jobRuns, post, say, stop} from "/station.js";
-import {text} from "/document.js";
+import {closeViewer} from "/viewer.js";
 
 const kScanner_ms = 80;      // longest time between two characters of a scanner
 const kShortestBarcode = 3;
