@@ -11,9 +11,10 @@ namespace {
 // Noise and highlights alone bring far fewer pixels than this share together at the top.
 constexpr double kSaturated = 0.02, kTop = 0.995;
 constexpr double kNearBlack = 5e-3;  // of a white diffuser
-constexpr double kBadView = 0.5;     // weight
+constexpr double kBadView = 0.25;    // weight
 // The thread model itself is off by up to about 10 % from view to view on simulated bundles of fibers.
 constexpr double kBrightness = 0.15, kColour = 0.1, kMisfit = 0.2;
+constexpr double kBeyondNone = 3;      // standard deviations of an absorption below 0
 constexpr double kUndetermined = 0.5;  // standard deviation along a direction; 1 is a change by the factor e
 
 std::string percent(double share) {
@@ -90,6 +91,28 @@ void misfit(const std::vector<ViewAgreement>& agreements, std::vector<std::strin
                      "); look at the residual pictures, view by view");
 }
 
+// A thread that does not absorb returns all light. Views that are brighter than that need another lamp or diffuser.
+void too_bright(const ViewFit& fit, std::vector<std::string>& doubts) {
+  constexpr std::array kColours{"red", "green", "blue"};
+  std::string colours;
+  double most = 0;
+  for (std::size_t c = 0; c < kColours.size(); ++c) {
+    const auto found = std::ranges::find(fit.unknown_names, std::string("sigma_a_") + kColours.at(c)[0]);
+    if (found == fit.unknown_names.end() || fit.certainty.beyond_bound.size() == 0) continue;
+    const double beyond = fit.certainty.beyond_bound[found - fit.unknown_names.begin()];
+    if (beyond <= kBeyondNone) continue;
+    colours += (colours.empty() ? "" : ", ") + std::string(kColours.at(c));
+    most = std::max(most, beyond);
+  }
+  if (colours.empty()) return;
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.0f", most);
+  doubts.push_back("the views are brighter in " + colours + " than a thread without any absorption would be, by " +
+                   text.data() +
+                   " standard deviations: the lamp's place or brightness or the diffuser's reflectance may be off; "
+                   "check the calibration");
+}
+
 void undetermined(const ViewFit& fit, std::vector<std::string>& doubts) {
   std::string names;
   int directions = 0;
@@ -136,6 +159,7 @@ std::vector<std::string> fit_doubts(const std::vector<View>& views, const ViewFi
   brightness(views, fit, agreements, doubts);
   highlights(views, agreements, doubts);
   misfit(agreements, doubts);
+  too_bright(fit, doubts);
   undetermined(fit, doubts);
   return doubts;
 }

@@ -126,24 +126,27 @@ OneSided one_sided_moments(double beyond) {
   return {.truth = square / above, .spread = square - mean * mean};
 }
 
+// How many of its total deviations the minimum lies beyond the bound of the last of those that `with_it` knows.
+double beyond_bound(const LinearisedFit& fit, const Known& with_it) {
+  const Eigen::Index last = with_it.total.rows() - 1;
+  const double variance = with_it.total(last, last);
+  if (fit.gradient.size() == 0 || !(variance > 0)) return 0;
+  const VectorXd gradient = columns((fit.gradient.cwiseProduct(fit.scales)).transpose(), with_it.chosen).transpose();
+  const double minimum = -with_it.hessian.ldlt().solve(gradient)[last];
+  return std::max(0.0, fit.bounds[static_cast<std::size_t>(with_it.chosen.back())] * minimum / std::sqrt(variance));
+}
+
 // What an unknown at a bound, the last of those that `with_it` knows, adds to the covariance of all unknowns.
-MatrixXd one_sided(const LinearisedFit& fit, const Known& with_it, const MatrixXd& covariance,
-                   double OneSided::*moment) {
+MatrixXd one_sided(const LinearisedFit& fit, const Known& with_it, const MatrixXd& covariance, double OneSided::*moment,
+                   double beyond) {
   constexpr double kMostBeyond = 3;
   const Eigen::Index free = covariance.rows() - 1;
-  const int bound = with_it.chosen.back();
   const double variance = covariance(free, free);
-  double beyond = 0;  // of the spread's: the truth lies on this side, and the minima of other noise around it
-  if (moment == &OneSided::truth && fit.gradient.size() > 0 && variance > 0) {
-    const VectorXd gradient = columns((fit.gradient.cwiseProduct(fit.scales)).transpose(), with_it.chosen).transpose();
-    const double minimum = -with_it.hessian.ldlt().solve(gradient)[free];
-    beyond = std::clamp(fit.bounds[static_cast<std::size_t>(bound)] * minimum / std::sqrt(variance), 0.0, kMostBeyond);
-  }
   VectorXd moved = VectorXd::Ones(free + 1);  // all unknowns, when the one at the bound moves by 1
   if (free > 0)
     moved.head(free) = -with_it.hessian.topLeftCorner(free, free).ldlt().solve(with_it.hessian.col(free).head(free));
-  return spread(variance * one_sided_moments(beyond).*moment * moved * moved.transpose(), with_it.chosen,
-                fit.scales.size());
+  return spread(variance * one_sided_moments(std::min(beyond, kMostBeyond)).*moment * moved * moved.transpose(),
+                with_it.chosen, fit.scales.size());
 }
 
 }  // namespace
@@ -152,7 +155,8 @@ Certainty certainty_of(const LinearisedFit& fit) {
   const Eigen::Index unknowns = fit.jacobian.cols();
   Certainty certainty{.noise_covariance = MatrixXd::Zero(unknowns, unknowns),
                       .covariance = MatrixXd::Zero(unknowns, unknowns),
-                      .at_bound = std::vector<bool>(static_cast<std::size_t>(unknowns), false)};
+                      .at_bound = std::vector<bool>(static_cast<std::size_t>(unknowns), false),
+                      .beyond_bound = VectorXd::Zero(unknowns)};
   certainty.misfit = std::sqrt(fit.residuals.squaredNorm() /
                                std::max(fit.variances.sum(), 1e-12 * fit.residuals.squaredNorm() + 1e-300));
   std::vector<int> free, bounded;
@@ -172,8 +176,10 @@ Certainty certainty_of(const LinearisedFit& fit) {
     std::vector<int> with_it = free;
     with_it.push_back(k);
     const Known known = known_of(fit, with_it);
-    by_noise += one_sided(fit, known, known.by_noise, &OneSided::spread);
-    total += one_sided(fit, known, known.total, &OneSided::truth);
+    certainty.beyond_bound[k] = beyond_bound(fit, known);
+    // The minima of other noise lie around the truth, which is on this side.
+    by_noise += one_sided(fit, known, known.by_noise, &OneSided::spread, 0);
+    total += one_sided(fit, known, known.total, &OneSided::truth, certainty.beyond_bound[k]);
   }
   certainty.noise_covariance = fit.scales.asDiagonal() * by_noise * fit.scales.asDiagonal();
   certainty.covariance = fit.scales.asDiagonal() * total * fit.scales.asDiagonal();

@@ -36,6 +36,8 @@ struct Certainty {
   Eigen::MatrixXd noise_covariance;  // unknowns x unknowns; the spread that other noise would give
   Eigen::MatrixXd covariance;        // the total, with misfit
   std::vector<bool> at_bound;        // their deviation is one-sided
+  // How far beyond its bound an unknown would end without it, in deviations; 0: inside, or not known.
+  Eigen::VectorXd beyond_bound;
   // The directions that the views determine worst, worst first: unit vectors in units of the unknowns' scales
   // (LinearisedFit::scales), with the standard deviation along them.
   struct Direction {

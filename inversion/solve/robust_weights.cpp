@@ -47,7 +47,8 @@ RobustWeights robust_weights(const std::vector<WeighedView>& views) {
     std::vector<double> alike;
     for (std::size_t j = 0; j < views.size(); ++j)
       if (views[j].transmission == view.transmission) alike.push_back(misfits[j]);
-    weights.views.push_back(weight_of(misfits[i], median(alike)));
+    const double of_view = weight_of(misfits[i], median(alike));
+    weights.views.push_back(of_view * of_view);
     const double usual = median(view.misfits);
     std::vector<double>& blocks = weights.blocks.emplace_back();
     for (std::size_t b = 0; b < view.misfits.size(); ++b) {

@@ -1,6 +1,7 @@
 // Robust weights: how much each block counts beyond eq. 6's weights, so that a bad view, a border of the mask or a
-// speck of dust does not lead the fit astray. They are Huber's weights [1964], of views among their like and of blocks
-// within their view.
+// speck of dust does not lead the fit astray: of views among their like and of blocks within their view. Beyond what is
+// tolerated, as in Huber's weights [1964], they fall with a power of the misfit, so that what is farther off pulls less
+// [Beaton and Tukey 1974].
 #pragma once
 
 #include <Eigen/Core>
@@ -22,9 +23,10 @@ struct RobustWeights {
 };
 
 // The weights. A view counts in full up to kTolerated times the median relative misfit of the views of its side
-// (reflections, transmissions), a block up to kTolerated times its view's median misfit; beyond that, the weight falls
-// in inverse proportion to the misfit's square. Noise lowers a block's weight where it is larger than the misfit that
-// the view has anyway.
+// (reflections, transmissions), a block up to kTolerated times its view's median misfit; beyond that, a block's weight
+// falls as the misfit's square rises, a view's as its fourth power: the others follow a bad view in what they hardly
+// tell, and one that still counted for .28 turned another by 16 %. Noise lowers a block's weight where it is larger
+// than the misfit that the view has anyway.
 inline constexpr double kTolerated = 2.5;
 RobustWeights robust_weights(const std::vector<WeighedView>& views);
 

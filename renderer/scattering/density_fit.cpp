@@ -103,17 +103,22 @@ bool at_bound(const FitUnknown& unknown, double value) {
   return value <= unknown.low + near || value >= unknown.high - near;
 }
 
+std::vector<Eigen::Index> free_values(const AzimuthalFit& fit) {
+  std::vector<Eigen::Index> free;
+  for (std::size_t i = 0; i < fit.values.size(); ++i)
+    if (!fit.values[i].at_bound) free.push_back(static_cast<Eigen::Index>(i));
+  return free;
+}
+
 // Standard deviations and weak directions of the unknowns that are not at a bound, from the singular values of the
 // Jacobian and the variance of the residuals. Residuals are mostly the model's own error, so that this says what the
 // data determine, not how the data's noise would scatter.
 void judge(const DensityModel& model, const Solution& solution, const MatrixXd& jacobian, AzimuthalFit& fit) {
-  std::vector<Eigen::Index> free;
   for (std::size_t i = 0; i < model.unknowns.size(); ++i) {
     const double value = solution.u[static_cast<Eigen::Index>(i)];
-    const bool bound = at_bound(model.unknowns[i], value);
-    fit.values.push_back({model.unknowns[i].name, value, 0, bound});
-    if (!bound) free.push_back(static_cast<Eigen::Index>(i));
+    fit.values.push_back({model.unknowns[i].name, value, 0, at_bound(model.unknowns[i], value)});
   }
+  const std::vector<Eigen::Index> free = free_values(fit);
   if (free.empty()) return;
   const Eigen::JacobiSVD<MatrixXd> svd(jacobian(Eigen::all, free), Eigen::ComputeThinV);
   const auto freedom = std::max<Eigen::Index>(1, jacobian.rows() - static_cast<Eigen::Index>(free.size()));
@@ -134,6 +139,39 @@ void judge(const DensityModel& model, const Solution& solution, const MatrixXd& 
   }
   for (std::size_t k = 0; k < free.size(); ++k)
     fit.values[static_cast<std::size_t>(free[k])].deviation = std::sqrt(variance[static_cast<Eigen::Index>(k)]);
+}
+
+// AzimuthalFit::covariance. That an unknown lies somewhere between its bounds is one more piece of information on it,
+// for directions that the distributions left in do not tell.
+MatrixXd jackknife(const std::vector<AzimuthalData>& data, const DensityModel& model, const VectorXd& densities,
+                   const MatrixXd& jacobian, const AzimuthalFit& fit) {
+  MatrixXd covariance = MatrixXd::Zero(jacobian.cols(), jacobian.cols());
+  const std::vector<Eigen::Index> free = free_values(fit);
+  if (free.empty() || data.size() < 2) return covariance;
+  const MatrixXd by_free = jacobian(Eigen::all, free);
+  std::vector<Eigen::Index> first{0};
+  VectorXd residuals = densities;
+  for (const AzimuthalData& d : data) {
+    residuals.segment(first.back(), d.density.size()) -= d.density.matrix();
+    first.push_back(first.back() + d.density.size());
+  }
+  const double variance = residuals.squaredNorm() / static_cast<double>(residuals.size());
+  VectorXd bounds(by_free.cols());
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    const FitUnknown& unknown = model.unknowns[static_cast<std::size_t>(free[k])];
+    bounds[static_cast<Eigen::Index>(k)] = 12 * variance / std::pow(unknown.high - unknown.low, 2);
+  }
+  MatrixXd hessian = by_free.transpose() * by_free, squares = MatrixXd::Zero(by_free.cols(), by_free.cols());
+  hessian.diagonal() += bounds;
+  for (std::size_t k = 0; k < data.size(); ++k) {
+    const MatrixXd left_out = by_free.middleRows(first[k], first[k + 1] - first[k]);
+    const VectorXd gradient = left_out.transpose() * residuals.segment(first[k], left_out.rows());
+    const VectorXd moved = (hessian - left_out.transpose() * left_out).ldlt().solve(gradient);
+    squares += moved * moved.transpose();
+  }
+  const auto count = static_cast<double>(data.size());
+  covariance(free, free) = squares * (count - 1) / count;
+  return covariance;
 }
 
 }  // namespace
@@ -159,6 +197,7 @@ VectorXd fit_densities(const std::vector<AzimuthalData>& data, const DensityMode
   evaluate_all(data, model, best.u, densities, &jacobian);
   fit.converged = best.converged;
   judge(model, best, jacobian, fit);
+  fit.covariance = jackknife(data, model, densities, jacobian, fit);
   Eigen::Index row = 0;
   for (const AzimuthalData& d : data) {
     fit.densities.emplace_back(densities.segment(row, d.density.size()));

@@ -39,6 +39,10 @@ struct AzimuthalFit {
   std::vector<double> errors;             // relative L2 of each distribution by itself
   std::vector<Eigen::ArrayXd> densities;  // the fitted distributions, in the bins of the data
   std::vector<FittedValue> values;
+  // Of the values, in their order, by how they move when one distribution after the other is left out (a jackknife
+  // [Efron 1982], by one Gauss-Newton step each): residuals are mostly the model's own error, alike in neighbouring
+  // bins, so that only distributions count as independent. 0 for values at a bound, and for a single distribution.
+  Eigen::MatrixXd covariance;
   std::vector<WeakDirection> weak;
   bool converged = false;
 };

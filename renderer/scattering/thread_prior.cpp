@@ -29,7 +29,10 @@ LibraryFit fit_thread(const LibraryThread& thread, const PriorOptions& options) 
     }
   }
   const JointThreadFit fit = fit_thread_jointly(data);
-  LibraryFit result{.thread = thread, .unknowns = {}, .error = fit.error};
+  LibraryFit result{.thread = thread,
+                    .unknowns = {},
+                    .covariance = fit.covariance.topLeftCorner<kPriorUnknownCount, kPriorUnknownCount>(),
+                    .error = fit.error};
   for (int i = 0; i < kPriorUnknownCount; ++i) result.unknowns[i] = fit.values[static_cast<std::size_t>(i)].value;
   return result;
 }
@@ -93,7 +96,7 @@ ThreadPrior prior_of(const std::vector<LibraryFit>& fits) {
   prior.covariance.setZero();
   for (const LibraryFit& fit : fits) {
     const PriorVector from_mean = fit.unknowns - prior.mean;
-    prior.covariance += from_mean * from_mean.transpose() / (count - 1);
+    prior.covariance += from_mean * from_mean.transpose() / (count - 1) + fit.covariance / count;
   }
   return prior;
 }

@@ -51,13 +51,16 @@ struct PriorOptions {
 
 struct LibraryFit {
   LibraryThread thread;
-  PriorVector unknowns;
-  double error;  // relative L2 of the joint fit over angles and colours
+  PriorVector unknowns = PriorVector::Zero();
+  PriorMatrix covariance = PriorMatrix::Zero();  // of the unknowns, AzimuthalFit::covariance
+  double error = 0;                              // relative L2 of the joint fit over angles and colours
 };
 
 // Simulates and fits every thread of the library. Errors: std::runtime_error when stopped by `progress`.
 std::vector<LibraryFit> fit_library(const std::vector<LibraryThread>& library, const PriorOptions& options);
-// The prior that these fits give: mean and covariance of their unknowns.
+// The prior that these fits give: mean of their unknowns, and the covariance by the law of total variance, that among
+// the threads plus the mean of each fit's own. By the first alone the prior is surer of what three dozen fits share
+// than any of them is: w2 was .98 +- .03, where a fit tells it to .1 from one inclination to the other.
 ThreadPrior prior_of(const std::vector<LibraryFit>& fits);
 
 }  // namespace renderer

@@ -93,17 +93,10 @@ class Job::Process {
 
   nlohmann::json state() const {
     const std::scoped_lock lock(mutex_);
-    nlohmann::json state{{"title", request_.title},
-                         {"running", !status_},
-                         {"status", nullptr},
-                         {"outcome", nullptr},
-                         {"done", done_},
-                         {"total", total_},
-                         {"label", label_},
-                         {"seconds_left", nullptr},
-                         {"question", question_},
-                         {"lines", lines_},
-                         {"steps", nlohmann::json::array()}};
+    nlohmann::json state{{"title", request_.title}, {"running", !status_}, {"status", nullptr},
+                         {"outcome", nullptr},      {"done", done_},       {"total", total_},
+                         {"label", label_},         {"task", task_},       {"seconds_left", nullptr},
+                         {"question", question_},   {"lines", lines_},     {"steps", nlohmann::json::array()}};
     if (status_) state["status"] = *status_;
     if (status_) state["outcome"] = outcome();
     for (std::size_t i = 0; i < request_.steps.size(); ++i)
@@ -208,7 +201,7 @@ class Job::Process {
     }
     ++step_;
     done_ = total_ = 0;
-    label_.clear();
+    label_.clear(), task_.clear();
     seconds_left_ = -1;
     try {
       start();
@@ -256,6 +249,7 @@ class Job::Process {
     if (!said.contains("done") || !said.contains("total")) return;
     done_ = said.value("done", 0), total_ = said.value("total", 0);
     label_ = said.value("label", "");
+    task_ = said.value("task", "");
     seconds_left_ = said.value("seconds_left", -1.0);
   }
 
@@ -273,7 +267,7 @@ class Job::Process {
   bool gone_ = false;  // its number may be another process's by now
   int done_ = 0, total_ = 0;
   double seconds_left_ = -1;
-  std::string label_;
+  std::string label_, task_;  // what is done now, and which stage of the command it belongs to
   std::vector<std::string> lines_;
   nlohmann::json question_;  // null: none is open
   std::jthread follower_;

@@ -3,7 +3,9 @@
 #include <chrono>
 #include <csignal>
 #include <fstream>
+#include <functional>
 #include <iterator>
+#include <map>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -53,6 +55,19 @@ bool stop_left_jobs(const std::filesystem::path& folder, const std::filesystem::
   if (!left.empty()) std::this_thread::sleep_for(kBetweenSignals);
   for (const pid_t process : left) kill(process, SIGINT);
   return !left.empty();
+}
+
+void forget_old_jobs(const std::filesystem::path& folder, std::size_t kept) {
+  std::error_code error;
+  std::map<std::string, std::vector<std::filesystem::path>, std::greater<>> jobs;  // the newest first
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    jobs[entry.path().stem().string()].push_back(entry.path());
+  std::size_t checks = 0, others = 0;
+  for (const auto& [name, files] : jobs) {
+    if ((name.ends_with("-check") ? checks : others)++ < kept) continue;
+    for (const std::filesystem::path& file : files)
+      if (file.extension() != kProcessFile) std::filesystem::remove(file, error);
+  }
 }
 
 }  // namespace station

@@ -277,6 +277,7 @@ HttpResponse TechnicianPage::start(const json& asked) {
     if (job_ && job_->running()) throw Refused(409, "a job is running; wait for it, or pause it");
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     const auto number = std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
+    forget_old_jobs(workspace_.folder() / "jobs");
     job_kind_ = text_of(asked, "kind");
     job_said_ = workspace_.folder() / "jobs" / (std::to_string(number) + "-" + job_kind_);
     job_ = std::make_shared<Job>(

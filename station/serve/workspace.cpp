@@ -62,7 +62,7 @@ bool is_made(const fs::path& file, const std::vector<fs::path>& from) {
   });
 }
 
-// As work_left() says, but for the library.
+// As Workspace::work_left() says, but for the library.
 std::set<std::string> work_left_of(const fs::path& session, bool complete) {
   const fs::path views = session / "linear" / "views.json", thread = thread_file_of(session);
   std::set<std::string> left;
@@ -117,7 +117,7 @@ Workspace::Workspace(const fs::path& folder) : folder_(fs::absolute(folder)) {
 
 // A lab has hundreds of sessions, and the page asks after every change: journals are read again only when they have
 // grown.
-json Workspace::session_line(const fs::path& folder) {
+json Workspace::session_line(const fs::path& folder, const std::set<std::string>& fits) {
   const std::string name = folder.filename().string();
   const fs::path journal = folder / "journal.jsonl";
   std::error_code error;
@@ -151,8 +151,10 @@ json Workspace::session_line(const fs::path& folder) {
   line["cloth"] = fs::exists(folder / "result" / "cloth" / "swatch.png", error);
   line["report"] = fs::exists(folder / "report.html", error);
   line["left"] = json::array();
-  if (!known.line.contains("problem"))
-    line["left"] = work_left_of(folder, line["state"] == state_name(RunState::complete));
+  if (known.line.contains("problem")) return line;
+  const std::set<std::string> left = left_of(folder, line["state"] == state_name(RunState::complete), fits);
+  for (const char* step : {"capture", "develop", "invert", "report", "add"})
+    if (left.contains(step)) line["left"].push_back(step);
   return line;
 }
 
@@ -165,7 +167,7 @@ json Workspace::queue_line(const std::string& name) {
   try {
     for (const QueuedSpool& row : read_queue(queue(name))) {
       json spool{{"session", row.session}, {"sample", to_json(row.sample)}, {"state", nullptr}};
-      if (is_session(session(row.session))) spool["state"] = session_line(session(row.session))["state"];
+      if (is_session(session(row.session))) spool["state"] = session_line(session(row.session), {})["state"];
       line["spools"].push_back(spool);
     }
   } catch (const std::exception& problem) {
@@ -182,8 +184,9 @@ json Workspace::contents() {
     document["calibrations"].push_back(calibrations_.line(calibration(name)));
   for (const std::string& name : files_in(folder_ / "spools", ".json"))
     document["spools"].push_back(spool_line(spool(name), sample(name)));
+  const std::set<std::string> fits = fits_in_library();
   for (const std::string& name : folders_in(folder_ / "sessions"))
-    if (is_session(session(name))) document["sessions"].push_back(session_line(session(name)));
+    if (is_session(session(name))) document["sessions"].push_back(session_line(session(name), fits));
   for (const std::string& name : files_in(folder_ / "queues", ".csv")) document["queues"].push_back(queue_line(name));
   return document;
 }
@@ -212,21 +215,37 @@ fs::path Workspace::existing_calibration(const std::string& name) const {
 std::set<std::string> Workspace::work_left(const std::string& name) const {
   const fs::path folder = existing_session(name);
   const RunState state = state_of(read_journal(folder / "journal.jsonl").records, folder_in_use(folder));
-  std::set<std::string> left = work_left_of(folder, state == RunState::complete);
-  if (left.contains("invert") || !fs::exists(threads_folder() / "index.sqlite")) {
-    left.insert("add");
-    return left;
-  }
-  const std::string sha256 = sha256_hex(text_of_file(thread_file_of(folder)));
-  if (std::ranges::none_of(Library(threads_folder(), false).list(),
-                           [&](const LibraryThread& thread) { return thread.sha256 == sha256; }))
-    left.insert("add");
+  return left_of(folder, state == RunState::complete, fits_in_library());
+}
+
+std::set<std::string> Workspace::left_of(const fs::path& session, bool complete,
+                                         const std::set<std::string>& fits) const {
+  std::set<std::string> left = work_left_of(session, complete);
+  if (left.contains("invert") || !fits.contains(fit_hash(session))) left.insert("add");
   return left;
+}
+
+std::set<std::string> Workspace::fits_in_library() const {
+  std::set<std::string> fits;
+  if (fs::exists(threads_folder() / "index.sqlite"))
+    for (const LibraryThread& thread : Library(threads_folder(), false).list()) fits.insert(thread.sha256);
+  return fits;
+}
+
+std::string Workspace::fit_hash(const fs::path& session) const {
+  std::error_code error;
+  const fs::path file = thread_file_of(session);
+  const auto time = fs::last_write_time(file, error);
+  if (error) return "";
+  const std::scoped_lock lock(fits_mutex_);
+  ReadFit& known = fits_[session.filename().string()];
+  if (known.sha256.empty() || known.time != time) known = {.time = time, .sha256 = sha256_hex(text_of_file(file))};
+  return known.sha256;
 }
 
 json Workspace::session_document(const std::string& name) {
   const fs::path folder = existing_session(name);
-  json document = session_line(folder);
+  json document = session_line(folder, fits_in_library());
   const Plan plan = read_session_file(folder).plan;
   const auto taken = taken_pictures(read_journal(folder / "journal.jsonl").records);
   document["views"] = json::array();

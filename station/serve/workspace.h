@@ -55,7 +55,12 @@ class Workspace {
   std::set<std::string> work_left(const std::string& name) const;
 
  private:
-  nlohmann::json session_line(const std::filesystem::path& folder);
+  // `fits`: the hashes of the fits that the library holds.
+  nlohmann::json session_line(const std::filesystem::path& folder, const std::set<std::string>& fits);
+  std::set<std::string> fits_in_library() const;
+  std::set<std::string> left_of(const std::filesystem::path& session, bool complete,
+                                const std::set<std::string>& fits) const;
+  std::string fit_hash(const std::filesystem::path& session) const;  // empty: not fitted
   nlohmann::json queue_line(const std::string& name);
 
   std::filesystem::path folder_;
@@ -69,6 +74,12 @@ class Workspace {
   };
   std::mutex sessions_mutex_;
   std::map<std::string, ReadSession> sessions_;
+  struct ReadFit {
+    std::filesystem::file_time_type time{};
+    std::string sha256;
+  };
+  mutable std::mutex fits_mutex_;
+  mutable std::map<std::string, ReadFit> fits_;  // of each session, while its file has that time
   CalibrationLines calibrations_;
 };
 

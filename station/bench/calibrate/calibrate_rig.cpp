@@ -46,21 +46,21 @@ std::string last_utc(const std::vector<CalibrationPicture>& pictures) {
 
 RigCalibration calibrate_rig(const CalibrateRequest& request) {
   const RigFile rig = read_rig(request.rig);
-  ProgressDisplay progress("calibrate", request.progress_style);
+  ProgressDisplay progress("photograph", request.progress_style);
   const std::vector<CalibrationStep> plan = make_calibration_plan(rig);
   const std::vector<int> actions = actions_of(plan);
-  const auto show = [&](int done, int total, const std::string& label) { progress.show(done, total, label); };
   // A person counts what is left to do, not pictures.
   const auto show_step = [&](int done, int total, const std::string& label) {
     if (request.asked && done < total)
       request.asked->prepare({{"step", actions.at(static_cast<std::size_t>(done))}, {"of", actions.back()}}, "");
-    show(done, total, label);
+    progress.show(done, total, label);
   };
   std::string utc;
   if (!request.solve_only) {
     watch_interrupts();
     if (!request.only.empty())
       forget_calibration_pictures(request.out, [&](CalibrationRole role) { return belongs_to(role, request.only); });
+    LensCoverage covered(rig);
     std::optional<WatchedPerson> watched;
     if (request.asked) watched.emplace(*request.asked);
     RigDevices devices = open_rig(rig, std::nullopt, watched ? &*watched : nullptr);
@@ -70,22 +70,26 @@ RigCalibration calibrate_rig(const CalibrateRequest& request) {
       devices.person = make_drawing_operator(*person, *request.asked);
     }
     if (watched && rig.operator_driver == "console" && !request.live.empty())
-      watch_placing(rig, devices, request.live, *watched);
-    record_calibration(rig, plan, devices, request.out, show_step, interrupted);
+      watch_placing(rig, devices, request.live, *watched, covered);
+    record_calibration(rig, plan, devices, request.out, show_step, interrupted, covered);
+    progress.finish("all pictures are taken");
     leave_at_zero(rig, *devices.turntable);
     utc = devices.clock->utc();
   }
   if (interrupted()) throw std::runtime_error("calibration interrupted; the same command goes on from here");
   let_interrupts_end();  // all pictures are kept, and to solve them takes long
   const std::vector<CalibrationPicture> pictures = read_calibration_pictures(request.out);
-  RigCalibration calibration = solve_calibration(rig, request.out, pictures, show);
+  ProgressDisplay working_out("work out", request.progress_style);
+  RigCalibration calibration =
+      solve_calibration(rig, request.out, pictures,
+                        [&](int done, int total, const std::string& label) { working_out.show(done, total, label); });
   calibration.utc = utc.empty() ? last_utc(pictures) : utc;
   calibration.software = software_version();
   if (calibration.sensor) write_sensor_maps(request.out, *calibration.sensor);
   write_json_file(request.out / "calibration.json", to_json(calibration));
   write_cameramodel_beside(calibration.lens, request.out / "calibration.json");
   write_calibration_page(request.out, calibration);
-  progress.finish("done");
+  working_out.finish("done");
   return calibration;
 }
 

@@ -25,7 +25,8 @@ calibration::LightOptions light_options(const RigFile& rig, cv::Size picture) {
 }
 
 calibration::Lens engraved_lens(const RigFile& rig, cv::Size picture) {
-  return calibration::plain_lens(rig.focal_length_guess_px, picture.width, picture.height);
+  const double scale = static_cast<double>(picture.width) / picture_size(rig).width;
+  return calibration::plain_lens(scale * rig.focal_length_guess_px, picture.width, picture.height);
 }
 
 calibration::PanelBench panel_bench(const RigFile& rig) {

@@ -33,15 +33,9 @@ constexpr double kMostLean_rad = 9 * kDegree;  // of the plate against what is w
 constexpr double kMostOff_mm = 45, kMostTurn_rad = 25 * kDegree;
 const cv::Scalar kWanted(0, 200, 255), kRight(80, 220, 80);  // BGR
 
-// The lens by its engraving, for frames that are smaller than pictures.
-calibration::Lens lens_for(const RigFile& rig, cv::Size frame) {
-  const double scale = static_cast<double>(frame.width) / panel_bench(rig).camera.lens.width_px;
-  return calibration::plain_lens(scale * rig.focal_length_guess_px, frame.width, frame.height);
-}
-
 std::vector<cv::Point> outline_in(const RigFile& rig, const rig::Arrangement& wanted, double angle_rad,
                                   cv::Size frame) {
-  const calibration::Lens lens = lens_for(rig, frame);
+  const calibration::Lens lens = engraved_lens(rig, frame);
   const Isometry3d camera_from_target =
       rig.world_from_camera_by_tape.inverse() * calibration::turned(angle_rad, wanted.pose);
   std::vector<cv::Point> outline;
@@ -56,8 +50,9 @@ std::vector<cv::Point> outline_in(const RigFile& rig, const rig::Arrangement& wa
 
 }  // namespace
 
-PlacingWatch::PlacingWatch(const RigFile& rig, rig::Camera& camera, std::filesystem::path live, Clock now)
-    : rig_(rig), camera_(camera), live_(std::move(live)), now_(std::move(now)) {}
+PlacingWatch::PlacingWatch(const RigFile& rig, rig::Camera& camera, std::filesystem::path live, Clock now,
+                           const LensCoverage* covered)
+    : rig_(rig), camera_(camera), live_(std::move(live)), now_(std::move(now)), covered_(covered) {}
 
 void PlacingWatch::begin(const std::optional<rig::Arrangement>& before, const rig::Arrangement& wanted,
                          double angle_rad) {
@@ -74,7 +69,7 @@ void PlacingWatch::begin(const std::optional<rig::Arrangement>& before, const ri
 std::string PlacingWatch::fault(const calibration::TagObservation& seen, const cv::Mat1f& grey) const {
   const std::string name = rig::object_name(wanted_->object);
   const calibration::TagLayout& tags = target_tags(rig_, wanted_->object);
-  const auto fit = calibration::fit_pose(lens_for(rig_, grey.size()), tags, seen);
+  const auto fit = calibration::fit_pose(engraved_lens(rig_, grey.size()), tags, seen);
   if (!fit ||
       static_cast<double>(calibration::tags_seen(tags, seen)) < kFewestTags * static_cast<double>(tags.tags.size()))
     return "Not enough of " + name + " is seen: the outline shows where it is wanted.";
@@ -117,6 +112,10 @@ PlacingWatch::Look PlacingWatch::look() {
     found.remark = !only_the_target_ ? "It stands well. Say that it is done when the light is as asked for."
                    : found.stands    ? "It stands well."
                                      : "It stands well: let go of it.";
+  if (covered_ && wanted_->object == rig::BenchObject::board) {
+    covered_->shade_unseen(frame);
+    if (const std::string so_far = covered_->sentence(); !so_far.empty()) found.remark += " " + so_far;
+  }
   const std::vector<cv::Point> outline = outline_in(rig_, *wanted_, angle_rad_, frame.size());
   if (!outline.empty())
     cv::polylines(frame, outline, true, right ? kRight : kWanted, std::max(1, frame.cols / 300), cv::LINE_AA);
@@ -184,11 +183,13 @@ class WatchedOperator final : public rig::Operator {
 
 }  // namespace
 
-void watch_placing(const RigFile& rig, RigDevices& devices, const std::filesystem::path& live, WatchedPerson& asked) {
+void watch_placing(const RigFile& rig, RigDevices& devices, const std::filesystem::path& live, WatchedPerson& asked,
+                   const LensCoverage& covered) {
   const auto begin = std::chrono::steady_clock::now();
-  auto watch = std::make_unique<PlacingWatch>(rig, *devices.camera, live, [begin] {
+  const auto now_s = [begin] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  });
+  };
+  auto watch = std::make_unique<PlacingWatch>(rig, *devices.camera, live, now_s, &covered);
   devices.person =
       std::make_unique<WatchedOperator>(std::move(devices.person), std::move(watch), *devices.turntable, asked);
 }

@@ -10,6 +10,7 @@
 #include "calibration/geometry/tags.h"
 #include "rig/devices/camera.h"
 #include "rig/people/asked_person.h"
+#include "station/bench/calibrate/lens_coverage.h"
 #include "station/bench/rig_devices.h"
 #include "station/documents/rig_file.h"
 
@@ -18,8 +19,10 @@ namespace station {
 class PlacingWatch {
  public:
   using Clock = std::function<double()>;  // seconds that only grow
-  // Both must outlive it. `live`: the JPEG that is written for each frame.
-  PlacingWatch(const RigFile& rig, rig::Camera& camera, std::filesystem::path live, Clock now);
+  // All must outlive it. `live`: the JPEG that is written for each frame. `covered`: what pictures have shown of the
+  // board, which is told while the board is put down; null: nothing is known of it.
+  PlacingWatch(const RigFile& rig, rig::Camera& camera, std::filesystem::path live, Clock now,
+               const LensCoverage* covered = nullptr);
 
   // From now on `wanted` is looked for, with the platform at `angle_rad`. `before`: how the bench stood, if that is
   // known.
@@ -44,6 +47,7 @@ class PlacingWatch {
   rig::Camera& camera_;
   std::filesystem::path live_;
   Clock now_;
+  const LensCoverage* covered_;
   std::optional<rig::Arrangement> wanted_;
   bool only_the_target_ = false;
   double angle_rad_ = 0;
@@ -68,7 +72,8 @@ class WatchedPerson final : public rig::AskedPerson {
   PlacingWatch* watch_ = nullptr;
 };
 
-// Has `devices.person`, who asks `asked`, watched while targets are put down.
-void watch_placing(const RigFile& rig, RigDevices& devices, const std::filesystem::path& live, WatchedPerson& asked);
+// Has `devices.person`, who asks `asked`, watched while targets are put down. `covered` must outlive the person.
+void watch_placing(const RigFile& rig, RigDevices& devices, const std::filesystem::path& live, WatchedPerson& asked,
+                   const LensCoverage& covered);
 
 }  // namespace station

@@ -22,7 +22,7 @@ export function showJob() {
   allow(byId("preview"), why);
   byId("log").hidden = !job;
   if (!job) return;
-  byId("label").textContent = job.total ? `${job.done} / ${job.total} ${job.label}` : job.label || text("begins");
+  byId("label").textContent = stageOf(job) + (job.total ? `${job.done} / ${job.total} ${job.label}` : job.label || text("begins"));
   if (job.total) byId("bar").value = job.done / job.total;
   else byId("bar").removeAttribute("value");
   byId("left").textContent = job.seconds_left === null ? "" : `${time(job.seconds_left)} ${text("left")}`;
@@ -31,6 +31,12 @@ export function showJob() {
   lines.textContent = job.lines.join("\n");
   if (end) lines.scrollTop = lines.scrollHeight;
   if (job.outcome === "badly") byId("log").open = true;
+}
+
+// A calibration counts twice: pictures, and what is read from them.
+function stageOf(job) {
+  const stage = {"photograph": "stage_photograph", "work out": "stage_work_out"}[job.task];
+  return stage ? `${text(stage)}: ` : "";
 }
 
 // What follows what, of a job of several commands.

@@ -4,12 +4,8 @@ import {calibrationVerdict, newestCalibration} from "/calibration.js";
 import {ago, allow, byId, make, percent, show, text} from "/document.js";
 import {go, jobRuns, picture, startJob, state, whyNot} from "/station.js";
 
-// A session that is not in the library needs at least that.
-export const inLibrary = line => state.threads.some(thread => thread.session === line.name);
-export const left = line => [...line.left, ...(inLibrary(line) ? [] : ["add"])];
-
 const unfinished = () => state.sessions.filter(line => !line.problem && line.state !== "running" && line.left.includes("capture"));
-const unprocessed = () => state.sessions.filter(line => !line.problem && line.state === "complete" && left(line).length > 0);
+const unprocessed = () => state.sessions.filter(line => !line.problem && line.state === "complete" && line.left.length > 0);
 
 // {words, button, act}
 function next() {
@@ -37,7 +33,7 @@ function waitingLine(line) {
   button.onclick = () => startJob({kind: "process", name: line.name});
   allow(button, whyNot());
   return make("li", {}, make("a", {href: `#/session/${encodeURIComponent(line.name)}`, textContent: line.name}),
-              ` · ${line.spool} · ${line.taken} / ${line.views} ${text("taken")} · ${text("lacks")} ${left(line).map(one => text(`step_${one}`)).join(", ")} `, button);
+              ` · ${line.spool} · ${line.taken} / ${line.views} ${text("taken")} · ${text("lacks")} ${line.left.map(one => text(`step_${one}`)).join(", ")} `, button);
 }
 
 // How a thread of the library looks, where there is a picture of it.

@@ -1,7 +1,6 @@
 // Session: the contact sheet with a verdict for each view, and what can be done next, or why it cannot.
 
 import {ago, allow, byId, fill, make, text, time} from "/document.js";
-import {inLibrary, left} from "/overview.js";
 import {ask, jobRuns, picture, startJob, state, whyNot} from "/station.js";
 import {openViewer} from "/viewer.js";
 
@@ -52,12 +51,12 @@ function reason(kind, line) {
   if (whyNot()) return whyNot();
   const complete = !line.left.includes("capture"), views = text("views_missing", {n: line.views - line.taken, of: line.views});
   switch (kind) {
-    case "process": return left(line).length ? "" : text("nothing_left");
+    case "process": return line.left.length ? "" : text("nothing_left");
     case "resume": return complete ? text("all_taken") : "";
     case "develop": return complete ? "" : views;
     case "invert": return !complete ? views : line.left.includes("develop") ? text("not_developed") : "";
     case "report": return complete ? "" : views;
-    default: return !line.inverted ? text("not_fitted") : inLibrary(line) ? text("in_library") : "";
+    default: return !line.inverted ? text("not_fitted") : !line.left.includes("add") ? text("in_library") : "";
   }
 }
 
@@ -65,7 +64,7 @@ export async function showSession() {
   const line = state.sessions.find(one => one.name === session), found = session ? await ask("/api/session", {name: session}) : null;
   byId("session-state").textContent = found ? `${found.spool || ""} · ${text("state_" + found.state)}${found.utc ? ` · ${ago(found.utc)}` : ""}` : text("no_session");
   byId("taken").textContent = found ? `${found.views.filter(view => view.grade).length} / ${found.views.length} ${text("taken")}${timeLeft()}` : "";
-  byId("session-left").textContent = line && left(line).length ? `${text("lacks")} ${left(line).map(one => text(`step_${one}`)).join(", ")}.` : "";
+  byId("session-left").textContent = line && line.left.length ? `${text("lacks")} ${line.left.map(one => text(`step_${one}`)).join(", ")}.` : "";
   for (const button of document.querySelectorAll("[data-kind]")) allow(button, reason(button.dataset.kind, line));
   const whys = ["resume", "develop", "invert", "report", "add"].map(kind => [kind, reason(kind, line)]).filter(([, why]) => why);
   byId("session-why").textContent = !line ? "" : whyNot() || whys.map(([kind, why]) => `${text(`step_${kind}`)}: ${why}`).join(" · ");

@@ -41,7 +41,8 @@ json make_prior(const std::filesystem::path& out, std::uint64_t seed, ProgressSt
                        {"gap_fiber_radii", fit.thread.gap},
                        {"absorptions_per_fiber_radius", fit.thread.absorptions},
                        {"relative_l2_error", rounded(fit.error)},
-                       {"unknowns", numbers(fit.unknowns)}});
+                       {"unknowns", numbers(fit.unknowns)},
+                       {"deviations", numbers(fit.covariance.diagonal().cwiseSqrt())}});
   const json document{{"made_by", "threadstation scatter prior --seed " + std::to_string(seed)},
                       {"unknowns", {"beta_R", "beta_TT", "beta_TRT", "L0", "L1", "concavity", "r1a", "d2", "w2", "n2"}},
                       {"threads", prior.threads},

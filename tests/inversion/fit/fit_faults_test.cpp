@@ -122,6 +122,16 @@ TEST(FitFaultsTest, ALampTenMillimetresFromWhereItIsThoughtToBeIsWithinTheUncert
   EXPECT_TRUE(off < 3 || !found.doubts.empty()) << off;
 }
 
+TEST(FitFaultsTest, AThreadThatWouldHaveToShineIsNamedByItsColours) {
+  ViewFit fit;
+  fit.unknown_names = {"alpha_r", "sigma_a_r", "sigma_a_g", "sigma_a_b"};
+  fit.certainty.beyond_bound = Eigen::Vector4d(9, 2.9, 5.1, 3.4);
+  EXPECT_THAT(fit_doubts({}, fit, {}),
+              Contains(testing::AllOf(HasSubstr("brighter in green, blue than"), HasSubstr("by 5 standard"))));
+  fit.certainty.beyond_bound.tail(2).setConstant(3);
+  EXPECT_THAT(fit_doubts({}, fit, {}), Not(Contains(HasSubstr("brighter in"))));
+}
+
 TEST(FitFaultsTest, OneBadViewIsNamedAndHardlyMovesTheThread) {
   std::vector<View> views = photographs_of(known_thread());
   for (const Standpoint& at :

@@ -151,6 +151,7 @@ TEST(CertaintyTest, AtABoundDeviationsAreOneSidedAndWhatTradesWithTheUnknownIsUn
   fit.residuals.setZero();  // no misfit
   const MatrixXd square = fit.jacobian.transpose() * fit.jacobian;
   const Eigen::Vector2d unbounded(0.3, -0.2);
+  const double deviation = std::sqrt(certainty_of(fit).covariance(0, 0));  // without a bound
   for (const int side : {-1, 1})
     for (const double beyond : {0.0, 0.01, 0.03}) {
       const double bound = unbounded.x() - side * beyond;
@@ -161,6 +162,8 @@ TEST(CertaintyTest, AtABoundDeviationsAreOneSidedAndWhatTradesWithTheUnknownIsUn
       const Certainty certainty = certainty_of(fit);
       EXPECT_TRUE(certainty.at_bound[0]);
       EXPECT_FALSE(certainty.at_bound[1]);
+      EXPECT_NEAR(certainty.beyond_bound[0], beyond / deviation, 0.01);
+      EXPECT_EQ(certainty.beyond_bound[1], 0);
       EXPECT_TRUE(certainty.covariance.isApprox(expected, 0.02)) << "side " << side << ", " << beyond << " beyond:\n"
                                                                  << certainty.covariance << "\nby summing:\n"
                                                                  << expected;

@@ -19,8 +19,8 @@ TEST(RobustWeightsTest, ViewsThatAgreeAlikeCountInFull) {
 TEST(RobustWeightsTest, AViewTenTimesWorseThanTheOthersHardlyCounts) {
   const RobustWeights weights = robust_weights({even_view(0.1), even_view(0.1), even_view(0.1), even_view(1)});
   EXPECT_EQ(weights.views[0], 1);
-  EXPECT_NEAR(weights.views[3], 0.0625, 1e-12);  // (2.5 / 10)^2
-  EXPECT_NEAR(weights.blocks[3][0], 0.0625, 1e-12);
+  EXPECT_NEAR(weights.views[3], 0.00390625, 1e-12);  // (2.5 / 10)^4
+  EXPECT_NEAR(weights.blocks[3][0], 0.00390625, 1e-12);
 }
 
 TEST(RobustWeightsTest, ReflectionsAndTransmissionsAreJudgedAmongThemselves) {

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <random>
 
@@ -130,6 +133,34 @@ TEST(AzimuthalFitTest, PredictedDeviationsCoverTheErrorsOfNoise) {
       EXPECT_LT(value.deviation, 0.02);
     }
     if (value.name == "r1a") EXPECT_NEAR(value.value, truth.r1a, 5 * value.deviation);
+  }
+}
+
+TEST(AzimuthalFitTest, ItsCovarianceIsTheSpreadOfFitsToDistributionsThatAreEachOffAsAWhole) {
+  constexpr int kDraws = 15;
+  constexpr unsigned kSeed = 1128;
+  constexpr std::array<const char*, 5> kNames{"beta_TT", "L0", "L1", "r1a", "n2"};
+  std::printf("seed %u, %d draws\n", kSeed, kDraws);
+  const std::vector<AzimuthalData> exact = data_of_thread(thread_like_simulations(), {0, 0.1, 0.3}, 0);
+  std::mt19937 random(kSeed);
+  std::normal_distribution<double> brightness(1, 0.02);
+  std::array<double, kNames.size()> sums{}, squares{}, predicted{};
+  for (int draw = 0; draw < kDraws; ++draw) {
+    std::vector<AzimuthalData> off = exact;
+    for (AzimuthalData& d : off) d.density *= brightness(random);
+    const JointThreadFit fit = fit_thread_jointly(off);
+    for (std::size_t k = 0; k < kNames.size(); ++k) {
+      const auto found = std::ranges::find(fit.values, kNames[k], &FittedValue::name);
+      const Eigen::Index i = found - fit.values.begin();
+      sums[k] += found->value / kDraws, squares[k] += found->value * found->value / kDraws;
+      predicted[k] += fit.covariance(i, i) / kDraws;
+    }
+  }
+  for (std::size_t k = 0; k < kNames.size(); ++k) {
+    const double spread = std::sqrt(squares[k] - sums[k] * sums[k]), expected = std::sqrt(predicted[k]);
+    std::printf("%-8s observed %.4f predicted %.4f\n", kNames[k], spread, expected);
+    EXPECT_GT(expected, 0.6 * spread) << kNames[k];
+    EXPECT_LT(expected, 2.5 * spread) << kNames[k];
   }
 }
 

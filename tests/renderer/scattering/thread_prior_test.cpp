@@ -7,18 +7,17 @@
 namespace renderer {
 namespace {
 
-TEST(ThreadPriorTest, MeanAndCovarianceAreThoseOfTheLibrary) {
+TEST(ThreadPriorTest, ItsCovarianceIsThatAmongTheThreadsAndTheirFitsOwn) {
   LibraryFit a{}, b{};
-  a.unknowns = PriorVector::Zero();
-  b.unknowns = PriorVector::Zero();
+  a.covariance(3, 3) = 1, b.covariance(0, 3) = b.covariance(3, 0) = 6;
   a.unknowns[0] = 1, a.unknowns[3] = 2;
   b.unknowns[0] = 3, b.unknowns[3] = -2;
   const ThreadPrior prior = prior_of({a, b});
   EXPECT_EQ(prior.threads, 2);
   EXPECT_DOUBLE_EQ(prior.mean[0], 2);
   EXPECT_DOUBLE_EQ(prior.covariance(0, 0), 2);
-  EXPECT_DOUBLE_EQ(prior.covariance(0, 3), -4);
-  EXPECT_DOUBLE_EQ(prior.covariance(3, 3), 8);
+  EXPECT_DOUBLE_EQ(prior.covariance(0, 3), -4 + 3);
+  EXPECT_DOUBLE_EQ(prior.covariance(3, 3), 8 + 0.5);
   EXPECT_THROW(prior_of({a}), std::invalid_argument);
 }
 

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -33,8 +34,9 @@ namespace station_test {
 
 inline constexpr double kLeftFarDeg = 100, kLeftNearDeg = 3;  // where somebody left the platform
 // The board's seconds to a real one: until it is to be stopped; from then on, so that a stop that this computer is late
-// to deliver is not the program's; and behind the stop.
-inline constexpr double kQuick = 4, kSlow = 0.1, kQuickest = 8;
+// to deliver is not the program's; once the board has heard it, because a program waits so many real seconds for a
+// platform that brakes; and behind the stop.
+inline constexpr double kQuick = 4, kSlow = 0.1, kBraking = 0.5, kQuickest = 8;
 inline constexpr auto kPatience = std::chrono::seconds(120);
 
 // Both simulations of GRBL: this project's own, and the one that was written from the protocol's documentation alone.
@@ -97,7 +99,11 @@ class AttendedPort final : public rig::SimulatedPort {
     }
     port()->opened();
   }
-  void receive(std::string_view bytes) override { port()->receive(bytes); }
+  void receive(std::string_view bytes) override {
+    // GRBL's feed hold, cancelled jog and reset; Zaber's word.
+    if (bytes.find_first_of("!\x85\x18") != bytes.npos || bytes.find("stop") != bytes.npos) ++stops_heard_;
+    port()->receive(bytes);
+  }
   std::string transmit() override { return port()->transmit(); }
   void unplug() override { port()->unplug(); }
   bool plugged() override { return port()->plugged(); }
@@ -107,6 +113,7 @@ class AttendedPort final : public rig::SimulatedPort {
     const std::lock_guard hold(mutex_);
     return openings_;
   }
+  int stops_heard() const { return stops_heard_; }
   // By hand, right before a program opens the port for the Nth time.
   void turn_before_opening(int opening, double to_deg) {
     const std::lock_guard hold(mutex_);
@@ -121,6 +128,7 @@ class AttendedPort final : public rig::SimulatedPort {
   }
 
   PowerOn another_;
+  std::atomic<int> stops_heard_ = 0;
   mutable std::mutex mutex_;  // guards what follows
   std::shared_ptr<rig::SimulatedPort> port_;
   int openings_ = 0, turned_at_opening_ = 0;
@@ -178,6 +186,7 @@ class Lab {
   }
   double board_time_s() const { return board_clock_->passed_s(); }
   int openings() const { return port_->openings(); }  // of its turntable's port
+  int stops_heard() const { return port_->stops_heard(); }
   void turn_by_hand_before_opening(int opening, double to_deg) const { port_->turn_before_opening(opening, to_deg); }
   void set_pace(double pace) const { board_clock_->set_pace(pace); }
   std::map<std::string, std::string> environment() const { return {{"XDG_STATE_HOME", in("state")}}; }
@@ -188,9 +197,12 @@ class Lab {
   }
   int run(const std::vector<std::string>& arguments) const { return wait_for(start(arguments)); }
 
+  std::optional<rig::PlatformPlace> remembered() const {
+    return station::remember_platform(memory_file(), nullptr)->recall();
+  }
   // The angle at which the memory says that the platform stands; nothing when it does not know.
   std::optional<double> remembered_deg() const {
-    const auto place = station::remember_platform(memory_file(), nullptr)->recall();
+    const auto place = remembered();
     return place && !place->turning && !place->lost ? std::optional(place->angle_rad / station::kDegree) : std::nullopt;
   }
 

@@ -123,10 +123,14 @@ void end(pid_t process, Ending ending) {
 // What must hold behind a stop: the platform stands where the program says, and the next one finds its angle 0 or asks.
 std::string problem_afterwards(const Lab& lab, Board board, Ending ending, double stood_deg) {
   if (is_here(board) && ending != Ending::kill) {
+    const auto place = lab.remembered();
     const auto remembered = lab.remembered_deg();
     if (!remembered || std::abs(*remembered - stood_deg) > kSameDeg)
       return "it stands at " + std::to_string(stood_deg) + " deg and remembers " +
-             (remembered ? std::to_string(*remembered) : "nothing");
+             (remembered    ? std::to_string(*remembered)
+              : !place      ? "nothing"
+              : place->lost ? "that it is lost"
+                            : "that it turns from " + std::to_string(place->angle_rad / station::kDegree));
   }
   lab.set_pace(kQuickest);
   const ProgramResult home = run_shell("XDG_STATE_HOME='" + lab.in("state").string() + "' " + THREADSTATION_PROGRAM +
@@ -173,8 +177,13 @@ Stopped stop(const Way& way, Board board, Ending ending, int times, double delay
   std::this_thread::sleep_for(20ms);
   const double told_deg = lab.angle_deg();
   result.turned = told_deg != before_deg;
+  const int heard = lab.stops_heard();
   end(process, ending);
   const double late_deg = std::abs(lab.angle_deg() - told_deg);  // this thread was held up
+  const auto until = std::chrono::steady_clock::now() + kPatience;
+  while (lab.stops_heard() == heard && !has_ended(process) && std::chrono::steady_clock::now() < until)
+    std::this_thread::sleep_for(1ms);
+  lab.set_pace(kBraking);
   if (ending != Ending::kill && !ends(process)) result.problem = "the program goes on";
   wait_for(process);
   lab.set_pace(kQuick);

@@ -7,6 +7,7 @@
 #include "rig/devices/clock.h"
 #include "station/documents/sample.h"
 #include "station/documents/spool.h"
+#include "station/serve/left_jobs.h"
 #include "station/session/record/journal.h"
 #include "station/thread/library.h"
 #include "tests/station/serve/technician_page_fixture.h"
@@ -233,22 +234,51 @@ TEST_F(TechnicianPage, ASessionSaysWhatIsLeftToDo) {
   copy_session();
   const std::filesystem::path session = folder_ / "bench/sessions/silk_red";
   const auto left = [&] { return get("/api/state").at("sessions")[0].at("left"); };
-  EXPECT_EQ(left(), (json{"develop", "invert", "report"}));
-  const auto write = [&](const char* file, int minutes) {
-    std::filesystem::create_directories((session / file).parent_path());
-    std::ofstream(session / file) << "{}";
+  EXPECT_EQ(left(), (json{"develop", "invert", "report", "add"}));
+  const auto made = [&](const char* file, int minutes) {
     std::filesystem::last_write_time(session / file,
                                      std::filesystem::file_time_type::clock::now() + std::chrono::minutes(minutes));
   };
+  const auto write = [&](const char* file, int minutes) {
+    std::filesystem::create_directories((session / file).parent_path());
+    std::ofstream(session / file) << "{}";
+    made(file, minutes);
+  };
+  const auto fitted_as = [&](const char* thread, int minutes) {
+    std::filesystem::copy_file(std::string(DATA_DIR) + "/threads/" + thread, session / "result/thread.json",
+                               std::filesystem::copy_options::overwrite_existing);
+    made("result/thread.json", minutes);
+  };
   write("linear/views.json", 1);
-  EXPECT_EQ(left(), (json{"invert", "report"}));
-  write("result/thread.json", 2);
+  EXPECT_EQ(left(), (json{"invert", "report", "add"}));
+  std::filesystem::create_directories(session / "result");
+  fitted_as("silk_red.json", 2);
   write("report.html", 3);
+  EXPECT_EQ(left(), (json{"add"}));
+  station::Library(folder_ / "bench/library", true).add(session / "result/thread.json", "2026-11-21T10:20:30.123Z");
   EXPECT_EQ(left(), json::array());
-  write("result/thread.json", 4);
-  EXPECT_EQ(left(), (json{"report"}));
+  fitted_as("silk_blue.json", 4);
+  EXPECT_EQ(left(), (json{"report", "add"}));
   write("linear/views.json", 5);
-  EXPECT_EQ(left(), (json{"invert", "report"}));
+  EXPECT_EQ(left(), (json{"invert", "report", "add"}));
+}
+
+TEST(OldJobs, AreForgottenButForTheLastChecks) {
+  const station_test::TemporaryFolder folder;
+  const auto said = [&](int time, const char* kind) {
+    const auto path = [&](const char* ending) { return folder / (std::to_string(time) + "-" + kind + ending); };
+    std::ofstream(path(".out")) << "[]";
+    std::ofstream(path(".progress")) << "{}";
+    return path(".out");
+  };
+  const auto old_check = said(1000, "check"), check = said(1001, "check"), last_check = said(1002, "check"),
+             old = said(1003, "invert"), newer = said(1004, "capture"), newest = said(1005, "invert");
+  std::ofstream(folder / "1003-invert.process") << "1 1";
+  station::forget_old_jobs(folder / ".", 2);
+  for (const auto& kept : {check, last_check, newer, newest}) EXPECT_TRUE(std::filesystem::exists(kept)) << kept;
+  for (const auto& gone : {old_check, old}) EXPECT_FALSE(std::filesystem::exists(gone)) << gone;
+  EXPECT_FALSE(std::filesystem::exists(folder / "1003-invert.progress"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "1003-invert.process")) << "the emergency stop finds it by that";
 }
 
 TEST_F(TechnicianPage, ACalibrationIsShownWithItsGatesAndItsBudget) {

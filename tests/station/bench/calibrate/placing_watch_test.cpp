@@ -59,6 +59,17 @@ TEST_F(Placing, ABoardThatStandsAsAskedIsTakenAfterASecondOfStillness) {
   EXPECT_TRUE(watch.all_is_seen());
 }
 
+// Every live view is smaller than the camera's pictures.
+TEST_F(Placing, AFrameOfHalfThePicturesSizeTellsTheSame) {
+  RigFile larger = rig;
+  larger.simulation->truth.lens.width_px *= 2, larger.simulation->truth.lens.height_px *= 2;
+  larger.focal_length_guess_px *= 2;
+  PlacingWatch by_small_frames(larger, *camera, folder / "live.jpg", [] { return 0.0; });
+  bench.place(wanted);
+  by_small_frames.begin(wanted, wanted, 0);
+  EXPECT_THAT(by_small_frames.look().remark, HasSubstr("stands well"));
+}
+
 TEST_F(Placing, WhereTheBoardIsMissingTheOutlineShowsWhereItIsWanted) {
   bench.place({.room_light = true});
   watch.begin(wanted, wanted, 0);
