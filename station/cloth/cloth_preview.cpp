@@ -1,6 +1,7 @@
 #include "station/cloth/cloth_preview.h"
 
 #include <array>
+#include <cmath>
 #include <stdexcept>
 
 #include "renderer/picture/image_file.h"
@@ -23,6 +24,7 @@ namespace station {
 namespace {
 
 using nlohmann::json;
+namespace fs = std::filesystem;
 
 // The stage of a picture: a ready scene in which cloth and thread are replaced.
 struct Stage {
@@ -30,8 +32,8 @@ struct Stage {
   const char* scene;  // in station/data/scenes
   int width_px, height_px, samples_per_pixel;
 };
-constexpr std::array<Stage, 2> kStages{Stage{"swatch", "twill_swatch.json", 360, 360, 32},
-                                       Stage{"cylinder", "satin_cylinder.json", 280, 420, 32}};
+constexpr std::array<Stage, 2> kStages{Stage{"swatch", "twill_swatch.json", 720, 720, 32},
+                                       Stage{"cylinder", "satin_cylinder.json", 480, 720, 32}};
 constexpr int kQuickReduction = 2;   // of sizes and samples
 constexpr int kWarp = 0, kWeft = 1;  // threads of the draft
 
@@ -53,68 +55,109 @@ json scene_of(const Stage& stage, const std::array<std::string, 2>& threads, boo
   return scene;
 }
 
-// Writes the threads of systems that are coloured; returns the thread files of warp and weft as the scenes name them.
-std::array<std::string, 2> write_threads(const ClothPreviewRequest& request, const renderer::YarnPatch& patch,
-                                         json& made_of) {
-  const std::string own =
-      model_file_of(request.session, request.model).lexically_relative(cloth_folder(request.session)).generic_string();
-  std::array<std::string, 2> files{own, own};
-  if (!request.warp_colour && !request.weft_colour) return files;
-  if (request.model != "thread")
-    throw std::runtime_error("colours were given for a " + request.model +
-                             ", and only a thread's absorption can be changed; leave them out, or take --model thread");
-  const ThreadFile thread = read_thread(thread_file_of(request.session));
-  constexpr int kParts = 100;
+bool is_bundle_file(const fs::path& file) {
+  return read_json_file(file).value("format", "") == "threadstation/bundle";
+}
+
+// The threads of warp and weft, in this order.
+using Systems = std::array<fs::path, 2>;
+constexpr std::array<const char*, 2> kSystems{"warp", "weft"};
+
+// Writes the threads of systems that are coloured, and copies where they are asked for; returns the thread files of
+// warp and weft as the scenes name them.
+std::array<std::string, 2> write_threads(const ClothPreviewRequest& request, const Systems& own,
+                                         const renderer::YarnPatch& patch, json& made_of) {
+  std::array<std::string, 2> files;
   ProgressDisplay progress("cloth", request.progress_style);
-  const ClothColours colours(thread, patch, [&](double done) {
-    progress.show(static_cast<int>(kParts * done), kParts, "what absorption makes of the cloth");
-  });
-  const auto colour = [&](const char* system, const std::optional<Srgb8>& wanted, std::string& file) {
-    if (!wanted) return;
-    const ColouredThread coloured = colours.thread_of(*wanted);
-    ThreadFile made = thread;
-    made.name += std::string(", coloured as ") + system;
-    made.parameters = coloured.parameters;
-    made.fit = json::object();  // it was never photographed
-    file = std::string(system) + "_thread.json";
-    write_json_file(cloth_folder(request.session) / file, to_json(made));
-    made_of[system] = {{"srgb", *wanted}, {"delta_e_2000", coloured.delta_e_2000}};
-  };
-  colour("warp", request.warp_colour, files[0]);
-  colour("weft", request.weft_colour, files[1]);
-  progress.finish("colours found");
+  std::optional<ClothColours> colours;
+  fs::path of;  // the thread whose colours these are
+  for (std::size_t k = 0; k < kSystems.size(); ++k) {
+    const std::string system = kSystems.at(k);
+    const std::optional<Srgb8>& wanted = k == kWarp ? request.warp_colour : request.weft_colour;
+    if (wanted) {
+      if (is_bundle_file(own.at(k)))
+        throw std::runtime_error("colours were given for a bundle, " + own.at(k).string() +
+                                 ", and only a thread's absorption can be changed; leave them out, or take its thread");
+      const ThreadFile thread = read_thread(own.at(k));
+      if (of != own.at(k)) {
+        constexpr int kParts = 100;
+        colours.emplace(thread, patch, [&](double done) {
+          progress.show(static_cast<int>(kParts * done), kParts, "what absorption makes of the cloth");
+        });
+        of = own.at(k);
+      }
+      const ColouredThread coloured = colours->thread_of(*wanted);
+      ThreadFile made = thread;
+      made.name += ", coloured as " + system;
+      made.parameters = coloured.parameters;
+      made.fit = json::object();  // it was never photographed
+      files.at(k) = system + "_thread.json";
+      write_json_file(request.out / files.at(k), to_json(made));
+      made_of[system] = {{"srgb", *wanted}, {"delta_e_2000", coloured.delta_e_2000}};
+    } else if (request.with_threads) {
+      files.at(k) = system + "_thread.json";
+      write_json_file(request.out / files.at(k), read_json_file(own.at(k)));
+    } else {
+      files.at(k) = fs::absolute(own.at(k)).lexically_relative(fs::absolute(request.out)).generic_string();
+    }
+  }
+  if (colours) progress.finish("colours found");
   return files;
+}
+
+// Each system of the draft as thick as its thread.
+renderer::Draft draft_of_threads(const fs::path& file, double warp_mm, double weft_mm) {
+  renderer::Draft draft = draft_of_one_thread(read_draft(file), warp_mm);
+  draft.warp.threads = {kWarp}, draft.weft.threads = {kWeft};
+  if (warp_mm == weft_mm) return draft;
+  const double scale = weft_mm / draft.weft.diameter_mm;
+  draft.weft.diameter_mm *= scale;
+  draft.weft.pitch_mm *= scale;
+  return draft;
+}
+
+// Each calibration of a camera has a matrix of its own, which differs by little.
+void require_one_camera(const Systems& own, const ClothThread& warp, const ClothThread& weft) {
+  constexpr double kSame = 0.1;
+  for (std::size_t i = 0; i < warp.linear_srgb_from_camera.size(); ++i)
+    if (std::abs(warp.linear_srgb_from_camera.at(i) - weft.linear_srgb_from_camera.at(i)) > kSame)
+      throw std::runtime_error("the colours of " + own[0].string() + " and " + own[1].string() +
+                               " are those of two cameras, and one cloth is rendered in one camera's colours; take "
+                               "threads that were digitized with the same camera");
 }
 
 }  // namespace
 
 json preview_cloth(const ClothPreviewRequest& request) {
   watch_interrupts();
-  const ClothThread thread = read_cloth_thread(model_file_of(request.session, request.model));
-  const std::filesystem::path folder = cloth_folder(request.session);
+  const Systems own{request.thread, request.weft_thread.empty() ? request.thread : request.weft_thread};
+  const ClothThread thread = read_cloth_thread(own[kWarp]), weft = read_cloth_thread(own[kWeft]);
+  require_one_camera(own, thread, weft);
+  const fs::path& folder = request.out;
   std::error_code code;
-  std::filesystem::create_directories(folder, code);
+  fs::create_directories(folder, code);
   if (code)
     throw std::runtime_error("cannot make " + folder.string() + ": " + code.message() +
-                             "; is the session's folder writable?");
-  renderer::Draft draft = draft_of_one_thread(read_draft(request.draft), thread.diameter_mm);
-  draft.warp.threads = {kWarp}, draft.weft.threads = {kWeft};
+                             "; is the folder that it is in writable?");
+  const renderer::Draft draft = draft_of_threads(request.draft, thread.diameter_mm, weft.diameter_mm);
   ProgressDisplay progress("cloth", request.progress_style);
   const renderer::YarnPatch patch = weave_watched(draft, progress).patch;
   write_json_file(folder / "draft.json", to_json(draft));
   write_json_file(folder / "patch.json", to_json(patch));
-  json made_of{{"draft", draft.name}, {"model", request.model}, {"warp", nullptr}, {"weft", nullptr}};
-  const std::array<std::string, 2> threads = write_threads(request, patch, made_of);
+  json made_of{{"draft", draft.name}, {"warp", nullptr}, {"weft", nullptr}};
+  made_of["model"] = is_bundle_file(own[kWarp]) ? "bundle" : "thread";
+  made_of["threads"] = {read_json_file(own[kWarp]).value("name", ""), read_json_file(own[kWeft]).value("name", "")};
+  const std::array<std::string, 2> threads = write_threads(request, own, patch, made_of);
   for (const Stage& stage : kStages) {
-    const std::filesystem::path scene = folder / (std::string(stage.name) + ".json");
+    const fs::path scene = folder / (std::string(stage.name) + ".json");
     write_json_file(scene, scene_of(stage, threads, request.quick));
-    std::filesystem::path picture = scene;
+    fs::path picture = scene;
     picture.replace_extension(".exr");
     render_scene({.scene = scene, .out = picture, .progress = request.progress_style});
     const cv::Mat3b shown = display(renderer::read_exr(picture), thread.linear_srgb_from_camera);
     renderer::write_png(picture.replace_extension(".png"), shown);
   }
-  write_json_file(cloth_made_of_file(request.session), made_of);
+  write_json_file(folder / kMadeOf, made_of);
   return made_of;
 }
 

@@ -1,5 +1,6 @@
-// The preview of a digitized thread's cloth, under result/cloth of the session: a patch of one draft and two pictures
-// of it, a swatch close up and a cylinder as in the paper. Each document there can be given to `weave` or `render` too.
+// The preview of cloth: a patch of one draft, woven of one digitized thread or of two, and two pictures of it, a swatch
+// close up and a cylinder as in the paper. A session's is under its result/cloth, a design is a folder of its own. Each
+// document there can be given to `weave` or `render` too.
 #pragma once
 
 #include <filesystem>
@@ -14,18 +15,21 @@
 namespace station {
 
 struct ClothPreviewRequest {
-  std::filesystem::path session;  // with the fitted model
-  std::filesystem::path draft;    // scaled to the thread's diameter
-  std::string model = "thread";   // or "bundle"
-  // The colours of warp and weft (cloth_colour.h); a system without one has the digitized thread's own.
+  std::filesystem::path thread;         // thread or bundle file, of the warp
+  std::filesystem::path weft_thread{};  // of the weft; empty: the warp's
+  std::filesystem::path out;            // the cloth's folder
+  bool with_threads = false;            // copies of the threads are put there, so that the folder stands alone
+  std::filesystem::path draft;          // each system is scaled to its thread's diameter
+  // The colours of warp and weft (cloth_colour.h); a system without one has its digitized thread's own.
   std::optional<Srgb8> warp_colour{}, weft_colour{};
   bool quick = false;  // smaller pictures
   ProgressStyle progress_style = ProgressStyle::automatic;
 };
 
 // Writes draft.json, patch.json, made_of.json and, for each picture, its scene.json, .exr and .png; a coloured system's
-// thread is written too. Ctrl-C stops it. Returns the content of made_of.json. Errors: those of the files read;
-// std::runtime_error, one line, when a bundle is to be coloured.
+// thread is written too. Ctrl-C stops it. Returns the content of made_of.json (session/results.h). Errors: those of the
+// files read; std::runtime_error, one line, when a bundle is to be coloured or the threads' colours are those of
+// different cameras.
 nlohmann::json preview_cloth(const ClothPreviewRequest& request);
 
 }  // namespace station

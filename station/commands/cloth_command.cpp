@@ -1,4 +1,6 @@
+#include <filesystem>
 #include <iostream>
+#include <stdexcept>
 
 #include "station/cloth/cloth_preview.h"
 #include "station/commands/commands.h"
@@ -10,15 +12,22 @@ namespace station {
 void add_cloth_command(CLI::App& app) {
   struct ClothArguments {
     ClothPreviewRequest request;
-    std::string warp_colour, weft_colour;
+    std::filesystem::path of;
+    std::string model = "thread", warp_colour, weft_colour;
     OutputOptions output;
   };
   auto arguments = std::make_shared<ClothArguments>();
   ClothPreviewRequest& request = arguments->request;
-  CLI::App* command = app.add_subcommand("cloth", "what a session's thread weaves into: a swatch and a cylinder");
-  command->add_option("session", request.session, "session folder with a fitted thread or bundle")->required();
-  command->add_option("--draft", request.draft, "draft (JSON or WIF); scaled to the thread")->required();
-  command->add_option("--model", request.model, "the fitted model that it is woven of: thread or bundle")
+  CLI::App* command = app.add_subcommand("cloth", "what digitized threads weave into: a swatch and a cylinder");
+  command
+      ->add_option("session", arguments->of,
+                   "session folder with a fitted thread or bundle, or, with --out, a thread or bundle file")
+      ->required();
+  command->add_option("--draft", request.draft, "draft (JSON or WIF); scaled to the threads")->required();
+  command->add_option("--weft", request.weft_thread, "thread or bundle file of the weft; the warp's without it");
+  command->add_option("--out", request.out,
+                      "folder for a cloth that belongs to no session, with copies of its threads");
+  command->add_option("--model", arguments->model, "the session's fitted model that it is woven of: thread or bundle")
       ->check(CLI::IsMember({"thread", "bundle"}))
       ->capture_default_str();
   command->add_option("--warp-colour", arguments->warp_colour,
@@ -31,12 +40,19 @@ void add_cloth_command(CLI::App& app) {
     if (!arguments->warp_colour.empty()) asked.warp_colour = parse_colour(arguments->warp_colour);
     if (!arguments->weft_colour.empty()) asked.weft_colour = parse_colour(arguments->weft_colour);
     asked.progress_style = arguments->output.progress_style();
+    asked.with_threads = !asked.out.empty();
+    const bool session = std::filesystem::is_directory(arguments->of);
+    if (!session && asked.out.empty())
+      throw std::runtime_error("'" + arguments->of.string() +
+                               "' is no session folder; for the cloth of a thread file say where it goes with --out");
+    asked.thread = session ? model_file_of(arguments->of, arguments->model) : arguments->of;
+    if (asked.out.empty()) asked.out = cloth_folder(arguments->of);
     const nlohmann::json made_of = preview_cloth(asked);
     if (arguments->output.json) {
       std::cout << made_of.dump() << "\n";
       return;
     }
-    for (const auto& file : cloth_pictures(asked.session)) std::cout << file.string() << "\n";
+    for (const auto& file : pictures_of_cloth(asked.out)) std::cout << file.string() << "\n";
   });
 }
 

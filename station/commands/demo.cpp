@@ -68,7 +68,8 @@ DemoResult run_demo(const DemoRequest& request) {
     inversion.samples_per_pixel = kQuickSamples;
   }
   const InvertResult thread = invert_session(inversion);
-  preview_cloth({.session = session,
+  preview_cloth({.thread = thread.file,
+                 .out = cloth_folder(session),
                  .draft = data_folder() / "drafts" / "twill_2_2.json",
                  .quick = request.quick,
                  .progress_style = request.progress_style});

@@ -132,11 +132,25 @@ std::vector<JobStep> process(const Asked& asked) {
   return steps;
 }
 
-Words cloth(const Asked& asked) {
-  Words words{"cloth", asked.session(), "--draft", ready_draft(name_of(asked.fields, "draft"))};
+void add_cloth_options(Words& words, const Asked& asked) {
+  words.insert(words.end(), {"--draft", ready_draft(name_of(asked.fields, "draft")).string()});
   for (const auto& [key, option] : {std::pair("warp_colour", "--warp-colour="), {"weft_colour", "--weft-colour="}})
     if (const std::string colour = asked.text(key); !colour.empty()) words.push_back(option + colour);
   if (asked.flag("quick")) words.emplace_back("--quick");
+}
+
+Words cloth(const Asked& asked) {
+  Words words{"cloth", asked.session()};
+  add_cloth_options(words, asked);
+  return words;
+}
+
+// Cloth of one thread of the library or of two.
+Words design(const Asked& asked) {
+  Words words{"cloth", asked.thread(), "--out", asked.workspace.design(asked.new_name())};
+  if (const int weft = asked.number("weft"); weft != asked.number("number"))
+    words.insert(words.end(), {"--weft", asked.workspace.thread_in_library(weft).string()});
+  add_cloth_options(words, asked);
   return words;
 }
 
@@ -220,6 +234,7 @@ const Commands kKinds{
     {"invert", [](const Asked& asked) { return invert(asked, asked.session()); }},
     {"report", [](const Asked& asked) { return report(asked.session()); }},
     {"cloth", cloth},
+    {"design", design},
     {"add", [](const Asked& asked) { return add(asked, asked.session()); }},
     {"export", exported},
 };

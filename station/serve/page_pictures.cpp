@@ -86,6 +86,10 @@ HttpResponse cloth(const Asked& asked) {
   return png_file(cloth_folder(session) / (asked.name("view") + ".png"));
 }
 
+HttpResponse design(const Asked& asked) {
+  return png_file(asked.workspace.design(asked.name("name")) / (asked.name("view") + ".png"));
+}
+
 // How a thread of the library looks: the cloth of its session, or else its spool in the first view.
 HttpResponse thread(const Asked& asked) {
   const json lines = asked.workspace.thread_lines();
@@ -114,6 +118,7 @@ HttpResponse page_picture(const HttpRequest& request, const Workspace& workspace
       {"fitted", [](const Asked& asked) { return twin(asked, "fitted"); }},
       {"residual", [](const Asked& asked) { return twin(asked, "residual"); }},
       {"cloth", cloth},
+      {"design", design},
       {"thread", thread},
       {"draft", draft}};
   const Asked asked{request, workspace};

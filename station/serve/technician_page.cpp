@@ -136,7 +136,10 @@ HttpResponse TechnicianPage::get(const HttpRequest& request) {
   if (request.path == "/api/thread")
     return answered(thread_of(workspace_, word_of(request, "number"), word_of(request, "with")));
   if (request.path == "/picture") return page_picture(request, workspace_, frame_);
-  if (request.path == "/download") return zip_of(workspace_.exported(checked_name(word_of(request, "name"))));
+  if (request.path == "/download") {
+    const std::string& name = checked_name(word_of(request, "name"));
+    return zip_of(word_of(request, "of") == "design" ? workspace_.design(name) : workspace_.exported(name));
+  }
   if (request.path == "/report") return report(word_of(request, "name"));
   if (request.path == "/calibration") return calibration_report(word_of(request, "name"));
   refuse_path(request);

@@ -74,6 +74,19 @@ std::set<std::string> work_left_of(const fs::path& session, bool complete) {
   return left;
 }
 
+json design_line(const fs::path& folder) {
+  const std::string name = folder.filename().string();
+  try {
+    const json made_of = read_json_file(folder / kMadeOf);
+    return {{"name", name},
+            {"draft", made_of.value("draft", "")},
+            {"threads", made_of.value("threads", json::array({"", ""}))},
+            {"made", fs::last_write_time(folder / kMadeOf).time_since_epoch().count()}};
+  } catch (const std::exception& problem) {
+    return {{"name", name}, {"problem", problem_line(problem)}};
+  }
+}
+
 // A spool as its form has it.
 json spool_line(const fs::path& spool, const fs::path& sample) {
   json line{{"name", spool.stem().string()}, {"sample", nullptr}};
@@ -106,7 +119,8 @@ std::vector<std::string> files_in(const fs::path& folder, const std::string& end
 }
 
 Workspace::Workspace(const fs::path& folder) : folder_(fs::absolute(folder)) {
-  for (const char* part : {"calibrations", "spools", "samples", "sessions", "queues", "exports", "jobs", "rigs"}) {
+  for (const char* part :
+       {"calibrations", "spools", "samples", "sessions", "queues", "exports", "jobs", "rigs", "designs"}) {
     std::error_code error;
     fs::create_directories(folder_ / part, error);
     if (error)
@@ -187,6 +201,9 @@ json Workspace::contents() {
   const std::set<std::string> fits = fits_in_library();
   for (const std::string& name : folders_in(folder_ / "sessions"))
     if (is_session(session(name))) document["sessions"].push_back(session_line(session(name), fits));
+  document["designs"] = json::array();
+  for (const std::string& name : folders_in(folder_ / "designs"))
+    if (fs::exists(design(name) / kMadeOf)) document["designs"].push_back(design_line(design(name)));
   for (const std::string& name : files_in(folder_ / "queues", ".csv")) document["queues"].push_back(queue_line(name));
   return document;
 }

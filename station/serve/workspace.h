@@ -4,6 +4,7 @@
 //   spools/<name>.json     spool files                  samples/<name>.json  what the lab knows of that spool
 //   queues/<name>.csv      tables of spools             library/           digitized threads
 //   exports/<name>/        made by export               jobs/              what each job said
+//   designs/<name>/        made by cloth, of threads in the library
 //   rigs/<name>.json       made by rig new              preview.jpg          the camera's live view
 #pragma once
 
@@ -36,13 +37,15 @@ class Workspace {
   // The file of a thread in the library; refuses numbers that it does not have.
   std::filesystem::path thread_in_library(int number) const;
   std::filesystem::path exported(const std::string& name) const { return folder_ / "exports" / name; }
+  std::filesystem::path design(const std::string& name) const { return folder_ / "designs" / name; }
   std::filesystem::path rig(const std::string& name) const { return folder_ / "rigs" / (name + ".json"); }
   std::filesystem::path preview() const { return folder_ / "preview.jpg"; }
 
   // A line for each thread of the library: {"number", "name", "sample", "added_utc", "diameter_mm", "session" (its
   // folder's name), "relative_rmse"}.
   nlohmann::json thread_lines() const;
-  // {"calibrations" (calibration_line.h), "spools", "sessions", "threads", "queues", "exports"}
+  // {"calibrations" (calibration_line.h), "spools", "sessions", "threads", "queues", "exports", "designs"},
+  // the last each {"name", "draft", "threads" (names of warp and weft), "made" (what changes when it is made anew)}
   nlohmann::json contents();
   // One session: its line in contents(), and "views" with "number", "step", "grade", "reason", "picture" (which file it
   // is, absent without one). Throws Refused (404) when there is none.

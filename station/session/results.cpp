@@ -37,7 +37,7 @@ std::filesystem::path cloth_folder(const std::filesystem::path& session) {
 }
 
 std::filesystem::path cloth_made_of_file(const std::filesystem::path& session) {
-  return cloth_folder(session) / "made_of.json";
+  return cloth_folder(session) / kMadeOf;
 }
 
 nlohmann::json cloth_made_of(const std::filesystem::path& session) {
@@ -45,13 +45,17 @@ nlohmann::json cloth_made_of(const std::filesystem::path& session) {
   return std::filesystem::exists(file) ? read_json_file(file) : nlohmann::json();
 }
 
-std::vector<std::filesystem::path> cloth_pictures(const std::filesystem::path& session) {
+std::vector<std::filesystem::path> pictures_of_cloth(const std::filesystem::path& cloth) {
   std::vector<std::filesystem::path> pictures;
   for (const std::string name : kClothPictures) {
-    const std::filesystem::path file = cloth_folder(session) / (name + ".exr");
+    const std::filesystem::path file = cloth / (name + ".exr");
     if (std::filesystem::exists(file)) pictures.push_back(file);
   }
   return pictures;
+}
+
+std::vector<std::filesystem::path> cloth_pictures(const std::filesystem::path& session) {
+  return pictures_of_cloth(cloth_folder(session));
 }
 
 }  // namespace station

@@ -24,11 +24,15 @@ std::filesystem::path fitted_file_of(const std::filesystem::path& session, const
 std::filesystem::path cloth_folder(const std::filesystem::path& session);
 std::filesystem::path cloth_made_of_file(const std::filesystem::path& session);
 
-// {"draft", "model", "warp", "weft"}, the last two {"srgb": [r, g, b], "delta_e_2000": how far the thread's gamut is
-// from it}, or null for the digitized thread's own colour; null when there is no preview.
+inline constexpr const char* kMadeOf = "made_of.json";  // in a cloth's folder
+
+// {"draft", "model", "threads": [warp's name, weft's] (absent in those of before), "warp", "weft"}, the last two
+// {"srgb": [r, g, b], "delta_e_2000": how far the thread's gamut is from it}, or null for the digitized thread's own
+// colour; null when there is no preview.
 nlohmann::json cloth_made_of(const std::filesystem::path& session);
 
-// The EXR pictures that are there, swatch first.
+// The EXR pictures that are in a cloth's folder, swatch first, and those of a session.
+std::vector<std::filesystem::path> pictures_of_cloth(const std::filesystem::path& cloth);
 std::vector<std::filesystem::path> cloth_pictures(const std::filesystem::path& session);
 
 }  // namespace station

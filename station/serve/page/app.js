@@ -3,6 +3,7 @@
 import {beginBench, showBench, showJob} from "/bench.js";
 import {beginCalibrations, chooseCalibration, showCalibrations} from "/calibration.js";
 import {beginForms, showForms} from "/capture.js";
+import {beginDesign, chooseThread, showDesign} from "/design.js";
 import {byId, readTexts, text} from "/document.js";
 import {beginFrame, showFrame} from "/frame.js";
 import {beginKeys} from "/keys.js";
@@ -13,7 +14,7 @@ import {beginSession, chooseSession, session, showSession, showSessionChoice} fr
 import {follow, oneAtATime, post, state} from "/station.js";
 
 const shows = {overview: showOverview, bench: showBench, calibrate: showCalibrations, capture: () => null, session: showSession, result: showResult,
-               library: showLibrary};
+               library: showLibrary, design: showDesign};
 
 let screen = "";
 
@@ -25,6 +26,7 @@ function route() {
   const wanted = shows[name] ? name : "overview";
   if (of[0] && (wanted === "session" || wanted === "result")) chooseSession(of[0]);
   if (of[0] && wanted === "calibrate") chooseCalibration(of[0]);
+  if (of[0] && wanted === "design") chooseThread(of[0]);
   if (wanted !== screen) {
     screen = wanted;
     for (const section of document.querySelectorAll("main > section")) section.hidden = section.id !== screen;
@@ -57,6 +59,7 @@ async function begin() {
   beginSession();
   beginResult();
   beginLibrary();
+  beginDesign();
   addEventListener("hashchange", route);
   route();
   await follow(render);

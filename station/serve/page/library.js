@@ -3,7 +3,7 @@
 import {ago, allow, byId, fill, make, percent, row, show, text} from "/document.js";
 import {curves} from "/curves.js";
 import {threadPicture} from "/overview.js";
-import {ask, post, startJob, state, whyNot} from "/station.js";
+import {ask, go, post, startJob, state, whyNot} from "/station.js";
 import {colourWords, unknownRows} from "/result.js";
 
 const kFields = ["name", "barcode", "lot", "material", "colour", "note"];
@@ -70,6 +70,7 @@ function lines(thread, twins) {
   name.append(make("span", {className: "about", textContent: `${ago(thread.added_utc)}${thread.sample.note ? ` · ${thread.sample.note}` : ""}`}));
   const actions = make("div", {className: "row tight"}, exported(thread),
     button("edit", thread, () => { edited = edited === thread.number ? 0 : thread.number; showLibrary(); }),
+    button("design_of", thread, () => go("design", thread.number)),
     button("take_out", thread, () => change({number: thread.number, removed: true})));
   const shown = row(choice(thread), make("span", {className: "thumb"}, ...threadPicture(thread)), thread.number, name, thread.sample.barcode, thread.sample.lot,
                     [thread.sample.material, thread.sample.colour].filter(Boolean).join(", "), [`${thread.diameter_mm} mm`, percent(thread.relative_rmse)].filter(Boolean).join(" · "), actions);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
@@ -43,6 +44,44 @@ TEST_F(ClothPreview, IsWovenOfTheBundleOnRequestAndSaysSo) {
   EXPECT_EQ(nlohmann::json::parse(of_bundle.out).at("model"), "bundle");
   EXPECT_GT(swatch_mean(), 0);
   EXPECT_NE(swatch_mean(), thread_mean);
+}
+
+// Threads that no session of this computer made, in a folder that stands alone.
+TEST_F(ClothPreview, OfTwoThreadFilesIsADesignOfItsOwn) {
+  const auto thread = [&](const std::string& name) { return std::string(DATA_DIR) + "/threads/" + name + ".json"; };
+  const auto design = [&](const std::string& weft) {
+    return run_threadstation({"cloth", thread("silk_red"), "--weft", weft, "--draft",
+                              std::string(DATA_DIR) + "/drafts/plain.json", "--quick", "--json", "--out",
+                              folder_ / "design"});
+  };
+  const auto blueness = [&] {
+    const cv::Scalar mean = cv::mean(renderer::read_exr(folder_ / "design/swatch.exr"));
+    return mean[2] / mean[0];
+  };
+  const ProgramResult of_one = design(thread("silk_red"));
+  ASSERT_EQ(of_one.status, 0) << of_one.error;
+  const double red = blueness();
+  const ProgramResult of_two = design(thread("silk_blue"));
+  ASSERT_EQ(of_two.status, 0) << of_two.error;
+  const auto threads = nlohmann::json::parse(of_two.out).at("threads");
+  EXPECT_NE(threads[0], threads[1]);
+  EXPECT_GT(blueness(), 1.5 * red) << "a blue weft";
+  // The folder can be taken elsewhere and rendered there.
+  fs::rename(folder_ / "design", folder_ / "elsewhere");
+  const ProgramResult rendered =
+      run_threadstation({"render", folder_ / "elsewhere/cylinder.json", "--spp", "1", "--out", folder_ / "again.exr"});
+  EXPECT_EQ(rendered.status, 0) << rendered.error;
+
+  const ProgramResult nowhere = run_threadstation(
+      {"cloth", thread("silk_red"), "--draft", std::string(DATA_DIR) + "/drafts/plain.json", "--quick"});
+  EXPECT_EQ(nowhere.status, 1);
+  EXPECT_NE(nowhere.error.find("say where it goes with --out"), std::string::npos) << nowhere.error;
+  nlohmann::json other = nlohmann::json::parse(std::ifstream(thread("silk_blue")));
+  other["linear_srgb_from_camera"] = {1.6, -0.5, -0.1, -0.2, 1.5, -0.3, 0, -0.4, 1.4};
+  std::ofstream(folder_ / "other.json") << other;
+  const ProgramResult mixed = design(folder_ / "other.json");
+  EXPECT_EQ(mixed.status, 1);
+  EXPECT_NE(mixed.error.find("two cameras"), std::string::npos) << mixed.error;
 }
 
 TEST_F(ClothPreview, RefusesToColourABundleAndNamesAModelThatIsMissing) {

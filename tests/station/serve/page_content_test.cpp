@@ -319,6 +319,32 @@ TEST_F(TechnicianPage, AThreadIsEditedTakenOutAndPutBack) {
   EXPECT_EQ(get("/api/state").at("threads").size(), 1U);
 }
 
+TEST_F(TechnicianPage, ADesignIsWovenOfThreadsOfTheLibrary) {
+  station::Library library(folder_ / "bench/library", true);
+  for (const char* thread : {"silk_red.json", "silk_blue.json"})
+    library.add(std::filesystem::path(DATA_DIR) / "threads" / thread, "2026-11-21T10:20:30.123Z");
+  post("/api/control", {{"client", "me"}});
+  const json wanted{{"client", "me"}, {"kind", "design"}, {"name", "rot x blau"}, {"number", 1},
+                    {"weft", 2},      {"draft", "plain"}, {"quick", true}};
+  json missing = wanted;
+  missing["weft"] = 3;
+  EXPECT_EQ(refused_with("/api/job", missing), 404);
+  ASSERT_EQ(post("/api/job", wanted).status, 200);
+  ASSERT_TRUE(eventually([&] { return !job().at("running").get<bool>(); }));
+  ASSERT_EQ(job().at("status"), 0) << job();
+  const json design = get("/api/state").at("designs").at(0);
+  EXPECT_NE(design.at("threads")[0], design.at("threads")[1]);
+  const std::string name = design.at("name");
+  const auto shown = [&](const char* view) {
+    return asked("/picture", {{"of", "design"}, {"name", name}, {"view", view}});
+  };
+  EXPECT_EQ(shown("swatch").content_type, "image/png");
+  EXPECT_EQ(shown("nothing").status, 404);
+  const HttpResponse packed = asked("/download", {{"of", "design"}, {"name", name}});
+  EXPECT_NE(packed.body.find("/weft_thread.json"), std::string::npos);
+  EXPECT_NE(packed.body.find("/swatch.exr"), std::string::npos);
+}
+
 TEST_F(TechnicianPage, AnExportIsDownloadedAsOneFile) {
   std::filesystem::create_directories(folder_ / "bench/exports/thread-1/textures");
   std::ofstream(folder_ / "bench/exports/thread-1/textures/a.txt") << "some words";

@@ -295,11 +295,31 @@ async function editing(station) {
   await station.until("the thread to be back", () => /C 4/.test(document.getElementById("threads").textContent), 10);
 }
 
+// Of a thread of the library, in a folder that is downloaded as one.
+async function design(station) {
+  await station.click('[data-screen="library"]');
+  await station.click('[aria-label="Weave 2"]');
+  await station.until("the thread that was chosen", () => document.querySelector('#design-form [name="weft"]').value === "2", 10);
+  await station.page.select('#design-form [name="draft"]', "plain");
+  await station.type('#design-form [name="name"]', "Kissen, groß");
+  await station.click('#design-form [name="quick"]');
+  await station.click("#design-form .primary");
+  await attend(station, "design", 200);
+  await station.click('[data-screen="design"]');
+  await station.page.$eval("#designs", designs => designs.scrollIntoView());  // pictures are fetched when they are seen
+  await station.until("its pictures", () => {
+    const pictures = [...document.querySelectorAll("#designs img")];
+    return pictures.length === 2 && pictures.every(image => image.naturalWidth > 0);
+  }, 30);
+  assert.match(await station.text("#designs h3"), /^Kissen-gro/);
+  await station.look("design");
+}
+
 // Every screen in the other language, without a word of the first one's keys left.
 async function german(station) {
   await station.click("#language");
   await station.until("German", () => document.documentElement.lang === "de" && document.body.dataset.job, 20);
-  for (const screen of ["overview", "bench", "calibrate", "capture", "session", "result", "library"]) {
+  for (const screen of ["overview", "bench", "calibrate", "capture", "session", "result", "library", "design"]) {
     await station.click(`[data-screen="${screen}"]`);
     await pause(1);
     await station.look(`de-${screen}`);
@@ -361,6 +381,7 @@ try {
   await fit(station);
   await weave(station);
   await library(station);
+  await design(station);
   await german(station);
   await stopWithoutServer(station);
 } catch (error) {

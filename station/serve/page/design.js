@@ -1,0 +1,58 @@
+// Design: cloth of any thread of the library, or of two, in any ready draft; what was woven, to look at and to download.
+
+import {allow, byId, fill, make, show, text} from "/document.js";
+import {picture, startJob, state, whyNot} from "/station.js";
+
+const kPictures = ["swatch", "cylinder"];
+
+let wanted = "";  // the thread that the address names
+
+export function chooseThread(number) { wanted = number; }
+
+function showDraft() { byId("design-draft").src = picture({of: "draft", name: byId("design-form").draft.value}); }
+
+function proposedName() {
+  const form = byId("design-form"), words = [form.warp, form.weft].map(list => list.value);
+  return `${form.draft.value} ${words[0] === words[1] ? words[0] : words.join(" x ")}`;
+}
+
+function shown(design) {
+  const card = make("article", {className: "thread"}, make("h3", {textContent: design.name}));
+  if (design.problem) return card.append(make("p", {textContent: design.problem})), card;
+  const [warp, weft] = design.threads;
+  card.append(make("p", {textContent: `${design.draft} · ${warp === weft ? warp : `${text("warp")} ${warp} · ${text("weft")} ${weft}`}`}),
+    ...kPictures.map(view => make("img", {src: picture({of: "design", name: design.name, view, made: design.made}), alt: `${design.name}: ${text(`cloth_${view}`)}`, loading: "lazy"})),
+    make("p", {}, make("a", {href: "/download?" + new URLSearchParams({of: "design", name: design.name}), download: `${design.name}.zip`,
+                             textContent: `${text("download")} ${design.name}.zip`})));
+  return card;
+}
+
+export function showDesign() {
+  const form = byId("design-form"), numbers = state.threads.map(thread => thread.number);
+  byId("design-none").hidden = numbers.length > 0;
+  form.hidden = numbers.length === 0;
+  for (const list of [form.warp, form.weft]) fill(list, numbers, state.threads.map(thread => `${thread.number} · ${thread.name}`));
+  if (numbers.map(String).includes(wanted)) form.warp.value = form.weft.value = wanted;
+  wanted = "";
+  fill(form.draft, state.drafts);
+  if (!byId("design-draft").src && state.drafts.length) showDraft();
+  if (!form.name.value && numbers.length) form.name.value = proposedName();
+  allow(form.querySelector(".primary"), whyNot());
+  byId("design-why").textContent = whyNot();
+  show(byId("designs"), state.designs, () => [...state.designs].sort((a, b) => b.made - a.made).map(shown));
+}
+
+export function beginDesign() {
+  const form = byId("design-form");
+  let proposed = "";
+  // A name that a person has typed stays.
+  form.onchange = event => {
+    if (event.target === form.draft) showDraft();
+    if (event.target === form.name || (form.name.value && form.name.value !== proposed && proposed)) return;
+    form.name.value = proposed = proposedName();
+  };
+  form.onsubmit = event => {
+    event.preventDefault();
+    startJob({kind: "design", name: form.name.value, number: Number(form.warp.value), weft: Number(form.weft.value), draft: form.draft.value, quick: form.quick.checked});
+  };
+}
