@@ -128,6 +128,16 @@ void require_one_camera(const Systems& own, const ClothThread& warp, const Cloth
 
 }  // namespace
 
+void weave_thread_of(ClothPreviewRequest& request, const fs::path& session_or_file, const std::string& model) {
+  const bool session = fs::is_directory(session_or_file);
+  request.with_threads = !request.out.empty();
+  if (!session && request.out.empty())
+    throw std::runtime_error("'" + session_or_file.string() +
+                             "' is no session folder; for the cloth of a thread file say where it goes with --out");
+  request.thread = session ? model_file_of(session_or_file, model) : session_or_file;
+  if (request.out.empty()) request.out = cloth_folder(session_or_file);
+}
+
 json preview_cloth(const ClothPreviewRequest& request) {
   watch_interrupts();
   const Systems own{request.thread, request.weft_thread.empty() ? request.thread : request.weft_thread};

@@ -26,6 +26,11 @@ struct ClothPreviewRequest {
   ProgressStyle progress_style = ProgressStyle::automatic;
 };
 
+// Sets thread and folder: of a session's fitted `model`, "thread" or "bundle", with its own cloth folder where no other
+// is asked for, or of a thread or bundle file, which needs `out`. Errors: std::runtime_error without it.
+void weave_thread_of(ClothPreviewRequest& request, const std::filesystem::path& session_or_file,
+                     const std::string& model);
+
 // Writes draft.json, patch.json, made_of.json and, for each picture, its scene.json, .exr and .png; a coloured system's
 // thread is written too. Ctrl-C stops it. Returns the content of made_of.json (session/results.h). Errors: those of the
 // files read; std::runtime_error, one line, when a bundle is to be coloured or the threads' colours are those of

@@ -1,6 +1,5 @@
 #include <filesystem>
 #include <iostream>
-#include <stdexcept>
 
 #include "station/cloth/cloth_preview.h"
 #include "station/commands/commands.h"
@@ -40,13 +39,7 @@ void add_cloth_command(CLI::App& app) {
     if (!arguments->warp_colour.empty()) asked.warp_colour = parse_colour(arguments->warp_colour);
     if (!arguments->weft_colour.empty()) asked.weft_colour = parse_colour(arguments->weft_colour);
     asked.progress_style = arguments->output.progress_style();
-    asked.with_threads = !asked.out.empty();
-    const bool session = std::filesystem::is_directory(arguments->of);
-    if (!session && asked.out.empty())
-      throw std::runtime_error("'" + arguments->of.string() +
-                               "' is no session folder; for the cloth of a thread file say where it goes with --out");
-    asked.thread = session ? model_file_of(arguments->of, arguments->model) : arguments->of;
-    if (asked.out.empty()) asked.out = cloth_folder(arguments->of);
+    weave_thread_of(asked, arguments->of, arguments->model);
     const nlohmann::json made_of = preview_cloth(asked);
     if (arguments->output.json) {
       std::cout << made_of.dump() << "\n";

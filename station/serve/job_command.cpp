@@ -10,6 +10,7 @@
 
 #include "station/data/data_folder.h"
 #include "station/serve/page_answers.h"
+#include "station/session/results.h"
 #include "station/session/spool_queue.h"
 
 namespace station {
@@ -147,7 +148,10 @@ Words cloth(const Asked& asked) {
 
 // Cloth of one thread of the library or of two.
 Words design(const Asked& asked) {
-  Words words{"cloth", asked.thread(), "--out", asked.workspace.design(asked.new_name())};
+  const fs::path folder = asked.workspace.design(asked.new_name());
+  if (fs::exists(folder / kMadeOf))
+    throw Refused(409, "there is a design " + folder.filename().string() + " already; give this one another name");
+  Words words{"cloth", asked.thread(), "--out", folder};
   if (const int weft = asked.number("weft"); weft != asked.number("number"))
     words.insert(words.end(), {"--weft", asked.workspace.thread_in_library(weft).string()});
   add_cloth_options(words, asked);

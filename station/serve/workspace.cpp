@@ -45,10 +45,17 @@ json thread_lines_of(const fs::path& folder) {
                      {"added_utc", thread.added_utc},
                      {"diameter_mm", thread.diameter_mm},
                      {"session", fs::path(thread.session).filename().string()},
+                     {"sha256", thread.sha256},
                      {"relative_rmse", nullptr}});
     if (thread.relative_rmse) lines.back()["relative_rmse"] = *thread.relative_rmse;
   }
   return lines;
+}
+
+std::set<std::string> hashes_of(const json& thread_lines) {
+  std::set<std::string> hashes;
+  for (const json& line : thread_lines) hashes.insert(line.at("sha256").get<std::string>());
+  return hashes;
 }
 
 // Whether the file is there and not older than all that it is made from.
@@ -198,7 +205,7 @@ json Workspace::contents() {
     document["calibrations"].push_back(calibrations_.line(calibration(name)));
   for (const std::string& name : files_in(folder_ / "spools", ".json"))
     document["spools"].push_back(spool_line(spool(name), sample(name)));
-  const std::set<std::string> fits = fits_in_library();
+  const std::set<std::string> fits = hashes_of(document["threads"]);
   for (const std::string& name : folders_in(folder_ / "sessions"))
     if (is_session(session(name))) document["sessions"].push_back(session_line(session(name), fits));
   document["designs"] = json::array();
@@ -232,7 +239,7 @@ fs::path Workspace::existing_calibration(const std::string& name) const {
 std::set<std::string> Workspace::work_left(const std::string& name) const {
   const fs::path folder = existing_session(name);
   const RunState state = state_of(read_journal(folder / "journal.jsonl").records, folder_in_use(folder));
-  return left_of(folder, state == RunState::complete, fits_in_library());
+  return left_of(folder, state == RunState::complete, hashes_of(thread_lines()));
 }
 
 std::set<std::string> Workspace::left_of(const fs::path& session, bool complete,
@@ -240,13 +247,6 @@ std::set<std::string> Workspace::left_of(const fs::path& session, bool complete,
   std::set<std::string> left = work_left_of(session, complete);
   if (left.contains("invert") || !fits.contains(fit_hash(session))) left.insert("add");
   return left;
-}
-
-std::set<std::string> Workspace::fits_in_library() const {
-  std::set<std::string> fits;
-  if (fs::exists(threads_folder() / "index.sqlite"))
-    for (const LibraryThread& thread : Library(threads_folder(), false).list()) fits.insert(thread.sha256);
-  return fits;
 }
 
 std::string Workspace::fit_hash(const fs::path& session) const {
@@ -262,7 +262,7 @@ std::string Workspace::fit_hash(const fs::path& session) const {
 
 json Workspace::session_document(const std::string& name) {
   const fs::path folder = existing_session(name);
-  json document = session_line(folder, fits_in_library());
+  json document = session_line(folder, hashes_of(thread_lines()));
   const Plan plan = read_session_file(folder).plan;
   const auto taken = taken_pictures(read_journal(folder / "journal.jsonl").records);
   document["views"] = json::array();

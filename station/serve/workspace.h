@@ -42,7 +42,7 @@ class Workspace {
   std::filesystem::path preview() const { return folder_ / "preview.jpg"; }
 
   // A line for each thread of the library: {"number", "name", "sample", "added_utc", "diameter_mm", "session" (its
-  // folder's name), "relative_rmse"}.
+  // folder's name), "sha256" (of its file), "relative_rmse"}.
   nlohmann::json thread_lines() const;
   // {"calibrations" (calibration_line.h), "spools", "sessions", "threads", "queues", "exports", "designs"},
   // the last each {"name", "draft", "threads" (names of warp and weft), "made" (what changes when it is made anew)}
@@ -60,7 +60,6 @@ class Workspace {
  private:
   // `fits`: the hashes of the fits that the library holds.
   nlohmann::json session_line(const std::filesystem::path& folder, const std::set<std::string>& fits);
-  std::set<std::string> fits_in_library() const;
   std::set<std::string> left_of(const std::filesystem::path& session, bool complete,
                                 const std::set<std::string>& fits) const;
   std::string fit_hash(const std::filesystem::path& session) const;  // empty: not fitted

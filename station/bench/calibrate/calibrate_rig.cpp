@@ -60,7 +60,7 @@ RigCalibration calibrate_rig(const CalibrateRequest& request) {
     watch_interrupts();
     if (!request.only.empty())
       forget_calibration_pictures(request.out, [&](CalibrationRole role) { return belongs_to(role, request.only); });
-    LensCoverage covered(rig);
+    std::optional<LensCoverage> covered;  // where a person sees it
     std::optional<WatchedPerson> watched;
     if (request.asked) watched.emplace(*request.asked);
     RigDevices devices = open_rig(rig, std::nullopt, watched ? &*watched : nullptr);
@@ -70,8 +70,8 @@ RigCalibration calibrate_rig(const CalibrateRequest& request) {
       devices.person = make_drawing_operator(*person, *request.asked);
     }
     if (watched && rig.operator_driver == "console" && !request.live.empty())
-      watch_placing(rig, devices, request.live, *watched, covered);
-    record_calibration(rig, plan, devices, request.out, show_step, interrupted, covered);
+      watch_placing(rig, devices, request.live, *watched, covered.emplace(rig));
+    record_calibration(rig, plan, devices, request.out, show_step, interrupted, covered ? &*covered : nullptr);
     progress.finish("all pictures are taken");
     leave_at_zero(rig, *devices.turntable);
     utc = devices.clock->utc();

@@ -136,7 +136,7 @@ std::vector<double> angles_of(const RigFile& rig, const std::vector<CalibrationS
 std::vector<CalibrationPicture> record_calibration(const RigFile& rig, const std::vector<CalibrationStep>& plan,
                                                    RigDevices& devices, const std::filesystem::path& folder,
                                                    const StepProgress& progress,
-                                                   const std::function<bool()>& should_stop, LensCoverage& covered) {
+                                                   const std::function<bool()>& should_stop, LensCoverage* covered) {
   std::error_code code;
   std::filesystem::create_directories(folder / "pictures", code);
   if (code)
@@ -149,11 +149,12 @@ std::vector<CalibrationPicture> record_calibration(const RigFile& rig, const std
     return std::any_of(pictures.begin(), pictures.end(), [&](const CalibrationPicture& p) { return p.id == id; });
   };
 
+  const auto cover = [&](const calibration::SensorPicture& raw) { covered->add(tags_in(raw), raw.mosaic.size()); };
   const bool board_comes = std::ranges::any_of(
       plan, [&](const CalibrationStep& step) { return step.role == CalibrationRole::lens && !known(step.id); });
-  const auto cover = [&](const calibration::SensorPicture& raw) { covered.add(tags_in(raw), raw.mosaic.size()); };
   for (const CalibrationPicture& p : pictures)
-    if (board_comes && p.role == CalibrationRole::lens) cover(calibration::read_sensor_file(folder / p.file));
+    if (covered && board_comes && p.role == CalibrationRole::lens)
+      cover(calibration::read_sensor_file(folder / p.file));
 
   FileSystem disk;
   devices.turntable->home();
@@ -198,7 +199,7 @@ std::vector<CalibrationPicture> record_calibration(const RigFile& rig, const std
     entry.sha256 = store_file(disk, folder / entry.file, picture.bytes);
     pictures.push_back(entry);
     write_list(folder, pictures);
-    if (step.role == CalibrationRole::lens) cover(calibration::read_sensor_bytes(picture.bytes, entry.file));
+    if (covered && step.role == CalibrationRole::lens) cover(calibration::read_sensor_bytes(picture.bytes, entry.file));
   }
   progress(static_cast<int>(plan.size()), static_cast<int>(plan.size()), "done");
   return pictures;

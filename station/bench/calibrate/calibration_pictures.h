@@ -33,11 +33,12 @@ using StepProgress = std::function<void(int done, int total, const std::string& 
 
 // Takes the pictures that `plan` asks for and the folder does not hold yet. Where a step follows its target, a picture
 // is taken first to see how it stands. `should_stop` is polled between steps; when it is true the platform is stopped
-// and std::runtime_error thrown. `covered` learns what the lens pictures show.
+// and std::runtime_error thrown. `covered` learns what the lens pictures show of the
+// board; null: nobody asks.
 std::vector<CalibrationPicture> record_calibration(const RigFile& rig, const std::vector<CalibrationStep>& plan,
                                                    RigDevices& devices, const std::filesystem::path& folder,
                                                    const StepProgress& progress,
-                                                   const std::function<bool()>& should_stop, LensCoverage& covered);
+                                                   const std::function<bool()>& should_stop, LensCoverage* covered);
 
 // Takes pictures of these roles off the list, so that record_calibration takes them again. Does nothing when there is
 // no list.

@@ -5,15 +5,18 @@ import {picture, startJob, state, whyNot} from "/station.js";
 
 const kPictures = ["swatch", "cylinder"];
 
-let wanted = "";  // the thread that the address names
+let wanted = "";    // the thread that the address names
+let proposed = "";  // the name that the page gave
 
 export function chooseThread(number) { wanted = number; }
 
 function showDraft() { byId("design-draft").src = picture({of: "draft", name: byId("design-form").draft.value}); }
 
-function proposedName() {
-  const form = byId("design-form"), words = [form.warp, form.weft].map(list => list.value);
-  return `${form.draft.value} ${words[0] === words[1] ? words[0] : words.join(" x ")}`;
+// A name that a person has typed stays.
+function propose() {
+  const form = byId("design-form"), threads = form.warp.value === form.weft.value ? form.warp.value : `${form.warp.value} x ${form.weft.value}`;
+  if (form.name.value && form.name.value !== proposed) return;
+  form.name.value = proposed = `${form.draft.value} ${threads}`;
 }
 
 function shown(design) {
@@ -36,7 +39,7 @@ export function showDesign() {
   wanted = "";
   fill(form.draft, state.drafts);
   if (!byId("design-draft").src && state.drafts.length) showDraft();
-  if (!form.name.value && numbers.length) form.name.value = proposedName();
+  if (numbers.length && document.activeElement !== form.name) propose();
   allow(form.querySelector(".primary"), whyNot());
   byId("design-why").textContent = whyNot();
   show(byId("designs"), state.designs, () => [...state.designs].sort((a, b) => b.made - a.made).map(shown));
@@ -44,12 +47,9 @@ export function showDesign() {
 
 export function beginDesign() {
   const form = byId("design-form");
-  let proposed = "";
-  // A name that a person has typed stays.
-  form.onchange = event => {
-    if (event.target === form.draft) showDraft();
-    if (event.target === form.name || (form.name.value && form.name.value !== proposed && proposed)) return;
-    form.name.value = proposed = proposedName();
+  form.onchange = () => {
+    showDraft();
+    propose();
   };
   form.onsubmit = event => {
     event.preventDefault();

@@ -340,6 +340,7 @@ TEST_F(TechnicianPage, ADesignIsWovenOfThreadsOfTheLibrary) {
   };
   EXPECT_EQ(shown("swatch").content_type, "image/png");
   EXPECT_EQ(shown("nothing").status, 404);
+  EXPECT_EQ(refused_with("/api/job", wanted), 409) << "a design is not replaced by another";
   const HttpResponse packed = asked("/download", {{"of", "design"}, {"name", name}});
   EXPECT_NE(packed.body.find("/weft_thread.json"), std::string::npos);
   EXPECT_NE(packed.body.find("/swatch.exr"), std::string::npos);
