@@ -68,6 +68,10 @@ TEST_F(Placing, AFrameOfHalfThePicturesSizeTellsTheSame) {
   bench.place(wanted);
   by_small_frames.begin(wanted, wanted, 0);
   EXPECT_THAT(by_small_frames.look().remark, HasSubstr("stands well"));
+  rig::Arrangement aside = wanted;
+  aside.pose.pretranslate(Eigen::Vector3d(-55, 0, 0));
+  bench.place(aside);
+  EXPECT_THAT(by_small_frames.look().remark, HasSubstr("cm too far back"));
 }
 
 TEST_F(Placing, WhereTheBoardIsMissingTheOutlineShowsWhereItIsWanted) {
