@@ -363,6 +363,10 @@ double middle_sigma_px(const LensFit& fit) {
   return std::sqrt(squares / count);
 }
 
+bool is_well_known(const LensFit& fit) {
+  return fit.converged && all_passed(fit.gates) && middle_sigma_px(fit) <= kWellKnown_px;
+}
+
 double guess_focal_px(const std::vector<BoardPicture>& pictures, const Lattice& board, cv::Size image_size) {
   std::vector<std::vector<cv::Point3f>> points;
   std::vector<std::vector<cv::Point2f>> pixels;

@@ -74,6 +74,11 @@ struct LensFit {
 // corners, which boards seldom reach, the values are extrapolations and are left out.
 double middle_sigma_px(const LensFit& fit);
 
+// Whether more pictures are not worth a person's while: all gates passed, and middle_sigma_px is at most kWellKnown_px,
+// a tenth of what is allowed.
+inline constexpr double kWellKnown_px = 0.03;
+bool is_well_known(const LensFit& fit);
+
 // A first guess of the focal length from the perspective of the pictures, good to a factor of two unless all boards are
 // seen from the front; the picture's width when the pictures show no perspective.
 double guess_focal_px(const std::vector<BoardPicture>& pictures, const Lattice& board, cv::Size image_size);

@@ -33,6 +33,7 @@ ViewAgreement noiseless_agreement(const View& view, const std::array<cv::Mat3f, 
   result.colour_bias = difference_sum / reference_sum;
   result.mean_square /= pixels;
   result.mean_reference = reference_sum.mean() / pixels;
+  result.mean_colour = reference_sum / pixels * diffuser / diffuser_radiance(view.light).array();
   return result;
 }
 

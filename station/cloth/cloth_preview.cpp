@@ -4,9 +4,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "renderer/picture/camera.h"
 #include "renderer/picture/image_file.h"
+#include "renderer/trace/path_tracer.h"
 #include "station/cloth/cloth_colour.h"
 #include "station/cloth/draft_of_one_thread.h"
+#include "station/cloth/render/build_scene.h"
 #include "station/cloth/render/render_scene.h"
 #include "station/data/data_folder.h"
 #include "station/documents/bundle_file.h"
@@ -31,9 +34,10 @@ struct Stage {
   const char* name;
   const char* scene;  // in station/data/scenes
   int width_px, height_px, samples_per_pixel;
+  Eigen::Vector3d front_mm;  // the middle of the cloth's face
 };
-constexpr std::array<Stage, 2> kStages{Stage{"swatch", "twill_swatch.json", 720, 720, 32},
-                                       Stage{"cylinder", "satin_cylinder.json", 480, 720, 32}};
+const std::array<Stage, 2> kStages{Stage{"swatch", "twill_swatch.json", 720, 720, 32, {0, 0, 0}},
+                                   Stage{"cylinder", "satin_cylinder.json", 480, 720, 32, {41, 0, 84}}};
 constexpr int kQuickReduction = 2;   // of sizes and samples
 constexpr int kWarp = 0, kWeft = 1;  // threads of the draft
 
@@ -53,6 +57,33 @@ json scene_of(const Stage& stage, const std::array<std::string, 2>& threads, boo
   camera["focal_length_px"] = camera["focal_length_px"].get<double>() * zoom;
   scene["samples_per_pixel"] = stage.samples_per_pixel / reduction;
   return scene;
+}
+
+// The radiance (camera RGB) of a white card in the place of the scene's cloth that faces the camera.
+std::array<double, 3> white_card(SceneFile scene, const Eigen::Vector3d& place_mm) {
+  constexpr int kSide_px = 8, kSamples = 256;
+  constexpr double kCard_mm = 10, kSeen_mm = 4;
+  const Eigen::Vector3d eye = scene.camera.world_from_camera.translation(),
+                        up = -scene.camera.world_from_camera.linear().col(1);
+  scene.cloths.clear();
+  scene.embroideries.clear();
+  scene.objects = {{.shape = renderer::SwatchShape{.width_mm = kCard_mm, .height_mm = kCard_mm},
+                    .world_from_object = renderer::look_at(place_mm, eye, up).world_from_camera,
+                    .albedo = {1, 1, 1}}};
+  renderer::Camera camera = renderer::look_at(eye, place_mm, up);
+  camera.width = camera.height = kSide_px;
+  camera.fx = camera.fy = kSide_px * (eye - place_mm).norm() / kSeen_mm;
+  camera.cx = camera.cy = (kSide_px - 1) / 2.0;
+  const cv::Scalar mean = cv::mean(
+      renderer::PathTracer(build_scene(scene, {})).render(camera, {.samples_per_pixel = kSamples, .seed = 1}));
+  return {mean[0], mean[1], mean[2]};
+}
+
+// The mean of the picture's middle over the card.
+std::array<double, 3> reflectance_of(const cv::Mat3f& picture, const std::array<double, 3>& card) {
+  const cv::Rect middle(picture.cols / 4, picture.rows / 4, picture.cols / 2, picture.rows / 2);
+  const cv::Scalar mean = cv::mean(picture(middle));
+  return {mean[0] / card[0], mean[1] / card[1], mean[2] / card[2]};
 }
 
 bool is_bundle_file(const fs::path& file) {
@@ -164,8 +195,12 @@ json preview_cloth(const ClothPreviewRequest& request) {
     fs::path picture = scene;
     picture.replace_extension(".exr");
     render_scene({.scene = scene, .out = picture, .progress = request.progress_style});
-    const cv::Mat3b shown = display(renderer::read_exr(picture), thread.linear_srgb_from_camera);
-    renderer::write_png(picture.replace_extension(".png"), shown);
+    const std::array<double, 3> card = white_card(read_scene(scene), stage.front_mm);
+    made_of["white_card"][stage.name] = card;
+    const cv::Mat3f linear = renderer::read_exr(picture);
+    if (!made_of.contains("reflectance")) made_of["reflectance"] = reflectance_of(linear, card);  // of the swatch
+    renderer::write_png(picture.replace_extension(".png"),
+                        display(linear, Exposure{.white = card}, thread.linear_srgb_from_camera));
   }
   write_json_file(folder / kMadeOf, made_of);
   return made_of;

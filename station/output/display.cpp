@@ -1,6 +1,7 @@
 #include "station/output/display.h"
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -32,6 +33,27 @@ cv::Rect threads_box(const cv::Mat1b& mask, int margin_px) {
   const int width = cvRound(share * whole.width), height = cvRound(share * whole.height);
   return {std::clamp(box.x + (box.width - width) / 2, 0, whole.width - width),
           std::clamp(box.y + (box.height - height) / 2, 0, whole.height - height), width, height};
+}
+
+int fitting_stops(const cv::Mat3f& linear, const std::array<double, 3>& white, const cv::Mat1b& mask) {
+  constexpr double kMost = 12;
+  cv::Mat3f over_white;
+  cv::multiply(linear, cv::Scalar(1 / white[0], 1 / white[1], 1 / white[2]), over_white);
+  return static_cast<int>(std::clamp(std::floor(std::log2(display_scale(over_white, mask))), -kMost, kMost));
+}
+
+std::string describe(const Exposure& exposure) {
+  if (exposure.stops == 0) return "a white card is white";
+  const int stops = std::abs(exposure.stops);
+  return "a white card is white, then " + std::to_string(stops) + (stops == 1 ? " stop " : " stops ") +
+         (exposure.stops > 0 ? "brighter" : "darker");
+}
+
+cv::Mat3b display(const cv::Mat3f& linear, const Exposure& exposure,
+                  const std::array<double, 9>& linear_srgb_from_camera) {
+  std::array<double, 9> exposed = linear_srgb_from_camera;
+  for (std::size_t i = 0; i < exposed.size(); ++i) exposed.at(i) /= exposure.white.at(i % exposure.white.size());
+  return display(linear, std::exp2(exposure.stops), exposed);
 }
 
 cv::Mat3b display(const cv::Mat3f& linear, double scale, const std::array<double, 9>& linear_srgb_from_camera) {

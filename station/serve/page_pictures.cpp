@@ -1,6 +1,7 @@
 #include "station/serve/page_pictures.h"
 
 #include <algorithm>
+#include <charconv>
 #include <functional>
 #include <map>
 #include <opencv2/imgproc.hpp>
@@ -9,6 +10,7 @@
 #include "station/documents/disk/whole_file.h"
 #include "station/documents/draft_drawing.h"
 #include "station/documents/draft_file.h"
+#include "station/documents/scene_file.h"
 #include "station/documents/thread_file.h"
 #include "station/documents/views_file.h"
 #include "station/output/display.h"
@@ -16,6 +18,7 @@
 #include "station/serve/page_answers.h"
 #include "station/session/record/picture_record.h"
 #include "station/session/results.h"
+#include "station/session/shown_cloth.h"
 #include "station/thread/invert/invert_session.h"
 #include "station/thread/report/fitted_twins.h"
 
@@ -36,6 +39,16 @@ struct Asked {
     return found == request.query.end() ? std::string() : found->second;
   }
   std::string name(const char* key) const { return checked_name(word(key)); }
+  // How much brighter than with a white card at the screen's white.
+  int stops() const {
+    constexpr int kMost = 8;
+    const std::string asked = word("stops");
+    int found = 0;
+    const auto [end, error] = std::from_chars(asked.data(), asked.data() + asked.size(), found);
+    if (!asked.empty() && (error != std::errc() || end != asked.data() + asked.size() || std::abs(found) > kMost))
+      throw Refused(400, "stops are a whole number from -8 to 8");
+    return found;
+  }
 };
 
 HttpResponse png(const cv::Mat3b& rgb) {
@@ -73,21 +86,30 @@ HttpResponse twin(const Asked& asked, const std::string& which) {
   if (developed.views.empty()) throw Refused(404, "there is no view " + asked.word("view").substr(0, 100));
   read_view_pictures(session, developed);
   const inversion::View& view = developed.views.front().view;
-  const FittedTwins twins = read_twins(session, view);
+  const FittedTwins twins = read_twins(session, view, "thread", asked.stops());
   const int block_px = read_thread(thread_file_of(session)).fit.value("block_px", 1);
   const cv::Mat3f picture = which == "photographed" ? twins.photographed
                             : which == "fitted"     ? twins.fitted
                                                     : residual_picture(view, twins, block_px);
-  return png(narrowed(display(picture, twins.scale, developed.linear_srgb_from_camera)(twins.box).clone(), kShown_px));
+  return png(narrowed(display(picture, twins.exposure, developed.linear_srgb_from_camera)(twins.box).clone(), kShown_px));
+}
+
+// As it was written, or brighter or darker.
+HttpResponse cloth_of(const fs::path& folder, const Asked& asked) {
+  const fs::path picture = folder / (asked.name("view") + ".png");
+  if (asked.stops() == 0) return png_file(picture);
+  const fs::path linear = fs::path(picture).replace_extension(".exr"),
+                 scene = fs::path(picture).replace_extension(".json");
+  if (!fs::is_regular_file(linear)) throw Refused(404, "there is no " + picture.filename().string() + " yet");
+  return png(shown_cloth(linear, asked.stops(), read_scene(scene).linear_srgb_from_camera));
 }
 
 HttpResponse cloth(const Asked& asked) {
-  const fs::path session = asked.workspace.existing_session(asked.word("session"));
-  return png_file(cloth_folder(session) / (asked.name("view") + ".png"));
+  return cloth_of(cloth_folder(asked.workspace.existing_session(asked.word("session"))), asked);
 }
 
 HttpResponse design(const Asked& asked) {
-  return png_file(asked.workspace.design(asked.name("name")) / (asked.name("view") + ".png"));
+  return cloth_of(asked.workspace.design(asked.name("name")), asked);
 }
 
 // How a thread of the library looks: the cloth of its session, or else its spool in the first view.

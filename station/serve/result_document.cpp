@@ -5,6 +5,7 @@
 #include "calibration/light/colour_chart.h"
 #include "inversion/fit/energy_bands.h"
 #include "station/cloth/cloth_preview.h"
+#include "station/documents/matrix_rows.h"
 #include "station/documents/number_text.h"
 #include "station/documents/reader.h"
 #include "station/output/display.h"
@@ -35,21 +36,20 @@ std::optional<Eigen::MatrixXd> covariance_of(const ThreadFile& thread) {
   }
 }
 
-// Linear sRGB of all the light that the thread scatters, of what meets it from all sides in a plane along it.
-Eigen::Vector3d linear_colour(const std::vector<inversion::EnergyBand>& bands, const ThreadFile& thread) {
+// All the light that the thread scatters, of what meets it from all sides in a plane along it; camera RGB.
+Eigen::Vector3d mean_albedo(const std::vector<inversion::EnergyBand>& bands) {
   Eigen::Vector3d albedo = Eigen::Vector3d::Zero();
   for (const inversion::EnergyBand& band : bands)
     for (int c = 0; c < 3; ++c)
       albedo[c] += band.albedo[static_cast<std::size_t>(c)] / static_cast<double>(bands.size());
-  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(thread.linear_srgb_from_camera.data()) * albedo;
+  return albedo;
 }
 
-json colour_document(const Eigen::Vector3d& linear) {
+json colour_document(const Eigen::Vector3d& camera, const std::array<double, 9>& linear_srgb_from_camera) {
   constexpr double kSeen = 0.002;  // less than a step of a screen's eight bits
-  const cv::Mat3b shown = display(
-      cv::Mat3f(1, 1,
-                cv::Vec3f(static_cast<float>(linear[0]), static_cast<float>(linear[1]), static_cast<float>(linear[2]))),
-      1, {1, 0, 0, 0, 1, 0, 0, 0, 1});
+  const Eigen::Vector3d linear = matrix_of(linear_srgb_from_camera) * camera;
+  const cv::Mat3b shown =
+      display(cv::Mat3f(1, 1, cv::Vec3f(cv::Vec3d(camera[0], camera[1], camera[2]))), 1, linear_srgb_from_camera);
   const Eigen::Vector3d lab = calibration::lab_of_linear_srgb(linear);
   return {{"srgb", formatted("#%02x%02x%02x", shown(0, 0)[0], shown(0, 0)[1], shown(0, 0)[2])},
           {"lab", {lab[0], lab[1], lab[2]}},
@@ -59,6 +59,21 @@ json colour_document(const Eigen::Vector3d& linear) {
 json part_of(const json& fit, const char* key) {
   const auto found = fit.find(key);
   return found == fit.end() ? json::array() : *found;
+}
+
+// Camera RGB, as the photographs have it; nothing where an earlier version has not kept it.
+std::optional<Eigen::Vector3d> photographed_colour(const json& fit) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0;
+  for (const json& view : part_of(fit, "views")) {
+    if (view.value("transmission", false)) continue;
+    const auto colour = view.find("colour_over_diffuser");
+    if (colour == view.end()) return std::nullopt;
+    sum += Eigen::Vector3d(colour->at(0), colour->at(1), colour->at(2));
+    count += 1;
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
 }
 
 json unknowns_of_fit(const ThreadFile& thread) {
@@ -94,6 +109,9 @@ json thread_document(const ThreadFile& thread) {
                      {"relative_rmse", view.at("relative_rmse")},
                      {"relative_bias", view.at("relative_bias")},
                      {"held_out", view.value("held_out", false)}});
+  const auto photographed = photographed_colour(thread.fit);
+  json colour = colour_document(photographed.value_or(mean_albedo(bands)), thread.linear_srgb_from_camera);
+  colour["of"] = photographed ? "views" : "model";
   return {{"name", thread.name},
           {"diameter_mm", thread.diameter_mm},
           {"relative_rmse", thread.fit.value("relative_rmse", json())},
@@ -101,11 +119,12 @@ json thread_document(const ThreadFile& thread) {
           {"curves", curves},
           {"views", views},
           {"doubts", part_of(thread.fit, "doubts")},
-          {"colour", colour_document(linear_colour(bands, thread))}};
+          {"colour", colour}};
 }
 
 json result_document(const std::filesystem::path& session) {
-  json document = thread_document(read_thread(thread_file_of(session)));
+  const ThreadFile thread = read_thread(thread_file_of(session));
+  json document = thread_document(thread);
   document["cloth"] = json::array();
   for (const std::filesystem::path& picture : cloth_pictures(session)) {
     std::error_code error;
@@ -113,7 +132,15 @@ json result_document(const std::filesystem::path& session) {
         {{"name", picture.stem().string()},
          {"made", std::filesystem::last_write_time(picture, error).time_since_epoch().count()}});
   }
-  document["cloth_made_of"] = cloth_made_of(session);
+  const json made_of = cloth_made_of(session);
+  document["cloth_made_of"] = made_of;
+  if (made_of.is_object() && made_of.contains("reflectance")) {
+    const json& mean = made_of["reflectance"];
+    json woven;
+    woven["colour"] = colour_document(Eigen::Vector3d(mean.at(0), mean.at(1), mean.at(2)), thread.linear_srgb_from_camera);
+    document["cloth_colour"] = woven["colour"];
+    document["cloth_delta_e_2000"] = colour_difference(document, woven);
+  }
   return document;
 }
 

@@ -13,11 +13,14 @@ namespace station {
 //  "unknowns": [{"name", "value", "sigma", "at_bound"}],
 //  "curves": [{"cosine", "lambda": [R, TT, TRT], "sigma" (absent where the file has no covariance)}],
 //  "views": [{"id", "relative_rmse", "relative_bias", "held_out"}],
-//  "doubts", "colour": {"srgb": "#rrggbb", "lab": CIE 1976, D50, "clipped": whether sRGB cannot show it} (the albedo
-//  under light from all sides)}
+//  "doubts", "colour": {"srgb": "#rrggbb", "lab": CIE 1976, D50, "clipped": whether sRGB cannot show it, "of": "views",
+//  the mean of the photographs with light from the front over a white card in the same light, or "model" where none is
+//  known, the albedo under light from all sides}}
 nlohmann::json thread_document(const ThreadFile& thread);
 
-// The thread of a session's result, and "cloth": what of its preview is there, with what it was made of.
+// The thread of a session's result, and "cloth": what of its preview is there, with what it was made of; where that is
+// known "cloth_colour" of the swatch, over a white card in its place, and its CIEDE2000 to the thread's,
+// "cloth_delta_e_2000".
 nlohmann::json result_document(const std::filesystem::path& session);
 
 // CIEDE2000 between the "colour" of two such documents.

@@ -1,6 +1,5 @@
 #include "station/bench/calibrate/calibrate_rig.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "station/bench/calibrate/calibration_report.h"
@@ -14,53 +13,23 @@
 #include "station/output/interrupt.h"
 
 namespace station {
-namespace {
-
-bool belongs_to(CalibrationRole role, const std::string& part) {
-  switch (role) {
-    case CalibrationRole::lens:
-      return part == "camera";
-    case CalibrationRole::turning:
-      return part == "platform";
-    case CalibrationRole::front_light:
-    case CalibrationRole::back_light:
-      return part == "light";
-    case CalibrationRole::response:
-    case CalibrationRole::rapid:
-    case CalibrationRole::dark:
-    case CalibrationRole::white_field:
-    case CalibrationRole::colour:
-      return part == "response";
-  }
-  return false;
-}
-
-// When the last of the pictures was taken: to solve old pictures again makes no new calibration.
-std::string last_utc(const std::vector<CalibrationPicture>& pictures) {
-  std::string last;
-  for (const CalibrationPicture& picture : pictures) last = std::max(last, picture.utc);
-  return last;
-}
-
-}  // namespace
 
 RigCalibration calibrate_rig(const CalibrateRequest& request) {
   const RigFile rig = read_rig(request.rig);
   ProgressDisplay progress("photograph", request.progress_style);
-  const std::vector<CalibrationStep> plan = make_calibration_plan(rig);
-  const std::vector<int> actions = actions_of(plan);
+  std::vector<CalibrationStep> plan = make_calibration_plan(rig);
   // A person counts what is left to do, not pictures.
   const auto show_step = [&](int done, int total, const std::string& label) {
+    const std::vector<int> actions = actions_of(plan);
     if (request.asked && done < total)
       request.asked->prepare({{"step", actions.at(static_cast<std::size_t>(done))}, {"of", actions.back()}}, "");
     progress.show(done, total, label);
   };
-  std::string utc;
   if (!request.solve_only) {
     watch_interrupts();
     if (!request.only.empty())
-      forget_calibration_pictures(request.out, [&](CalibrationRole role) { return belongs_to(role, request.only); });
-    std::optional<LensCoverage> covered;  // where a person sees it
+      forget_calibration_pictures(request.out, [&](CalibrationRole role) { return part_of(role) == request.only; });
+    LensCoverage covered(rig);
     std::optional<WatchedPerson> watched;
     if (request.asked) watched.emplace(*request.asked);
     RigDevices devices = open_rig(rig, std::nullopt, watched ? &*watched : nullptr);
@@ -70,11 +39,10 @@ RigCalibration calibrate_rig(const CalibrateRequest& request) {
       devices.person = make_drawing_operator(*person, *request.asked);
     }
     if (watched && rig.operator_driver == "console" && !request.live.empty())
-      watch_placing(rig, devices, request.live, *watched, covered.emplace(rig));
-    record_calibration(rig, plan, devices, request.out, show_step, interrupted, covered ? &*covered : nullptr);
+      watch_placing(rig, devices, request.live, *watched, covered);
+    record_calibration(rig, plan, devices, request.out, show_step, interrupted, covered);
     progress.finish("all pictures are taken");
     leave_at_zero(rig, *devices.turntable);
-    utc = devices.clock->utc();
   }
   if (interrupted()) throw std::runtime_error("calibration interrupted; the same command goes on from here");
   let_interrupts_end();  // all pictures are kept, and to solve them takes long
@@ -83,7 +51,7 @@ RigCalibration calibrate_rig(const CalibrateRequest& request) {
   RigCalibration calibration =
       solve_calibration(rig, request.out, pictures,
                         [&](int done, int total, const std::string& label) { working_out.show(done, total, label); });
-  calibration.utc = utc.empty() ? last_utc(pictures) : utc;
+  calibration.utc = oldest_part_utc(pictures);
   calibration.software = software_version();
   if (calibration.sensor) write_sensor_maps(request.out, *calibration.sensor);
   write_json_file(request.out / "calibration.json", to_json(calibration));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 
 #include "calibration/sensor/sensor_file.h"
@@ -131,12 +132,26 @@ std::vector<double> angles_of(const RigFile& rig, const std::vector<CalibrationS
   }
 }
 
+// Takes the mounting that begins with plan[first] off the plan, and those after it, as long as no picture of it is there
+// and the pictures so far do without.
+void drop_unneeded(std::vector<CalibrationStep>& plan, std::size_t first,
+                   const std::function<bool(const std::string&)>& known, LensCoverage& covered) {
+  while (first > 0 && first < plan.size() && plan[first].if_needed && !share_a_mounting(plan[first - 1], plan[first])) {
+    const auto begin = plan.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end =
+        std::find_if(begin, plan.end(), [&](const CalibrationStep& step) { return !share_a_mounting(*begin, step); });
+    if (std::any_of(begin, end, [&](const CalibrationStep& step) { return known(step.id); })) return;
+    if (!covered.lens_is_known()) return;
+    plan.erase(begin, end);
+  }
+}
+
 }  // namespace
 
-std::vector<CalibrationPicture> record_calibration(const RigFile& rig, const std::vector<CalibrationStep>& plan,
+std::vector<CalibrationPicture> record_calibration(const RigFile& rig, std::vector<CalibrationStep>& plan,
                                                    RigDevices& devices, const std::filesystem::path& folder,
                                                    const StepProgress& progress,
-                                                   const std::function<bool()>& should_stop, LensCoverage* covered) {
+                                                   const std::function<bool()>& should_stop, LensCoverage& covered) {
   std::error_code code;
   std::filesystem::create_directories(folder / "pictures", code);
   if (code)
@@ -149,11 +164,11 @@ std::vector<CalibrationPicture> record_calibration(const RigFile& rig, const std
     return std::any_of(pictures.begin(), pictures.end(), [&](const CalibrationPicture& p) { return p.id == id; });
   };
 
-  const auto cover = [&](const calibration::SensorPicture& raw) { covered->add(tags_in(raw), raw.mosaic.size()); };
+  const auto cover = [&](const calibration::SensorPicture& raw) { covered.add(tags_in(raw), raw.mosaic.size()); };
   const bool board_comes = std::ranges::any_of(
       plan, [&](const CalibrationStep& step) { return step.role == CalibrationRole::lens && !known(step.id); });
   for (const CalibrationPicture& p : pictures)
-    if (covered && board_comes && p.role == CalibrationRole::lens)
+    if (board_comes && p.role == CalibrationRole::lens)
       cover(calibration::read_sensor_file(folder / p.file));
 
   FileSystem disk;
@@ -164,6 +179,8 @@ std::vector<CalibrationPicture> record_calibration(const RigFile& rig, const std
   std::vector<double> angles;                 // of the steps that share a place and a role
   std::size_t begin = 0;                      // the first of them
   for (std::size_t i = 0; i < plan.size(); ++i) {
+    drop_unneeded(plan, i, known, covered);
+    if (i == plan.size()) break;
     const CalibrationStep& step = plan[i];
     if (!rig::same_arrangement(step.arrangement, plan[begin].arrangement)) standing.reset();
     if (!share_a_mounting(step, plan[begin])) {
@@ -199,7 +216,7 @@ std::vector<CalibrationPicture> record_calibration(const RigFile& rig, const std
     entry.sha256 = store_file(disk, folder / entry.file, picture.bytes);
     pictures.push_back(entry);
     write_list(folder, pictures);
-    if (covered && step.role == CalibrationRole::lens) cover(calibration::read_sensor_bytes(picture.bytes, entry.file));
+    if (step.role == CalibrationRole::lens) cover(calibration::read_sensor_bytes(picture.bytes, entry.file));
   }
   progress(static_cast<int>(plan.size()), static_cast<int>(plan.size()), "done");
   return pictures;
@@ -211,6 +228,18 @@ void forget_calibration_pictures(const std::filesystem::path& folder,
   std::vector<CalibrationPicture> pictures = read_list(folder);
   std::erase_if(pictures, [&](const CalibrationPicture& p) { return forget(p.role); });
   write_list(folder, pictures);
+}
+
+std::string oldest_part_utc(const std::vector<CalibrationPicture>& pictures) {
+  std::map<std::string, std::string> last;
+  for (const CalibrationPicture& picture : pictures) {
+    std::string& utc = last[part_of(picture.role)];
+    utc = std::max(utc, picture.utc);
+  }
+  std::string oldest;
+  for (const auto& [part, utc] : last)
+    if (oldest.empty() || utc < oldest) oldest = utc;
+  return oldest;
 }
 
 std::vector<CalibrationPicture> read_calibration_pictures(const std::filesystem::path& folder) {

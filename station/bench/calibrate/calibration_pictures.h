@@ -31,19 +31,23 @@ struct CalibrationPicture {
 
 using StepProgress = std::function<void(int done, int total, const std::string& label)>;
 
-// Takes the pictures that `plan` asks for and the folder does not hold yet. Where a step follows its target, a picture
-// is taken first to see how it stands. `should_stop` is polled between steps; when it is true the platform is stopped
-// and std::runtime_error thrown. `covered` learns what the lens pictures show of the
-// board; null: nobody asks.
-std::vector<CalibrationPicture> record_calibration(const RigFile& rig, const std::vector<CalibrationStep>& plan,
+// Takes the pictures that `plan` asks for and the folder does not hold yet; steps that turn out not to be needed are
+// taken off the plan. Where a step follows its target, a picture is taken first to see how it stands. `should_stop` is
+// polled between steps; when it is true the platform is stopped and std::runtime_error thrown. `covered` learns what the
+// lens pictures show of the board.
+std::vector<CalibrationPicture> record_calibration(const RigFile& rig, std::vector<CalibrationStep>& plan,
                                                    RigDevices& devices, const std::filesystem::path& folder,
                                                    const StepProgress& progress,
-                                                   const std::function<bool()>& should_stop, LensCoverage* covered);
+                                                   const std::function<bool()>& should_stop, LensCoverage& covered);
 
 // Takes pictures of these roles off the list, so that record_calibration takes them again. Does nothing when there is
 // no list.
 void forget_calibration_pictures(const std::filesystem::path& folder,
                                  const std::function<bool(CalibrationRole)>& forget);
+
+// Since when all that the pictures measure is known: when the last one was taken of the part that is the oldest. Neither
+// to solve old pictures again nor to take a part of them again makes the others younger. Empty without pictures.
+std::string oldest_part_utc(const std::vector<CalibrationPicture>& pictures);
 
 // Errors: std::runtime_error when the list or a picture is missing or a picture's hash differs.
 std::vector<CalibrationPicture> read_calibration_pictures(const std::filesystem::path& folder);

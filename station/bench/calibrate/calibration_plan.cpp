@@ -42,11 +42,14 @@ void add_platform_steps(std::vector<CalibrationStep>& plan) {
     plan.push_back(step(CalibrationRole::turning, ++number, {.room_light = true}, angle_deg * kDegree));
 }
 
-// The board on a steep, a leaning and a nearly flat stand; once on its side, so that width and height of the picture
-// are measured by the same edges.
+// The board on a steep stand and, on its side, on a leaning one, so that width and height of the picture are measured by
+// the same edges; where that leaves the lens less than well known, on the other two as well.
 void add_lens_steps(const RigFile& rig, std::vector<CalibrationStep>& plan) {
   int number = 0;
-  for (const auto& [stand, on_its_side] : {std::pair{1, false}, {3, true}, {4, false}}) {
+  constexpr int kAlways = 2;
+  int stands = 0;
+  for (const auto& [stand, on_its_side] : {std::pair{1, false}, {3, true}, {4, false}, {2, true}}) {
+    const bool if_needed = ++stands > kAlways;
     const rig::Arrangement board{.object = rig::BenchObject::board,
                                  .on_platform = true,
                                  .stand = stand,
@@ -54,8 +57,10 @@ void add_lens_steps(const RigFile& rig, std::vector<CalibrationStep>& plan) {
                                  .pose = standing_pose(rig, rig::BenchObject::board, stand, on_its_side),
                                  .room_light = true};
     for (const double angle : calibration::plan_board_angles(panel_bench(rig).camera, rig.board, board.pose,
-                                                             counts_of(rig).lens, platform_limit_rad(rig)))
+                                                             counts_of(rig).lens, platform_limit_rad(rig))) {
       plan.push_back(step(CalibrationRole::lens, ++number, board, angle));
+      plan.back().if_needed = if_needed;
+    }
   }
 }
 

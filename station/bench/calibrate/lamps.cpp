@@ -15,6 +15,10 @@ cv::Size picture_size(const RigFile& rig) {
 
 }  // namespace
 
+double working_distance_mm(const RigFile& rig) {
+  return (Eigen::Vector3d(0, 0, rig.platform_height_mm + 34) - rig.world_from_camera_by_tape.translation()).norm();
+}
+
 std::vector<calibration::LightGuess> lamp_guesses(const RigFile& rig) {
   return {{.name = "front lamp", .position = rig.front_lamp_mm, .aim = rig.lamp_aim_mm},
           {.name = "back lamp", .position = rig.back_lamp_mm, .aim = rig.lamp_aim_mm}};

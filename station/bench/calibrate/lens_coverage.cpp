@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
+#include "calibration/geometry/lens_fit.h"
 #include "calibration/geometry/pose.h"
 #include "station/bench/calibrate/lamps.h"
 #include "station/bench/calibrate/standing_target.h"
@@ -22,6 +24,8 @@ void LensCoverage::add(const calibration::TagObservation& seen, cv::Size size) {
   const auto fit = calibration::fit_pose(engraved_lens(rig_, size), tags, seen);
   if (!fit) return;
   ++pictures_;
+  views_.push_back(seen);
+  size_ = size;
   for (const calibration::TagDetection& tag : seen) {
     if (std::ranges::find(tags.tags, tag.id, &calibration::Tag::id) == tags.tags.end()) continue;
     for (const Eigen::Vector2d& corner : tag.corners_px) {
@@ -45,6 +49,20 @@ double LensCoverage::share() const {
   return static_cast<double>(std::ranges::count(seen_, true)) / static_cast<double>(seen_.size());
 }
 
+bool LensCoverage::lens_is_known() {
+  sigma_px_.reset();
+  try {
+    const double distance_mm = working_distance_mm(rig_);
+    const calibration::LensFit fit =
+        calibration::fit_lens(views_, rig_.board, size_, rig_.focal_length_guess_px,
+                              {.working_distance_mm = distance_mm, .taped_distance_mm = distance_mm});
+    sigma_px_ = calibration::middle_sigma_px(fit);
+    return calibration::is_well_known(fit);
+  } catch (const std::runtime_error&) {  // they do not determine a lens
+    return false;
+  }
+}
+
 std::string LensCoverage::sentence() const {
   if (pictures_ == 0) return "";
   constexpr std::array<const char*, kLeans> kNames{"turned to the left", "turned to the right", "tilted back",
@@ -52,8 +70,12 @@ std::string LensCoverage::sentence() const {
   std::string missing;
   for (std::size_t lean = 0; lean < kNames.size(); ++lean)
     if (!leans_.at(lean)) missing += (missing.empty() ? "" : ", ") + std::string(kNames.at(lean));
+  std::string known;
+  if (sigma_px_)
+    known = " The lens is known to " + number_text(*sigma_px_, 3) + " px, and " +
+            number_text(calibration::kWellKnown_px, 2) + " are enough.";
   return "So far the board was seen in " + percent_text(share()) + " of the picture (the rest is darkened)" +
-         (missing.empty() ? "." : ", and not yet " + missing + ".");
+         (missing.empty() ? "." : ", and not yet " + missing + ".") + known;
 }
 
 void LensCoverage::shade_unseen(cv::Mat3b& frame) const {

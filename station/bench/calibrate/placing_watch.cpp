@@ -26,6 +26,10 @@ namespace {
 using Eigen::Isometry3d, Eigen::Vector3d;
 
 constexpr double kStill_s = 1;
+constexpr double kHandsOut_s = 3;     // more, before anything turns
+constexpr int kSmall_px = 150;        // width of the frame in which hands are looked for
+constexpr double kMovedLight = 0.06;  // of white, beyond what the whole frame changed
+constexpr double kMovedPart = 0.004;  // of that frame
 constexpr double kStillPart = 0.002;           // of the picture's width, that corners may move between two frames
 constexpr double kLeastStill_px = 0.7;         // live view is coarse
 constexpr double kFewestTags = 0.5;            // of the target's
@@ -48,6 +52,21 @@ std::vector<cv::Point> outline_in(const RigFile& rig, const rig::Arrangement& wa
   return outline;
 }
 
+cv::Mat1f in_small(const cv::Mat1f& grey) {
+  cv::Mat1f small;
+  cv::resize(grey, small, {kSmall_px, std::max(1, kSmall_px * grey.rows / grey.cols)}, 0, 0, cv::INTER_AREA);
+  return small;
+}
+
+// Whether something moved between two small frames; that all of it became brighter or darker does not count.
+bool something_moved(const cv::Mat1f& before, const cv::Mat1f& after) {
+  if (before.size() != after.size()) return true;
+  cv::Mat1f change;
+  cv::subtract(after, before, change);
+  const int moved = cv::countNonZero(cv::abs(change - cv::mean(change)[0]) > kMovedLight);
+  return moved > kMovedPart * static_cast<double>(change.total());
+}
+
 }  // namespace
 
 PlacingWatch::PlacingWatch(const RigFile& rig, rig::Camera& camera, std::filesystem::path live, Clock now,
@@ -59,6 +78,7 @@ void PlacingWatch::begin(const std::optional<rig::Arrangement>& before, const ri
   wanted_.reset();
   still_since_s_.reset();
   before_.clear();
+  small_before_.release();
   if (wanted.stand == 0) return;
   wanted_ = wanted;
   angle_rad_ = angle_rad;
@@ -101,16 +121,24 @@ PlacingWatch::Look PlacingWatch::look() {
   Look found{.remark = fault(seen, grey)};
   const auto moved = motion_px(before_, seen);
   before_ = seen;
+  cv::Mat1f small = in_small(grey);
+  const bool hands = something_moved(small_before_, small);
+  small_before_ = std::move(small);
   const double now_s = now_();
-  if (!found.remark.empty() || !moved || *moved > std::max(kLeastStill_px, kStillPart * frame.cols))
+  if (!found.remark.empty() || !moved || *moved > std::max(kLeastStill_px, kStillPart * frame.cols) || hands)
     still_since_s_.reset();
   else if (!still_since_s_)
     still_since_s_ = now_s;
   const bool right = found.remark.empty();
-  found.stands = still_since_s_ && now_s - *still_since_s_ >= kStill_s;
+  const double still_s = still_since_s_ ? now_s - *still_since_s_ : 0;
+  found.stands = still_since_s_ && still_s >= kStill_s;
+  found.hands_out = found.stands && still_s >= kStill_s + kHandsOut_s;
   if (right)
     found.remark = !only_the_target_ ? "It stands well. Say that it is done when the light is as asked for."
-                   : found.stands    ? "It stands well."
+                   : found.hands_out ? "It stands well."
+                   : found.stands    ? "It stands well. Hands out of the box: the platform turns in " +
+                                        std::to_string(static_cast<int>(std::ceil(kStill_s + kHandsOut_s - still_s))) +
+                                        " s."
                                      : "It stands well: let go of it.";
   if (covered_ && wanted_->object == rig::BenchObject::board) {
     covered_->shade_unseen(frame);
@@ -136,7 +164,7 @@ std::optional<std::string> WatchedPerson::ask(const rig::Question& question) {
     try {
       const PlacingWatch::Look seen = watch_->look();
       person_.remark(seen.remark);
-      if (seen.stands && watch_->all_is_seen()) return rig::kDone;
+      if (seen.hands_out && watch_->all_is_seen()) return rig::kDone;
     } catch (const std::runtime_error& problem) {  // without its help the person is asked all the same
       person_.remark(std::string("There is no live view: ") + problem.what());
       watch_->end();

@@ -32,8 +32,9 @@ class PlacingWatch {
   bool watches() const { return wanted_.has_value(); }
 
   struct Look {
-    std::string remark;   // a sentence
-    bool stands = false;  // as wanted, sharp, and still for a second
+    std::string remark;      // a sentence
+    bool stands = false;     // as wanted, sharp, and still for a second
+    bool hands_out = false;  // and nothing in the whole picture has moved in the three seconds that hands had to leave
   };
   // Takes one frame. Errors: those of the camera and of the file.
   Look look();
@@ -51,7 +52,9 @@ class PlacingWatch {
   std::optional<rig::Arrangement> wanted_;
   bool only_the_target_ = false;
   double angle_rad_ = 0;
+  // Of the frame before: its tags, and all of it in small.
   calibration::TagObservation before_;
+  cv::Mat1f small_before_;
   std::optional<double> still_since_s_;
 };
 

@@ -58,11 +58,6 @@ CameraSetup camera_of_pictures(const RigFile& rig, const std::vector<Loaded>& lo
           .f_number = f_number_of(first)};
 }
 
-// From the camera to the middle of what stands on the platform, by tape; the board is held near it too.
-double working_distance_mm(const RigFile& rig) {
-  return (Eigen::Vector3d(0, 0, rig.platform_height_mm + 34) - rig.world_from_camera_by_tape.translation()).norm();
-}
-
 // The relative error of an output told by the table's tags: they are grey paper, and light comes by way of other
 // things.
 constexpr double kTagsSigma = 0.0015;

@@ -55,6 +55,21 @@ constexpr Measure kMeasures[] = {
      {0.5, 1},
      "What does the certificate of the white panel say of its reflectance? 0.99 for Spectralon of 99 %.",
      "panel"},
+    {"/reference_patch/albedo",
+     1,
+     {0.01, 1},
+     "And what is said of the reflectance of the two grey chips that lie on the frame? 0.4 for chips of 40 %.",
+     "holder"},
+    {"/colour_chart/patch_mm",
+     1,
+     {2, 60},
+     "How wide is one square of the colour chart, measured on the chart itself, in mm?",
+     "chart"},
+    {"/colour_chart/pitch_mm",
+     1,
+     {2, 60},
+     "And how far is it from the middle of one square to the middle of the next, in mm? Measure over five squares.",
+     "chart"},
 };
 
 struct Name {
@@ -206,6 +221,7 @@ void ask_for_measures(RigDraft& draft, rig::AskedPerson& asked, const std::funct
     keep();
   }
   for (const Measure& measure : kMeasures) {
+    if (!draft.contains(RigDraft::json_pointer(measure.key))) continue;  // the bench has no such part
     ask_measure(measure, draft, asked);
     keep();
   }

@@ -1,6 +1,7 @@
 // Design: cloth of any thread of the library, or of two, in any ready draft; what was woven, to look at and to download.
 
 import {allow, byId, fill, make, show, text} from "/document.js";
+import {tellClipping} from "/exposure.js";
 import {picture, startJob, state, whyNot} from "/station.js";
 
 const kPictures = ["swatch", "cylinder"];
@@ -24,7 +25,11 @@ function shown(design) {
   if (design.problem) return card.append(make("p", {textContent: design.problem})), card;
   const [warp, weft] = design.threads;
   card.append(make("p", {textContent: `${design.draft} · ${warp === weft ? warp : `${text("warp")} ${warp} · ${text("weft")} ${weft}`}`}),
-    ...kPictures.map(view => make("img", {src: picture({of: "design", name: design.name, view, made: design.made}), alt: `${design.name}: ${text(`cloth_${view}`)}`, loading: "lazy"})),
+    ...kPictures.map(view => {
+      const clipped = make("figcaption", {className: "dim"}), image = make("img", {alt: `${design.name}: ${text(`cloth_${view}`)}`, loading: "lazy"});
+      tellClipping(image, clipped).src = picture({of: "design", name: design.name, view, made: design.made});
+      return make("figure", {}, image, clipped);
+    }),
     make("p", {}, make("a", {href: "/download?" + new URLSearchParams({of: "design", name: design.name}), download: `${design.name}.zip`,
                              textContent: `${text("download")} ${design.name}.zip`})));
   return card;

@@ -4,7 +4,7 @@ import {ago, allow, byId, fill, make, percent, row, show, text} from "/document.
 import {curves} from "/curves.js";
 import {threadPicture} from "/overview.js";
 import {ask, go, post, startJob, state, whyNot} from "/station.js";
-import {colourWords, unknownRows} from "/result.js";
+import {chip, colourMeans, colourWords, unknownRows} from "/result.js";
 
 const kFields = ["name", "barcode", "lot", "material", "colour", "note"];
 
@@ -84,9 +84,7 @@ async function showComparison() {
   byId("compared").replaceChildren(...threads.map((thread, i) => {
     const line = state.threads.find(one => one.number === chosen[i]);
     const column = make("div", {className: "thread"}, make("h4", {textContent: `${chosen[i]} · ${thread.name}`}));
-    const swatch = make("div", {className: "swatch"});
-    swatch.style.backgroundColor = thread.colour.srgb;
-    column.append(swatch, make("p", {textContent: colourWords(thread.colour)}),
+    column.append(chip(thread.colour), make("p", {}, colourWords(thread.colour), make("span", {className: "about", textContent: colourMeans(thread.colour)})),
       make("p", {textContent: `${thread.diameter_mm} mm · ${text("fit")} ${percent(thread.relative_rmse)}`}),
       ...("delta_e_2000" in thread ? [make("p", {textContent: text("colour_difference", {value: thread.delta_e_2000.toFixed(1)})})] : []),
       ...(line ? threadPicture(line) : []), make("div", {className: "wide", tabIndex: 0}, make("table", {}, make("tbody", {}, ...unknownRows(thread)))));

@@ -2,6 +2,7 @@
 
 import {allow, byId, fill, hasText, make, percent, row, text} from "/document.js";
 import {curves} from "/curves.js";
+import {fillStops, tellClipping} from "/exposure.js";
 import {ask, picture, startJob, state, whyNot} from "/station.js";
 import {session} from "/session.js";
 
@@ -9,14 +10,15 @@ const kGood = 0.1, kUsable = 0.2;  // relative RMSE of a fit
 
 let shown = "", result = null;
 
+const stops = () => byId("stops").value;
 const residual = () => byId("compare-with").value === "residual";
 
 function showView() {
   const view = byId("view-choice").value;
   if (!view) return;
   const made = `${session}-${shown}`;
-  byId("photographed").src = picture({of: "photographed", session, view, made});
-  byId("fitted").src = picture({of: residual() ? "residual" : "fitted", session, view, made});
+  tellClipping(byId("photographed"), byId("view-clipped")).src = picture({of: "photographed", session, view, made, stops: stops()});
+  byId("fitted").src = picture({of: residual() ? "residual" : "fitted", session, view, made, stops: stops()});
   const line = result.views.find(one => one.id === view);
   byId("view-figures").textContent =
     line ? `${line.held_out ? `${text("held_out")}: ` : ""}${text("relative_rmse")} ${percent(line.relative_rmse)} · ${text("relative_bias")} ${percent(line.relative_bias)}` : "";
@@ -46,11 +48,24 @@ export function colourWords(colour) {
   return `${colour.srgb} · Lab ${l.toFixed(1)}, ${a.toFixed(1)}, ${b.toFixed(1)}${colour.clipped ? ` · ${text("colour_clipped")}` : ""}`;
 }
 
+export function chip(colour) {
+  const made = make("div", {className: "swatch"});
+  made.style.backgroundColor = colour.srgb;
+  return made;
+}
+
+export const colourMeans = colour => text(colour.of === "views" ? "colour_of_views" : "colour_of_model");
+
 function showCloth() {
-  byId("cloth-pictures").replaceChildren(...result.cloth.map(one => make("figure", {},
-    make("img", {src: picture({of: "cloth", session, view: one.name, made: one.made}), alt: text(`cloth_${one.name}`)}),
-    make("figcaption", {textContent: text(`cloth_${one.name}`)}))));
-  const of = result.cloth_made_of;
+  byId("cloth-pictures").replaceChildren(...result.cloth.map(one => {
+    const clipped = make("span", {className: "dim"}), image = tellClipping(make("img", {alt: text(`cloth_${one.name}`)}), clipped);
+    image.src = picture({of: "cloth", session, view: one.name, made: one.made, stops: stops()});
+    return make("figure", {}, image, make("figcaption", {}, `${text(`cloth_${one.name}`)} `, clipped));
+  }));
+  const woven = result.cloth_colour;
+  const of = result.cloth_made_of, itsOwn = of && !of.warp && !of.weft;
+  byId("cloth-colour").replaceChildren(...(woven ? [chip(woven), make("p", {}, colourWords(woven), make("span", {className: "about",
+    textContent: `${text("colour_of_cloth")}${itsOwn ? ` ${text("colour_to_thread", {value: result.cloth_delta_e_2000.toFixed(1)})}` : ""}`}))] : []));
   const colour = (key, system) => system
     ? `${text(key)} ${"#" + system.srgb.map(value => value.toString(16).padStart(2, "0")).join("")}, ${text("gamut")} ${system.delta_e_2000.toFixed(1)}`
     : `${text(key)} ${text("own_colour")}`;
@@ -77,6 +92,7 @@ export async function showResult() {
   verdict();
   byId("swatch").style.backgroundColor = result.colour.srgb;
   byId("colour-words").textContent = colourWords(result.colour);
+  byId("colour-means").textContent = colourMeans(result.colour);
   byId("doubts").replaceChildren(...result.doubts.map(doubt => make("li", {textContent: doubt})));
   byId("unknowns").replaceChildren(...unknownRows(result));
   byId("curves").replaceChildren(curves([result]));
@@ -88,6 +104,11 @@ export async function showResult() {
 export function beginResult() {
   byId("view-choice").onchange = showView;
   byId("compare-with").onchange = showView;
+  fillStops(byId("stops"));
+  byId("stops").onchange = () => {
+    showView();
+    showCloth();
+  };
   byId("wipe").oninput = wipe;
   wipe();
   const form = byId("cloth-form");

@@ -104,7 +104,10 @@ json fit_document(const inversion::ViewFit& fit, const inversion::FitOptions& op
     views.push_back({{"id", view.id},
                      {"relative_rmse", view.agreement.relative_rmse()},
                      {"relative_bias", view.agreement.relative_bias},
-                     {"mean_over_diffuser", view.agreement.mean_reference}});
+                     {"mean_over_diffuser", view.agreement.mean_reference},
+                     {"colour_over_diffuser", std::vector<double>(view.agreement.mean_colour.begin(),
+                                                                  view.agreement.mean_colour.end())}});
+    if (view.transmission) views.back()["transmission"] = true;
     if (view.held_out) {
       views.back()["held_out"] = true;
       continue;

@@ -2,7 +2,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "station/output/display.h"
+#include "station/thread/report/fitted_twins.h"
 
 namespace station {
 namespace {
@@ -30,7 +30,7 @@ cv::Mat3b contact_sheet(const DevelopedViews& developed) {
     const inversion::View& view = developed.views[static_cast<std::size_t>(i)].view;
     const cv::Rect box = threads_box(view.mask);
     const cv::Mat3b picture =
-        display(view.image, display_scale(view.image, view.mask), developed.linear_srgb_from_camera);
+        display(view.image, exposure_of(view), developed.linear_srgb_from_camera);
     cv::Mat3b outlined = picture.clone();
     draw_outline(outlined, view.mask);
     place(sheet, picture(box), 2 * (i % kViewsPerRow), i / kViewsPerRow, tile_height);

@@ -43,15 +43,14 @@ std::string caption(const DevelopedView& developed, const Pictures& pictures) {
 
 // One tile: the developed picture and, under it, the same with the mask's outline.
 std::string tile(const DevelopedView& developed, const Pictures& pictures, const std::array<double, 9>& colour) {
-  const double scale = display_scale(developed.view.image, developed.view.mask);
+  const Exposure exposure = exposure_of(developed.view);
   const cv::Rect box = threads_box(developed.view.mask);
-  const cv::Mat3b picture = display(developed.view.image, scale, colour);
+  const cv::Mat3b picture = display(developed.view.image, exposure, colour);
   cv::Mat3b outlined = picture.clone();
   draw_outline(outlined, developed.view.mask);
   return "<figure>" + embedded_image(picture(box).clone(), developed.view.id) +
          embedded_image(outlined(box).clone(), developed.view.id + " with its mask") + "<figcaption>" +
-         caption(developed, pictures) + "<br>shown at " + number_text(scale, 2) +
-         " × its radiance</figcaption></figure>\n";
+         caption(developed, pictures) + "<br>" + describe(exposure) + "</figcaption></figure>\n";
 }
 
 std::string view_tiles(const DevelopedViews& developed, const Pictures& pictures, bool transmission) {

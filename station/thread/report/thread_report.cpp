@@ -13,6 +13,7 @@
 #include "station/output/html.h"
 #include "station/output/plot.h"
 #include "station/session/results.h"
+#include "station/session/shown_cloth.h"
 #include "station/thread/invert/fit_document.h"
 #include "station/thread/report/fitted_twins.h"
 
@@ -117,11 +118,11 @@ std::string view_figures(const std::filesystem::path& session, const DevelopedVi
     }
     const FittedTwins twins = read_twins(session, view, model.name);
     const auto shown = [&](const cv::Mat3f& picture, const std::string& what) {
-      return embedded_image(display(picture, twins.scale, colour)(twins.box).clone(), view.id + " " + what);
+      return embedded_image(display(picture, twins.exposure, colour)(twins.box).clone(), view.id + " " + what);
     };
     if (figures.empty())
       figures = "<figure>" + shown(twins.photographed, "photographed") + "<figcaption>" + escaped(view.id) +
-                ": photographed</figcaption></figure>\n";
+                ": photographed<br>" + describe(twins.exposure) + "</figcaption></figure>\n";
     figures += "<figure>" + shown(twins.fitted, model.name) +
                shown(residual_picture(view, twins, model.fit.at("block_px").get<int>()), model.name + " residual") +
                "<figcaption>" + model.name + ", and minus photographed (grey is none)<br>" +
@@ -163,7 +164,7 @@ std::string cloth_section(const std::filesystem::path& session, const DevelopedV
   std::string html;
   for (const std::filesystem::path& file : cloth_pictures(session))
     html += "<figure>" +
-            embedded_image(display(renderer::read_exr(file), developed.linear_srgb_from_camera), file.stem().string()) +
+            embedded_image(shown_cloth(file, 0, developed.linear_srgb_from_camera), file.stem().string()) +
             "<figcaption>" + escaped(file.stem().string()) + "</figcaption></figure>\n";
   return html.empty() ? html : "<h2>Predicted cloth</h2>\n<div class=\"sheet\">\n" + html + "</div>\n";
 }
@@ -176,7 +177,7 @@ cv::Mat3b overview_picture(const std::filesystem::path& session, const Developed
   for (std::size_t i = 0; i < developed.views.size(); i += std::max<std::size_t>(1, developed.views.size() / kShown)) {
     const FittedTwins twins = read_twins(session, developed.views[i].view);
     const auto tile = [&](const cv::Mat3f& picture) {
-      return fitted_into(display(picture, twins.scale, developed.linear_srgb_from_camera)(twins.box),
+      return fitted_into(display(picture, twins.exposure, developed.linear_srgb_from_camera)(twins.box),
                          {kTile_px, kTileHeight_px});
     };
     cv::Mat3b row;
@@ -188,7 +189,7 @@ cv::Mat3b overview_picture(const std::filesystem::path& session, const Developed
   }
   cv::Mat3b sheet = left;
   for (const std::filesystem::path& file : cloths) {
-    const cv::Mat3b cloth = display(renderer::read_exr(file), developed.linear_srgb_from_camera);
+    const cv::Mat3b cloth = shown_cloth(file, 0, developed.linear_srgb_from_camera);
     cv::hconcat(sheet, fitted_into(cloth, {left.rows * cloth.cols / cloth.rows, left.rows}), sheet);
   }
   return sheet;

@@ -38,6 +38,8 @@ TagLayout bent_board() {
   return out;
 }
 
+constexpr std::size_t kStands = 2;  // those that are always asked for
+
 // The board on stands that a hand put down; the lens was guessed from its engraving, the camera's place by tape.
 Lens calibrated_lens(const synthetic::Bench& truth, std::mt19937& random) {
   const Lens guess{.width_px = truth.lens.width_px,
@@ -49,7 +51,7 @@ Lens calibrated_lens(const synthetic::Bench& truth, std::mt19937& random) {
                    .distortion = {}};
   std::vector<TagObservation> views;
   for (const Eigen::Isometry3d& pose :
-       synthetic::stand_poses({guess, truth.world_from_camera}, board(), kPlate_mm, kPicturesOfAStand, random))
+       synthetic::stand_poses({guess, truth.world_from_camera}, board(), kPlate_mm, kPicturesOfAStand, random, kStands))
     views.push_back(synthetic::observe(truth.lens, bent_board(), pose, kNoise_px, random));
   return fit_lens(views, board(), cv::Size(truth.lens.width_px, truth.lens.height_px), 8000).lens;
 }

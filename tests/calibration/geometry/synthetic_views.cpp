@@ -114,9 +114,11 @@ Eigen::Isometry3d put_down(const Eigen::Isometry3d& platform_from_object, std::m
 }
 
 std::vector<Eigen::Isometry3d> stand_poses(const RoughCamera& camera, const TagLayout& board,
-                                           const Eigen::Vector2d& plate_mm, int pictures, std::mt19937& random) {
+                                           const Eigen::Vector2d& plate_mm, int pictures, std::mt19937& random,
+                                           std::size_t stands) {
+  constexpr std::array<std::pair<int, bool>, 4> kAsked{{{0, false}, {2, true}, {3, false}, {1, true}}};
   std::vector<Eigen::Isometry3d> poses;
-  for (const auto& [stand, on_its_side] : {std::pair{0, false}, {2, true}, {3, false}}) {
+  for (const auto& [stand, on_its_side] : std::span(kAsked).first(stands)) {
     Eigen::Isometry3d on = on_stand(kStandLeans_rad.at(static_cast<std::size_t>(stand)),
                                     on_its_side ? plate_mm.x() : plate_mm.y(), 88, 30);
     if (on_its_side) on.rotate(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()));

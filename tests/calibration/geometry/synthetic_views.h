@@ -45,10 +45,11 @@ std::vector<Eigen::Isometry3d> handheld_poses(int count, std::mt19937& random);
 Eigen::Isometry3d put_down(const Eigen::Isometry3d& platform_from_object, std::mt19937& random);
 
 // The poses camera_from_board of a board on a plate `plate_mm` wide and high as the guided calibration takes them: on
-// three of the stands, on one of them on its side, put down by a hand and turned by the platform, `pictures` on each
-// stand, under a camera that is known as `camera` says.
+// the first `stands` of four, on every second of them on its side, put down by a hand and turned by the platform,
+// `pictures` on each stand, under a camera that is known as `camera` says.
 std::vector<Eigen::Isometry3d> stand_poses(const RoughCamera& camera, const TagLayout& board,
-                                           const Eigen::Vector2d& plate_mm, int pictures, std::mt19937& random);
+                                           const Eigen::Vector2d& plate_mm, int pictures, std::mt19937& random,
+                                           std::size_t stands);
 
 // A linear picture of the printed layout (paper 0.8, ink 0.04, surround 0.1), with `samples` x `samples` rays per
 // pixel.

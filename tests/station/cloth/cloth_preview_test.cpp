@@ -1,9 +1,11 @@
 // The cloth command, on what fits leave in a session's folder.
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <opencv2/core.hpp>
 
 #include "renderer/picture/image_file.h"
@@ -44,6 +46,32 @@ TEST_F(ClothPreview, IsWovenOfTheBundleOnRequestAndSaysSo) {
   EXPECT_EQ(nlohmann::json::parse(of_bundle.out).at("model"), "bundle");
   EXPECT_GT(swatch_mean(), 0);
   EXPECT_NE(swatch_mean(), thread_mean);
+}
+
+// The card's radiance from the scenes' lights by hand: (I cos / d^2 + pi L) / pi of the lamp and the surroundings.
+TEST_F(ClothPreview, IsAsBrightAsItIsBesideAWhiteCard) {
+  const ProgramResult of_thread = cloth({});
+  ASSERT_EQ(of_thread.status, 0) << of_thread.error;
+  const auto made_of = nlohmann::json::parse(of_thread.out);
+  const Eigen::Vector3d lamp(-150, 200, 400);
+  const double swatch = 200000 * lamp.normalized().z() / lamp.squaredNorm() / std::numbers::pi + 0.1;
+  const Eigen::Vector3d front(41, 0, 84), to_eye = (Eigen::Vector3d(700, 0, 180) - front).normalized(),
+                        to_lamp = Eigen::Vector3d(500, -400, 350) - front;
+  const double cylinder =
+      600000 * to_lamp.normalized().dot(to_eye) / to_lamp.squaredNorm() / std::numbers::pi + 0.15;
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(made_of.at("white_card").at("swatch")[c].get<double>() / swatch, 1, 0.01);
+    EXPECT_NEAR(made_of.at("white_card").at("cylinder")[c].get<double>() / cylinder, 1, 0.01);
+  }
+  // The picture for people is the reflectance, clipped.
+  const cv::Mat3f linear = renderer::read_exr(result() / "cloth/swatch.exr");
+  cv::Mat3f asked;
+  cv::min(linear / swatch, 1.0, asked);
+  const cv::Scalar shown = cv::mean(renderer::read_linear_srgb(result() / "cloth/swatch.png")), wanted = cv::mean(asked);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(shown[c] / wanted[c], 1, 0.02) << c;
+  const auto mean = made_of.at("reflectance");
+  EXPECT_GT(mean[0].get<double>(), 1.5 * mean[1].get<double>()) << "red silk";
+  EXPECT_LT(mean[0].get<double>(), 1);
 }
 
 // Threads that no session of this computer made, in a folder that stands alone.

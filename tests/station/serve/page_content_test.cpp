@@ -7,7 +7,9 @@
 #include "rig/devices/clock.h"
 #include "station/documents/sample.h"
 #include "station/documents/spool.h"
+#include "station/documents/thread_file.h"
 #include "station/serve/left_jobs.h"
+#include "station/serve/result_document.h"
 #include "station/session/record/journal.h"
 #include "station/thread/library.h"
 #include "tests/station/serve/technician_page_fixture.h"
@@ -68,7 +70,7 @@ TEST_F(TechnicianPage, ThePageAndItsPartsAreThere) {
 TEST_F(TechnicianPage, EveryTextThatTheScriptsAskForIsInTheOneFile) {
   const json texts = json::parse(asked("/texts.en.json").body);
   int found = 0;
-  for (const char* file : {"/app.js", "/bench.js", "/calibration.js", "/capture.js", "/curves.js", "/document.js",
+  for (const char* file : {"/app.js", "/bench.js", "/calibration.js", "/capture.js", "/curves.js", "/design.js", "/document.js", "/exposure.js",
                            "/frame.js", "/keys.js", "/library.js", "/live.js", "/overview.js", "/result.js",
                            "/session.js", "/station.js", "/step_picture.js", "/viewer.js"}) {
     const std::string script = asked(file).body;
@@ -340,6 +342,13 @@ TEST_F(TechnicianPage, ADesignIsWovenOfThreadsOfTheLibrary) {
   };
   EXPECT_EQ(shown("swatch").content_type, "image/png");
   EXPECT_EQ(shown("nothing").status, 404);
+  const auto at = [&](const char* stops) {
+    return asked("/picture", {{"of", "design"}, {"name", name}, {"view", "swatch"}, {"stops", stops}});
+  };
+  EXPECT_EQ(at("0").body, shown("swatch").body);
+  EXPECT_NE(at("-2").body, shown("swatch").body);
+  EXPECT_EQ(at("-2").content_type, "image/png");
+  for (const char* stops : {"bright", "1.5", "99"}) EXPECT_EQ(at(stops).status, 400) << stops;
   EXPECT_EQ(refused_with("/api/job", wanted), 409) << "a design is not replaced by another";
   const HttpResponse packed = asked("/download", {{"of", "design"}, {"name", name}});
   EXPECT_NE(packed.body.find("/weft_thread.json"), std::string::npos);
@@ -370,6 +379,22 @@ TEST_F(TechnicianPage, AThreadOfTheLibraryIsShownWithItsCurves) {
   const std::string colour = thread.at("colour").at("srgb");
   EXPECT_GT(colour.substr(1, 2), colour.substr(3, 2));  // red silk
   EXPECT_EQ(get("/api/state").at("threads")[0].at("number"), 1);
+}
+
+// What is photographed with light from the front is the thread's colour, not what its model scatters.
+TEST(ThreadsColour, IsThatOfThePhotographsBesideAWhiteCard) {
+  station::ThreadFile thread = station::read_thread(std::string(DATA_DIR) + "/threads/silk_red.json");
+  EXPECT_EQ(station::thread_document(thread).at("colour").at("of"), "model");
+  thread.fit = json::parse(R"({"views": [
+    {"id": "a", "relative_rmse": 0, "relative_bias": 0, "colour_over_diffuser": [0.1, 0.2, 0.4]},
+    {"id": "b", "relative_rmse": 0, "relative_bias": 0, "colour_over_diffuser": [0.3, 0.2, 0.6]},
+    {"id": "c", "relative_rmse": 0, "relative_bias": 0, "colour_over_diffuser": [9, 9, 9], "transmission": true}]})");
+  const json colour = station::thread_document(thread).at("colour");
+  EXPECT_EQ(colour.at("of"), "views");
+  EXPECT_EQ(colour.at("srgb"), "#7c7cbc");  // 0.2, 0.2, 0.5 of white
+  EXPECT_EQ(colour.at("clipped"), false);
+  thread.fit["views"][0].erase("colour_over_diffuser");  // fitted before it was kept
+  EXPECT_EQ(station::thread_document(thread).at("colour").at("of"), "model");
 }
 
 // Three spools, of which the first one is captured already.

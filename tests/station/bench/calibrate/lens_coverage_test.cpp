@@ -24,8 +24,16 @@ struct Coverage : testing::Test {
   LensCoverage covered{rig};
   std::mt19937 random{1128};
 
-  void photograph(const Eigen::Isometry3d& camera_from_board) {
-    covered.add(calibration::synthetic::observe(lens, rig.board, camera_from_board, 0.1, random), size);
+  void photograph(const Eigen::Isometry3d& camera_from_board, double noise_px = 0.1) {
+    covered.add(calibration::synthetic::observe(lens, rig.board, camera_from_board, noise_px, random), size);
+  }
+  // As the plan has it: of the steps that are always taken, or of all.
+  void photograph_plan(bool all, double noise_px) {
+    for (const CalibrationStep& step : make_calibration_plan(rig))
+      if (step.role == CalibrationRole::lens && (all || !step.if_needed))
+        photograph(rig.world_from_camera_by_tape.inverse() *
+                       calibration::turned(step.platform_angle_rad, step.arrangement.pose),
+                   noise_px);
   }
   // Of a white frame, half as large as the pictures.
   int light_at(double across, double down) const {
@@ -67,12 +75,24 @@ TEST_F(Coverage, EachLeanIsAskedForUntilItWasSeen) {
 }
 
 TEST_F(Coverage, TheWholePlanShowsMostOfThePicture) {
-  for (const CalibrationStep& step : make_calibration_plan(rig))
-    if (step.role == CalibrationRole::lens)
-      photograph(rig.world_from_camera_by_tape.inverse() *
-                 calibration::turned(step.platform_angle_rad, step.arrangement.pose));
+  photograph_plan(true, 0.1);
   std::cout << covered.pictures() << " pictures. " << covered.sentence() << "\n";
   EXPECT_GT(covered.share(), 0.8);
+}
+
+TEST_F(Coverage, TwoStandsOfGoodPicturesMakeTheLensKnown) {
+  EXPECT_FALSE(covered.lens_is_known()) << "nothing was seen";
+  photograph_plan(false, 0.04);
+  EXPECT_TRUE(covered.lens_is_known());
+  std::cout << covered.pictures() << " pictures. " << covered.sentence() << "\n";
+  EXPECT_THAT(covered.sentence(), HasSubstr(" px, and 0.03 are enough."));
+  EXPECT_THAT(covered.sentence(), Not(HasSubstr("not yet")));
+}
+
+TEST_F(Coverage, AfterPoorPicturesMoreAreWanted) {
+  photograph_plan(false, 0.3);
+  EXPECT_FALSE(covered.lens_is_known());
+  EXPECT_THAT(covered.sentence(), HasSubstr("The lens is known to 0."));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <csignal>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "rig/devices/clock.h"
 #include "rig/simulated/simulated_bench.h"
@@ -55,8 +56,53 @@ TEST_F(Placing, ABoardThatStandsAsAskedIsTakenAfterASecondOfStillness) {
   EXPECT_FALSE(after(0).stands) << "one frame says nothing of stillness";
   EXPECT_FALSE(after(0.4).stands);
   EXPECT_THAT(after(0.4).remark, HasSubstr("let go of it"));
-  EXPECT_TRUE(after(0.7).stands);
+  const PlacingWatch::Look stands = after(0.7);
+  EXPECT_TRUE(stands.stands);
+  EXPECT_FALSE(stands.hands_out);
+  EXPECT_THAT(stands.remark, HasSubstr("Hands out of the box: the platform turns in 3 s."));
+  EXPECT_THAT(after(1.2).remark, HasSubstr("turns in 2 s."));
+  EXPECT_FALSE(after(1.2).hands_out);
+  EXPECT_TRUE(after(1).hands_out);
   EXPECT_TRUE(watch.all_is_seen());
+}
+
+// The board stands as wanted, and what moves beside it is no part of it.
+TEST_F(Placing, AHandBesideABoardThatStandsHoldsThePlatform) {
+  bench.place(wanted);
+  struct WithAHand final : rig::Camera {
+    explicit WithAHand(rig::Camera& of) : camera(of) {}
+    std::vector<std::byte> preview() override {
+      const std::vector<std::byte> jpeg = camera.preview();
+      cv::Mat frame = cv::imdecode(cv::Mat(1, static_cast<int>(jpeg.size()), CV_8U, const_cast<std::byte*>(jpeg.data())),
+                                   cv::IMREAD_COLOR);
+      if (hand_px >= 0) cv::rectangle(frame, {hand_px, 0, 60, 70}, {120, 150, 220}, cv::FILLED);
+      std::vector<unsigned char> encoded;
+      cv::imencode(".jpg", frame, encoded);
+      const auto* bytes = reinterpret_cast<const std::byte*>(encoded.data());
+      return {bytes, bytes + encoded.size()};
+    }
+    rig::CameraIdentity identity() override { return camera.identity(); }
+    std::vector<double> shutter_times_s() override { return camera.shutter_times_s(); }
+    rig::CameraSettings configure(const rig::CameraSettings& settings) override { return camera.configure(settings); }
+    rig::Picture capture() override { return camera.capture(); }
+    rig::Camera& camera;
+    int hand_px = -1;
+  } seen(*camera);
+  PlacingWatch watched{rig, seen, folder / "live.jpg", [this] { return now_s; }};
+  watched.begin(wanted, wanted, 0);
+  const auto look = [&](double seconds) {
+    now_s += seconds;
+    return watched.look();
+  };
+  look(0);
+  for (int i = 0; i < 12; ++i) {
+    seen.hand_px = 20 * (i % 2);
+    EXPECT_FALSE(look(0.6).hands_out) << i;
+  }
+  seen.hand_px = -1;
+  look(0.6);  // the hand leaves
+  for (int i = 0; i < 8; ++i) EXPECT_FALSE(look(0.5).hands_out) << i;
+  EXPECT_TRUE(look(0.6).hands_out);
 }
 
 // Every live view is smaller than the camera's pictures.
@@ -92,7 +138,7 @@ TEST_F(Placing, AnotherStandAnotherSideAndAnotherPlaceAreNotTakenForIt) {
   for (const CalibrationStep& step : make_calibration_plan(rig))
     if (step.role == CalibrationRole::lens && (boards.empty() || boards.back().stand != step.arrangement.stand))
       boards.push_back(step.arrangement);
-  ASSERT_EQ(boards.size(), 3U);
+  ASSERT_EQ(boards.size(), 4U);
   for (const rig::Arrangement& placed : boards)
     for (const rig::Arrangement& asked : boards) {
       bench.place(placed);
