@@ -107,11 +107,11 @@ void too_bright(const ViewFit& fit, std::vector<std::string>& doubts) {
   if (colours.empty()) return;
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.0f", most);
-  doubts.push_back("the views are brighter in " + colours + " than a thread without any absorption would be, by " +
-                   text.data() +
-                   " standard deviations: the lamp's place or brightness or the diffuser's reflectance may be off, or the "
-                   "thread scatters otherwise than the model can; check the calibration, and where it is good fit with "
-                   "--model bundle");
+  doubts.push_back(
+      "the views are brighter in " + colours + " than a thread without any absorption would be, by " + text.data() +
+      " standard deviations: the lamp's place or brightness or the diffuser's reflectance may be off, or the "
+      "thread scatters otherwise than the model can; check the calibration, and where it is good fit with "
+      "--model bundle");
 }
 
 void undetermined(const ViewFit& fit, std::vector<std::string>& doubts) {

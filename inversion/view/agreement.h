@@ -12,12 +12,12 @@
 namespace inversion {
 
 struct ViewAgreement {
-  double mean_square = 0;        // of (rendered - photographed block averages) / diffuser's radiance, mean of RGB
-  double mean_reference = 0;     // of photographed block averages / diffuser's radiance, mean of RGB
+  double mean_square = 0;     // of (rendered - photographed block averages) / diffuser's radiance, mean of RGB
+  double mean_reference = 0;  // of photographed block averages / diffuser's radiance, mean of RGB
   // The same of each channel over the diffuser's own: the colour of the photographed threads.
   Eigen::Array3d mean_colour = Eigen::Array3d::Zero();
-  double relative_rmse() const;  // root of mean_square over mean_reference
-  double relative_bias = 0;      // mean of the difference over the mean of the photograph
+  double relative_rmse() const;                         // root of mean_square over mean_reference
+  double relative_bias = 0;                             // mean of the difference over the mean of the photograph
   Eigen::Array3d colour_bias = Eigen::Array3d::Zero();  // the same of each channel by itself
 };
 

@@ -105,8 +105,8 @@ void draw_stand(cairo_t* pen, const RigFile& rig, int stand, Paper paper) {
        {std::string(
             "Millimetres. Cut two cheeks and two bars from 4 mm plywood or acrylic; a printer or a laser cutter"),
         std::string(
-            "takes the SVG file as it is. Glue the bars between the cheeks, one at the foot in front, one behind"),
-        "at the top. Write the number " + std::to_string(stand) + " on it and paint it matt black.",
+            "takes the SVG file as it is. Glue the bars between the cheeks, at their foot, one in front, one at the"),
+        "rear edge. Write the number " + std::to_string(stand) + " on it and paint it matt black.",
         std::string("The short line at the foot is the stand's middle: it belongs over the platform's axis, to 3 cm."),
         with_mm("The face of the target stands on the ledge %.1f mm before the middle,",
                 calibration::ledge_mm(lean_deg * kDegree, rig.spectralon.plate_mm)) +

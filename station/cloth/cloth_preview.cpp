@@ -74,8 +74,8 @@ std::array<double, 3> white_card(SceneFile scene, const Eigen::Vector3d& place_m
   camera.width = camera.height = kSide_px;
   camera.fx = camera.fy = kSide_px * (eye - place_mm).norm() / kSeen_mm;
   camera.cx = camera.cy = (kSide_px - 1) / 2.0;
-  const cv::Scalar mean = cv::mean(
-      renderer::PathTracer(build_scene(scene, {})).render(camera, {.samples_per_pixel = kSamples, .seed = 1}));
+  const cv::Scalar mean =
+      cv::mean(renderer::PathTracer(build_scene(scene, {})).render(camera, {.samples_per_pixel = kSamples, .seed = 1}));
   return {mean[0], mean[1], mean[2]};
 }
 

@@ -31,11 +31,10 @@ struct ClothPreviewRequest {
 void weave_thread_of(ClothPreviewRequest& request, const std::filesystem::path& session_or_file,
                      const std::string& model);
 
-// Writes draft.json, patch.json, made_of.json and, for each picture, its scene.json, .exr and .png, where a white card in
-// the place of the cloth would be white; a coloured system's
-// thread is written too. Ctrl-C stops it. Returns the content of made_of.json (session/results.h). Errors: those of the
-// files read; std::runtime_error, one line, when a bundle is to be coloured or the threads' colours are those of
-// different cameras.
+// Writes draft.json, patch.json, made_of.json and, for each picture, its scene.json, .exr and .png, where a white card
+// in the place of the cloth would be white; a coloured system's thread is written too. Ctrl-C stops it. Returns the
+// content of made_of.json (session/results.h). Errors: those of the files read; std::runtime_error, one line, when a
+// bundle is to be coloured or the threads' colours are those of different cameras.
 nlohmann::json preview_cloth(const ClothPreviewRequest& request);
 
 }  // namespace station

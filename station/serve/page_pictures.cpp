@@ -91,7 +91,8 @@ HttpResponse twin(const Asked& asked, const std::string& which) {
   const cv::Mat3f picture = which == "photographed" ? twins.photographed
                             : which == "fitted"     ? twins.fitted
                                                     : residual_picture(view, twins, block_px);
-  return png(narrowed(display(picture, twins.exposure, developed.linear_srgb_from_camera)(twins.box).clone(), kShown_px));
+  return png(
+      narrowed(display(picture, twins.exposure, developed.linear_srgb_from_camera)(twins.box).clone(), kShown_px));
 }
 
 // As it was written, or brighter or darker.

@@ -137,7 +137,8 @@ json result_document(const std::filesystem::path& session) {
   if (made_of.is_object() && made_of.contains("reflectance")) {
     const json& mean = made_of["reflectance"];
     json woven;
-    woven["colour"] = colour_document(Eigen::Vector3d(mean.at(0), mean.at(1), mean.at(2)), thread.linear_srgb_from_camera);
+    woven["colour"] =
+        colour_document(Eigen::Vector3d(mean.at(0), mean.at(1), mean.at(2)), thread.linear_srgb_from_camera);
     document["cloth_colour"] = woven["colour"];
     document["cloth_delta_e_2000"] = colour_difference(document, woven);
   }

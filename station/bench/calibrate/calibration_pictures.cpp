@@ -132,8 +132,8 @@ std::vector<double> angles_of(const RigFile& rig, const std::vector<CalibrationS
   }
 }
 
-// Takes the mounting that begins with plan[first] off the plan, and those after it, as long as no picture of it is there
-// and the pictures so far do without.
+// Takes the mounting that begins with plan[first] off the plan, and those after it, as long as no picture of it is
+// there and the pictures so far do without.
 void drop_unneeded(std::vector<CalibrationStep>& plan, std::size_t first,
                    const std::function<bool(const std::string&)>& known, LensCoverage& covered) {
   while (first > 0 && first < plan.size() && plan[first].if_needed && !share_a_mounting(plan[first - 1], plan[first])) {
@@ -168,8 +168,7 @@ std::vector<CalibrationPicture> record_calibration(const RigFile& rig, std::vect
   const bool board_comes = std::ranges::any_of(
       plan, [&](const CalibrationStep& step) { return step.role == CalibrationRole::lens && !known(step.id); });
   for (const CalibrationPicture& p : pictures)
-    if (board_comes && p.role == CalibrationRole::lens)
-      cover(calibration::read_sensor_file(folder / p.file));
+    if (board_comes && p.role == CalibrationRole::lens) cover(calibration::read_sensor_file(folder / p.file));
 
   FileSystem disk;
   devices.turntable->home();

@@ -33,8 +33,8 @@ using StepProgress = std::function<void(int done, int total, const std::string& 
 
 // Takes the pictures that `plan` asks for and the folder does not hold yet; steps that turn out not to be needed are
 // taken off the plan. Where a step follows its target, a picture is taken first to see how it stands. `should_stop` is
-// polled between steps; when it is true the platform is stopped and std::runtime_error thrown. `covered` learns what the
-// lens pictures show of the board.
+// polled between steps; when it is true the platform is stopped and std::runtime_error thrown. `covered` learns what
+// the lens pictures show of the board.
 std::vector<CalibrationPicture> record_calibration(const RigFile& rig, std::vector<CalibrationStep>& plan,
                                                    RigDevices& devices, const std::filesystem::path& folder,
                                                    const StepProgress& progress,
@@ -45,8 +45,9 @@ std::vector<CalibrationPicture> record_calibration(const RigFile& rig, std::vect
 void forget_calibration_pictures(const std::filesystem::path& folder,
                                  const std::function<bool(CalibrationRole)>& forget);
 
-// Since when all that the pictures measure is known: when the last one was taken of the part that is the oldest. Neither
-// to solve old pictures again nor to take a part of them again makes the others younger. Empty without pictures.
+// Since when all that the pictures measure is known: when the last one was taken of the part that is the oldest.
+// Neither to solve old pictures again nor to take a part of them again makes the others younger. Empty without
+// pictures.
 std::string oldest_part_utc(const std::vector<CalibrationPicture>& pictures);
 
 // Errors: std::runtime_error when the list or a picture is missing or a picture's hash differs.

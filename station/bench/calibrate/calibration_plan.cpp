@@ -42,8 +42,8 @@ void add_platform_steps(std::vector<CalibrationStep>& plan) {
     plan.push_back(step(CalibrationRole::turning, ++number, {.room_light = true}, angle_deg * kDegree));
 }
 
-// The board on a steep stand and, on its side, on a leaning one, so that width and height of the picture are measured by
-// the same edges; where that leaves the lens less than well known, on the other two as well.
+// The board on a steep stand and, on its side, on a leaning one, so that width and height of the picture are measured
+// by the same edges; where that leaves the lens less than well known, on the other two as well.
 void add_lens_steps(const RigFile& rig, std::vector<CalibrationStep>& plan) {
   int number = 0;
   constexpr int kAlways = 2;

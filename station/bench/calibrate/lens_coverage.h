@@ -1,6 +1,6 @@
 // What the lens pictures of a calibration have shown of the board so far: in which parts of the picture, how it was
-// turned and tilted there, and whether that is enough. A lens is known where its board was seen, and its focal length by
-// boards that lean.
+// turned and tilted there, and whether that is enough. A lens is known where its board was seen, and its focal length
+// by boards that lean.
 #pragma once
 
 #include <array>

@@ -26,10 +26,10 @@ namespace {
 using Eigen::Isometry3d, Eigen::Vector3d;
 
 constexpr double kStill_s = 1;
-constexpr double kHandsOut_s = 3;     // more, before anything turns
-constexpr int kSmall_px = 150;        // width of the frame in which hands are looked for
-constexpr double kMovedLight = 0.06;  // of white, beyond what the whole frame changed
-constexpr double kMovedPart = 0.004;  // of that frame
+constexpr double kHandsOut_s = 3;              // more, before anything turns
+constexpr int kSmall_px = 150;                 // width of the frame in which hands are looked for
+constexpr double kMovedLight = 0.06;           // of white, beyond what the whole frame changed
+constexpr double kMovedPart = 0.004;           // of that frame
 constexpr double kStillPart = 0.002;           // of the picture's width, that corners may move between two frames
 constexpr double kLeastStill_px = 0.7;         // live view is coarse
 constexpr double kFewestTags = 0.5;            // of the target's
@@ -82,7 +82,8 @@ void PlacingWatch::begin(const std::optional<rig::Arrangement>& before, const ri
   if (wanted.stand == 0) return;
   wanted_ = wanted;
   angle_rad_ = angle_rad;
-  only_the_target_ = before && before->lamp == wanted.lamp && before->room_light == wanted.room_light;
+  only_the_target_ =
+      wanted.room_light && before && before->lamp == wanted.lamp && before->room_light == wanted.room_light;
 }
 
 // What keeps the target from standing as wanted; empty: nothing.
@@ -134,12 +135,13 @@ PlacingWatch::Look PlacingWatch::look() {
   found.stands = still_since_s_ && still_s >= kStill_s;
   found.hands_out = found.stands && still_s >= kStill_s + kHandsOut_s;
   if (right)
-    found.remark = !only_the_target_ ? "It stands well. Say that it is done when the light is as asked for."
+    found.remark = !only_the_target_
+                       ? "It stands well. Say that it is done when the light is as asked for and nothing else comes in."
                    : found.hands_out ? "It stands well."
-                   : found.stands    ? "It stands well. Hands out of the box: the platform turns in " +
-                                        std::to_string(static_cast<int>(std::ceil(kStill_s + kHandsOut_s - still_s))) +
-                                        " s."
-                                     : "It stands well: let go of it.";
+                   : found.stands
+                       ? "It stands well. Hands out of the box: the platform turns in " +
+                             std::to_string(static_cast<int>(std::ceil(kStill_s + kHandsOut_s - still_s))) + " s."
+                       : "It stands well: let go of it.";
   if (covered_ && wanted_->object == rig::BenchObject::board) {
     covered_->shade_unseen(frame);
     if (const std::string so_far = covered_->sentence(); !so_far.empty()) found.remark += " " + so_far;

@@ -38,7 +38,8 @@ class PlacingWatch {
   };
   // Takes one frame. Errors: those of the camera and of the file.
   Look look();
-  // Whether what was asked is all done when the target stands: the lights were not to be changed as well.
+  // Whether what was asked is all done when the target stands: the lights were not to be changed as well, nor is a
+  // curtain to be closed, as it is whenever the room's light is off.
   bool all_is_seen() const { return only_the_target_; }
 
  private:

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 constexpr double kFNumber = 8;
 constexpr double kReadingsDeg[] = {0, 10, 45, 90, 135}, kReadingsByHandDeg[] = {0, 30, 90};
 constexpr double kScaleOff = 0.02;  // more than what the calibration is meant to correct
-constexpr double kMostRollDeg = 5, kMostMarkDeg = 20, kMostBeside_mm = 20;
+constexpr double kMostRollDeg = 5, kMostMarkDeg = 5, kMostBeside_mm = 20;
 
 std::string degrees(double angle_rad) {
   return number_text(angle_rad / kDegree, 1) + " degrees";
@@ -109,7 +109,7 @@ std::vector<std::string> take(const calibration::BenchSketch& sketch, const RigF
   if (std::abs(sketch.first_tag_rad) > kMostMarkDeg * kDegree)
     said.push_back("At angle 0 the platform's first tag (" + std::to_string(rig.platform_ring.tags.front().id) +
                    ") should look towards the camera and is " + degrees(std::abs(sketch.first_tag_rad)) +
-                   " off; turn the platform on its shaft, or its sheet of tags.");
+                   " off; turn the platform on its shaft, and leave its sheet of tags where it is.");
   if (std::abs(sketch.aim_mm.y()) > kMostBeside_mm)
     said.push_back("The camera looks past the axis by " + number_text(std::abs(sketch.aim_mm.y()), 0) +
                    " mm; point it at the middle of the platform.");
@@ -153,6 +153,7 @@ std::vector<std::string> make_rig(const NewRigRequest& request) {
   devices.turntable->home();
   cv::Size size;
   const auto sightings = look(rig, devices, size, progress);
+  devices.turntable->move_to(0);  // where a person looks which tag faces the camera
   const calibration::BenchSketch sketch = calibration::sketch_bench(rig.platform_ring, size, sightings);
   progress.finish("done");
   for (std::string& sentence : take(sketch, rig, size, draft)) said.push_back(std::move(sentence));

@@ -105,8 +105,8 @@ json fit_document(const inversion::ViewFit& fit, const inversion::FitOptions& op
                      {"relative_rmse", view.agreement.relative_rmse()},
                      {"relative_bias", view.agreement.relative_bias},
                      {"mean_over_diffuser", view.agreement.mean_reference},
-                     {"colour_over_diffuser", std::vector<double>(view.agreement.mean_colour.begin(),
-                                                                  view.agreement.mean_colour.end())}});
+                     {"colour_over_diffuser",
+                      std::vector<double>(view.agreement.mean_colour.begin(), view.agreement.mean_colour.end())}});
     if (view.transmission) views.back()["transmission"] = true;
     if (view.held_out) {
       views.back()["held_out"] = true;

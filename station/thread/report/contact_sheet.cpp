@@ -29,8 +29,7 @@ cv::Mat3b contact_sheet(const DevelopedViews& developed) {
   for (int i = 0; i < count; ++i) {
     const inversion::View& view = developed.views[static_cast<std::size_t>(i)].view;
     const cv::Rect box = threads_box(view.mask);
-    const cv::Mat3b picture =
-        display(view.image, exposure_of(view), developed.linear_srgb_from_camera);
+    const cv::Mat3b picture = display(view.image, exposure_of(view), developed.linear_srgb_from_camera);
     cv::Mat3b outlined = picture.clone();
     draw_outline(outlined, view.mask);
     place(sheet, picture(box), 2 * (i % kViewsPerRow), i / kViewsPerRow, tile_height);

@@ -163,8 +163,7 @@ std::string thread_section(const std::filesystem::path& session, const Developed
 std::string cloth_section(const std::filesystem::path& session, const DevelopedViews& developed) {
   std::string html;
   for (const std::filesystem::path& file : cloth_pictures(session))
-    html += "<figure>" +
-            embedded_image(shown_cloth(file, 0, developed.linear_srgb_from_camera), file.stem().string()) +
+    html += "<figure>" + embedded_image(shown_cloth(file, 0, developed.linear_srgb_from_camera), file.stem().string()) +
             "<figcaption>" + escaped(file.stem().string()) + "</figcaption></figure>\n";
   return html.empty() ? html : "<h2>Predicted cloth</h2>\n<div class=\"sheet\">\n" + html + "</div>\n";
 }

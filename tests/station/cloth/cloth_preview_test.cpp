@@ -56,9 +56,8 @@ TEST_F(ClothPreview, IsAsBrightAsItIsBesideAWhiteCard) {
   const Eigen::Vector3d lamp(-150, 200, 400);
   const double swatch = 200000 * lamp.normalized().z() / lamp.squaredNorm() / std::numbers::pi + 0.1;
   const Eigen::Vector3d front(41, 0, 84), to_eye = (Eigen::Vector3d(700, 0, 180) - front).normalized(),
-                        to_lamp = Eigen::Vector3d(500, -400, 350) - front;
-  const double cylinder =
-      600000 * to_lamp.normalized().dot(to_eye) / to_lamp.squaredNorm() / std::numbers::pi + 0.15;
+                                          to_lamp = Eigen::Vector3d(500, -400, 350) - front;
+  const double cylinder = 600000 * to_lamp.normalized().dot(to_eye) / to_lamp.squaredNorm() / std::numbers::pi + 0.15;
   for (std::size_t c = 0; c < 3; ++c) {
     EXPECT_NEAR(made_of.at("white_card").at("swatch")[c].get<double>() / swatch, 1, 0.01);
     EXPECT_NEAR(made_of.at("white_card").at("cylinder")[c].get<double>() / cylinder, 1, 0.01);
@@ -67,7 +66,8 @@ TEST_F(ClothPreview, IsAsBrightAsItIsBesideAWhiteCard) {
   const cv::Mat3f linear = renderer::read_exr(result() / "cloth/swatch.exr");
   cv::Mat3f asked;
   cv::min(linear / swatch, 1.0, asked);
-  const cv::Scalar shown = cv::mean(renderer::read_linear_srgb(result() / "cloth/swatch.png")), wanted = cv::mean(asked);
+  const cv::Scalar shown = cv::mean(renderer::read_linear_srgb(result() / "cloth/swatch.png")),
+                   wanted = cv::mean(asked);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(shown[c] / wanted[c], 1, 0.02) << c;
   const auto mean = made_of.at("reflectance");
   EXPECT_GT(mean[0].get<double>(), 1.5 * mean[1].get<double>()) << "red silk";

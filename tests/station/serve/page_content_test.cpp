@@ -70,9 +70,10 @@ TEST_F(TechnicianPage, ThePageAndItsPartsAreThere) {
 TEST_F(TechnicianPage, EveryTextThatTheScriptsAskForIsInTheOneFile) {
   const json texts = json::parse(asked("/texts.en.json").body);
   int found = 0;
-  for (const char* file : {"/app.js", "/bench.js", "/calibration.js", "/capture.js", "/curves.js", "/design.js", "/document.js", "/exposure.js",
-                           "/frame.js", "/keys.js", "/library.js", "/live.js", "/overview.js", "/result.js",
-                           "/session.js", "/station.js", "/step_picture.js", "/viewer.js"}) {
+  for (const char* file :
+       {"/app.js", "/bench.js", "/calibration.js", "/capture.js", "/curves.js", "/design.js", "/document.js",
+        "/exposure.js", "/frame.js", "/keys.js", "/library.js", "/live.js", "/overview.js", "/result.js", "/session.js",
+        "/station.js", "/step_picture.js", "/viewer.js"}) {
     const std::string script = asked(file).body;
     for (std::size_t at = 0; (at = script.find("text(\"", at)) != std::string::npos; ++found) {
       at += 6;

@@ -73,8 +73,8 @@ TEST_F(Placing, AHandBesideABoardThatStandsHoldsThePlatform) {
     explicit WithAHand(rig::Camera& of) : camera(of) {}
     std::vector<std::byte> preview() override {
       const std::vector<std::byte> jpeg = camera.preview();
-      cv::Mat frame = cv::imdecode(cv::Mat(1, static_cast<int>(jpeg.size()), CV_8U, const_cast<std::byte*>(jpeg.data())),
-                                   cv::IMREAD_COLOR);
+      cv::Mat frame = cv::imdecode(
+          cv::Mat(1, static_cast<int>(jpeg.size()), CV_8U, const_cast<std::byte*>(jpeg.data())), cv::IMREAD_COLOR);
       if (hand_px >= 0) cv::rectangle(frame, {hand_px, 0, 60, 70}, {120, 150, 220}, cv::FILLED);
       std::vector<unsigned char> encoded;
       cv::imencode(".jpg", frame, encoded);
