@@ -19,7 +19,7 @@ struct CaptureArguments {
 // False ends the queue.
 bool ask_for_spool(const QueuedSpool& spool, rig::AskedPerson& asked) {
   asked.prepare({{"step", nullptr}, {"of", nullptr}, {"arrangement", nullptr}}, "");  // the spool's before
-  return asked.ask({.text = "Next: " + spool.session +
+  return asked.ask({.text = "Next spool: " + spool.session +
                             (spool.sample.name.empty() ? "" : " (" + spool.sample.name + ")") +
                             (spool.sample.note.empty() ? "" : ", " + spool.sample.note) + "\nPut it on the holder."}) ==
          rig::kDone;

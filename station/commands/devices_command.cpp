@@ -1,4 +1,5 @@
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "rig/devices/detect.h"
 #include "station/commands/commands.h"

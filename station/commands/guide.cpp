@@ -75,14 +75,15 @@ constexpr Guide kGuides[] = {
     {"scatter eval", kParts,
      "scatter eval --model thread --parameters DATA/threads/silk_red.json --in directions.csv --out values.csv"},
     {"scatter plot", kParts, "scatter plot --rays 100 --configurations 10 --out plots"},
-    {"scatter prior", kParts, "scatter prior --out prior.json"},
-    {"scatter exits", kParts, "scatter exits --out exits.json"},
+    {"scatter prior", kParts, "scatter prior --threads 2 --configurations 5 --out prior.json"},
+    {"scatter exits", kParts, "scatter exits --configurations 5 --out exits.json"},
     {"validate", "Study the models",
      "validate --rig rig.json --spool DATA/spools/packed_silk_red_20.json --folds 0 --model fiber --spp 1 --out "
      "validated"},
     {"validate-cloth", "Study the models",
      "validate-cloth --rig rig.json --warp DATA/spools/packed_silk_red_20.json "
-     "--weft DATA/spools/packed_silk_red_20.json --draft DATA/drafts/plain.json --width 64 --spp 1 --out compared"},
+     "--weft DATA/spools/packed_silk_red_20.json --draft DATA/drafts/plain.json --model fiber --paths 32 "
+     "--photograph-spp 1 --width 64 --spp 1 --out compared"},
     {"recover", "Study the models",
      "recover --rig rig.json --spool DATA/spools/silk_blue.json --thread DATA/threads/silk_blue.json --draws 0 --spp 8 "
      "--paths 64 256"},

@@ -1,4 +1,5 @@
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "station/commands/commands.h"
 #include "station/session/upgrade_files.h"

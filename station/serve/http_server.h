@@ -20,7 +20,7 @@ namespace station {
 
 struct HttpLimits {
   std::uint32_t header_bytes = 16 << 10;
-  std::uint64_t body_bytes = 64 << 10;
+  std::uint64_t body_bytes = 256 << 10;
   // From the connection, or the answer before, to the request's last byte.
   std::chrono::milliseconds request_time{10'000};
   std::size_t connections = 256, streams = 32, waiting_requests = 64;

@@ -1,6 +1,8 @@
 #include "station/serve/result_document.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <map>
 
 #include "calibration/light/colour_chart.h"
 #include "inversion/fit/energy_bands.h"
@@ -45,15 +47,23 @@ Eigen::Vector3d mean_albedo(const std::vector<inversion::EnergyBand>& bands) {
   return albedo;
 }
 
-json colour_document(const Eigen::Vector3d& camera, const std::array<double, 9>& linear_srgb_from_camera) {
+json colour_of_linear_srgb(const Eigen::Vector3d& linear) {
   constexpr double kSeen = 0.002;  // less than a step of a screen's eight bits
-  const Eigen::Vector3d linear = matrix_of(linear_srgb_from_camera) * camera;
   const cv::Mat3b shown =
-      display(cv::Mat3f(1, 1, cv::Vec3f(cv::Vec3d(camera[0], camera[1], camera[2]))), 1, linear_srgb_from_camera);
+      display(cv::Mat3f(1, 1, cv::Vec3f(cv::Vec3d(linear[0], linear[1], linear[2]))), 1, {1, 0, 0, 0, 1, 0, 0, 0, 1});
   const Eigen::Vector3d lab = calibration::lab_of_linear_srgb(linear);
   return {{"srgb", formatted("#%02x%02x%02x", shown(0, 0)[0], shown(0, 0)[1], shown(0, 0)[2])},
           {"lab", {lab[0], lab[1], lab[2]}},
           {"clipped", linear.minCoeff() < -kSeen || linear.maxCoeff() > 1 + kSeen}};
+}
+
+json colour_document(const Eigen::Vector3d& camera, const std::array<double, 9>& linear_srgb_from_camera) {
+  return colour_of_linear_srgb(matrix_of(linear_srgb_from_camera) * camera);
+}
+
+Eigen::Vector3d lab_of(const json& document) {
+  const json& values = document.at("colour").at("lab");
+  return Eigen::Vector3d(values.at(0), values.at(1), values.at(2));
 }
 
 json part_of(const json& fit, const char* key) {
@@ -145,12 +155,44 @@ json result_document(const std::filesystem::path& session) {
   return document;
 }
 
+json lots_document(const Library& library) {
+  std::map<std::string, std::vector<LibraryThread>> lots;
+  for (const LibraryThread& thread : library.list())
+    if (!thread.sample.lot.empty()) lots[thread.sample.lot].push_back(thread);
+  json document = json::array();
+  for (const auto& [lot, threads] : lots) {
+    if (threads.size() < 2) continue;
+    json numbers = json::array();
+    std::map<std::string, std::vector<Eigen::Vector3d>> labs_of;  // by what the colours are of
+    double thinnest = threads.front().diameter_mm, thickest = thinnest;
+    for (const LibraryThread& thread : threads) {
+      numbers.push_back(thread.number);
+      const json of = thread_document(read_thread(library.thread_file(thread.number)));
+      labs_of[of.at("colour").at("of").get<std::string>()].push_back(lab_of(of));
+      thinnest = std::min(thinnest, thread.diameter_mm), thickest = std::max(thickest, thread.diameter_mm);
+    }
+    const auto photographed = labs_of.find("views");
+    const std::vector<Eigen::Vector3d>& labs =
+        photographed == labs_of.end() ? labs_of.begin()->second : photographed->second;
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& lab : labs) mean += lab / static_cast<double>(labs.size());
+    double sum = 0, largest = 0;
+    for (const Eigen::Vector3d& lab : labs) {
+      const double off = calibration::delta_e_2000(lab, mean);
+      sum += off, largest = std::max(largest, off);
+    }
+    document.push_back({{"lot", lot},
+                        {"numbers", numbers},
+                        {"colour", colour_of_linear_srgb(calibration::linear_srgb_of_lab(mean))},
+                        {"mean_delta_e_2000", sum / static_cast<double>(labs.size())},
+                        {"largest_delta_e_2000", largest},
+                        {"diameter_mm", {thinnest, thickest}}});
+  }
+  return document;
+}
+
 double colour_difference(const json& document, const json& other) {
-  const auto lab = [](const json& of) {
-    const json& values = of.at("colour").at("lab");
-    return Eigen::Vector3d(values.at(0), values.at(1), values.at(2));
-  };
-  return calibration::delta_e_2000(lab(document), lab(other));
+  return calibration::delta_e_2000(lab_of(document), lab_of(other));
 }
 
 }  // namespace station

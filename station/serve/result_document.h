@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "station/documents/thread_file.h"
+#include "station/thread/library.h"
 
 namespace station {
 
@@ -22,6 +23,11 @@ nlohmann::json thread_document(const ThreadFile& thread);
 // known "cloth_colour" of the swatch, over a white card in its place, and its CIEDE2000 to the thread's,
 // "cloth_delta_e_2000".
 nlohmann::json result_document(const std::filesystem::path& session);
+
+// What the threads of each lot have in common, of lots with two threads or more, in the order of their names: {"lot",
+// "numbers", "colour": of the mean (Lab) of their colours, "mean_delta_e_2000", "largest_delta_e_2000": of each from it,
+// "diameter_mm": [least, most]}. Where some were photographed, colours are of these alone. Errors: those of read_thread.
+nlohmann::json lots_document(const Library& library);
 
 // CIEDE2000 between the "colour" of two such documents.
 double colour_difference(const nlohmann::json& document, const nlohmann::json& other);

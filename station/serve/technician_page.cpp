@@ -7,9 +7,11 @@
 
 #include "rig/devices/clock.h"
 #include "station/documents/disk/whole_file.h"
+#include "station/documents/reader.h"
 #include "station/serve/checked_devices.h"
 #include "station/serve/handbook_page.h"
 #include "station/serve/job_command.h"
+#include "station/serve/label.h"
 #include "station/serve/left_jobs.h"
 #include "station/serve/page_answers.h"
 #include "station/serve/page_files.h"
@@ -43,20 +45,32 @@ json result_of(const Workspace& workspace, const std::string& name) {
   return result_document(session);
 }
 
-// With another thread's number, also "delta_e_2000": how far their colours are apart.
-json thread_of(const Workspace& workspace, const std::string& number_text, const std::string& other = {}) {
+int number_of(const std::string& text) {
   int number = 0;
-  const char* end = number_text.data() + number_text.size();
-  if (std::from_chars(number_text.data(), end, number) != std::from_chars_result{end, std::errc()})
+  const char* end = text.data() + text.size();
+  if (std::from_chars(text.data(), end, number) != std::from_chars_result{end, std::errc()})
     throw Refused(400, "expected the number of a thread");
+  return number;
+}
+
+// Reads out of the library. Throws Refused (404) with the line of the code that reads it.
+template <class Read>
+auto from_library(const Workspace& workspace, const Read& read) {
   if (!fs::exists(workspace.threads_folder() / "index.sqlite")) throw Refused(404, "the library is empty");
   try {
-    json document = thread_document(read_thread(Library(workspace.threads_folder(), false).thread_file(number)));
-    if (!other.empty()) document["delta_e_2000"] = colour_difference(document, thread_of(workspace, other));
-    return document;
+    return read(Library(workspace.threads_folder(), false));
   } catch (const std::runtime_error& problem) {
     throw Refused(404, problem.what());
   }
+}
+
+// With another thread's number, also "delta_e_2000": how far their colours are apart.
+json thread_of(const Workspace& workspace, const std::string& number, const std::string& other = {}) {
+  json document = from_library(workspace, [at = number_of(number)](const Library& library) {
+    return thread_document(read_thread(library.thread_file(at)));
+  });
+  if (!other.empty()) document["delta_e_2000"] = colour_difference(document, thread_of(workspace, other));
+  return document;
 }
 
 // A page that this program wrote: no scripts, nothing from elsewhere.
@@ -135,6 +149,12 @@ HttpResponse TechnicianPage::get(const HttpRequest& request) {
   if (request.path == "/api/result") return answered(result_of(workspace_, word_of(request, "name")));
   if (request.path == "/api/thread")
     return answered(thread_of(workspace_, word_of(request, "number"), word_of(request, "with")));
+  if (request.path == "/api/lots") return answered(from_library(workspace_, lots_document));
+  if (request.path == "/label")
+    return {.content_type = "image/svg+xml",
+            .body = from_library(workspace_, [at = number_of(word_of(request, "number"))](const Library& library) {
+              return label_svg(library.show(at));
+            })};
   if (request.path == "/picture") return page_picture(request, workspace_, frame_);
   if (request.path == "/download") {
     const std::string& name = checked_name(word_of(request, "name"));
@@ -151,12 +171,13 @@ HttpResponse TechnicianPage::post(const HttpRequest& request) {
   if (request.path == "/api/control") return take_control(asked);
   const auto& path = request.path;
   if (path != "/api/job" && path != "/api/answer" && path != "/api/pause" && path != "/api/spool" &&
-      path != "/api/thread")
+      path != "/api/thread" && path != "/api/import")
     refuse_path(request);
   if (!in_control(asked)) throw Refused(409, "another browser is in control; take control first");
   if (path == "/api/job") return start(asked);
   if (path == "/api/answer") return answer(asked);
   if (path == "/api/thread") return change_thread(asked);
+  if (path == "/api/import") return import_thread(asked);
   if (path == "/api/spool") {
     const std::string name = write_spool(asked, workspace_, rig_file_);
     changed_();
@@ -190,6 +211,35 @@ HttpResponse TechnicianPage::change_thread(const json& asked) {
   }
   changed_();
   return said(200, removed == asked.end() ? "written" : *removed == true ? "taken out of the library" : "put back");
+}
+
+// Under its own name as long as it is read, because that is what is said where it cannot be.
+HttpResponse TechnicianPage::import_thread(const json& asked) {
+  const std::string text = text_of(asked, "thread"), sample = text_of(asked, "sample");
+  if (text.empty()) throw Refused(400, "expected \"thread\": the text of a thread file");
+  const fs::path folder = workspace_.folder() / "jobs" / "import", file = folder / name_of(asked, "name");
+  int number = 0;
+  try {
+    fs::create_directories(folder);
+    write_text_file(file, text);
+    std::optional<Sample> told;
+    if (!sample.empty()) {
+      write_text_file(folder / "sample.json", sample);
+      told = read_sample_file(folder / "sample.json");
+    }
+    rig::SystemClock clock;
+    Library library(workspace_.threads_folder(), true);
+    number = library.add(file, clock.utc()).number;
+    if (told) library.edit(number, *told);
+  } catch (const std::runtime_error& problem) {
+    fs::remove_all(folder);
+    throw Refused(409, problem.what());
+  }
+  fs::remove_all(folder);
+  changed_();
+  HttpResponse response =
+      answered({{"message", "in the library as number " + std::to_string(number)}, {"number", number}});
+  return response;
 }
 
 HttpResponse TechnicianPage::answer(const json& asked) {

@@ -11,6 +11,8 @@
 //   GET  /api/session?name=    workspace.h
 //   GET  /api/result?name=     result_document.h, of a session
 //   GET  /api/thread?number=   result_document.h, of a thread in the library; with=: of another one, the difference
+//   GET  /api/lots             result_document.h, of the lots in the library
+//   GET  /label?number=        label.h, of a thread in the library
 //   GET  /picture?of=...       page_pictures.h
 //   GET  /report?name=         the session's report.html
 //   GET  /calibration?name=    the calibration's calibration.html
@@ -19,6 +21,8 @@
 //   POST /api/job {"client", "kind", ...}         job_command.h; a live view ends for it
 //   POST /api/spool {"client", ...}               spool_form.h
 //   POST /api/thread {"client", "number", "removed": whether it is out of the library | the fields of its sample}
+//   POST /api/import {"client", "name": of the file, "thread": the text of a thread file, "sample": of a sample file;
+//                     may be left out} adds a thread of another station to the library
 //   POST /api/answer {"client", "question", "answer"}  to the question with this id that the job asks (job.h)
 //   POST /api/pause {"client"}
 //   POST /api/stop          emergency stop: any browser's, at once, also of a job that an earlier server has left
@@ -62,6 +66,7 @@ class TechnicianPage {
   HttpResponse start(const nlohmann::json& asked);
   HttpResponse answer(const nlohmann::json& asked);
   HttpResponse change_thread(const nlohmann::json& asked);
+  HttpResponse import_thread(const nlohmann::json& asked);
   void end_live_view();
   bool in_control(const nlohmann::json& asked) const;
   std::shared_ptr<Job> job() const;

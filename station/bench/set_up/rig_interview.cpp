@@ -102,7 +102,7 @@ std::optional<std::string> ask_text(rig::AskedPerson& asked, const std::string& 
   const std::string answer =
       ask_or_end(asked, {.text = question,
                          .how = "Now: " + now + ". Type another and press Enter, Enter alone to keep it" + kEnd,
-                         .choices = {{rig::kDone, "", "Keep " + now}, kDeclined},
+                         .choices = {{rig::kDone, "", "Keep what is there: " + now}, kDeclined},
                          .typed = typed,
                          .remark = remark});
   return answer == rig::kDone ? std::nullopt : std::optional(answer);

@@ -3,6 +3,7 @@
 import {allow, byId, draw, items, make, show, text, time} from "/document.js";
 import {outcomeText} from "/frame.js";
 import {beginLive, newFrame} from "/live.js";
+import {said} from "/phrases.js";
 import {ask, inControl, jobRuns, picture, post, startJob, state, whyNot} from "/station.js";
 import {stepPicture} from "/step_picture.js";
 
@@ -22,13 +23,13 @@ export function showJob() {
   allow(byId("preview"), why);
   byId("log").hidden = !job;
   if (!job) return;
-  byId("label").textContent = stageOf(job) + (job.total ? `${job.done} / ${job.total} ${job.label}` : job.label || text("begins"));
+  byId("label").textContent = stageOf(job) + (job.total ? `${job.done} / ${job.total} ${said(job.label)}` : said(job.label) || text("begins"));
   if (job.total) byId("bar").value = job.done / job.total;
   else byId("bar").removeAttribute("value");
   byId("left").textContent = job.seconds_left === null ? "" : `${time(job.seconds_left)} ${text("left")}`;
   byId("pause").textContent = text(live ? "end_preview" : "pause");
   const lines = byId("lines"), end = lines.scrollTop + lines.clientHeight >= lines.scrollHeight - 4;
-  lines.textContent = job.lines.join("\n");
+  lines.textContent = job.lines.map(line => said(line, false)).join("\n");
   if (end) lines.scrollTop = lines.scrollHeight;
   if (job.outcome === "badly") byId("log").open = true;
 }
@@ -51,17 +52,17 @@ function showSteps(job) {
 function showQuestion(job) {
   const shown = byId("question"), question = job && job.question;
   shown.hidden = !question;
-  if (question) byId("remark").textContent = question.remark || "";  // changes with what the camera sees
+  if (question) byId("remark").textContent = said(question.remark);  // changes with what the camera sees
   if (!question || shown.dataset.number === `${job.number} ${question.id}`) return;
   shown.dataset.number = `${job.number} ${question.id}`;
   byId("choices").replaceChildren(...question.choices.map((choice, i) => make("button", {
-    type: "button", className: i === 0 ? "primary" : "", textContent: i === 0 ? `${choice.label} ${text("by_enter")}` : choice.label,
+    type: "button", className: i === 0 ? "primary" : "", textContent: said(choice.label) + (i === 0 ? ` ${text("by_enter")}` : ""),
     onclick: () => answer(question, choice.answer)})));
   byId("step-count").textContent = question.step ? `${text("step")} ${question.step} / ${question.of}` : "";
-  items(byId("instructions"), question.text.split("\n"));
+  items(byId("instructions"), said(question.text).split("\n"));
   const typed = byId("typed-form");
   typed.hidden = !question.typed;
-  byId("typed-label").textContent = `${text("typed")} ${question.typed}`;
+  byId("typed-label").textContent = `${text("typed")} ${said(question.typed)}`;
   typed.reset();
   typed.onsubmit = event => {
     event.preventDefault();
@@ -129,8 +130,8 @@ function measures(frame) {
 
 function devices(list) {
   return list.map(device => make("li", {className: device.passed === null ? "" : device.passed ? "well" : "badly"},
-    make("strong", {textContent: `${device.device}: ${text(device.passed === null ? "never_checked" : device.passed ? "sound" : "failed")}`}),
-    ...device.rows.filter(one => !one.passed).map(one => make("p", {textContent: `${one.name}: ${one.what}`}))));
+    make("strong", {textContent: `${said(device.device)}: ${text(device.passed === null ? "never_checked" : device.passed ? "sound" : "failed")}`}),
+    ...device.rows.filter(one => !one.passed).map(one => make("p", {textContent: `${said(one.name)}: ${said(one.what)}`}))));
 }
 
 export async function showBench() {

@@ -1,6 +1,7 @@
 // Calibrate: the form; the calibrations of this bench with a verdict; one of them in full: gates, error budget, report.
 
 import {ago, byId, draw, make, percent, row, show, text} from "/document.js";
+import {said} from "/phrases.js";
 import {ask, startJob, state} from "/station.js";
 
 const kNear = 0.9;  // of a limit: usable, but look at it
@@ -27,12 +28,12 @@ export function calibrationVerdict(line) {
 
 // In one sentence: why it is not better.
 function reasons(line) {
-  if (line.problem) return [line.problem];
+  if (line.problem) return [said(line.problem)];
   if (!line.utc) return [text("calibration_unsolved")];
-  const found = line.gates.filter(gate => !gate.passed).map(gate => `${gate.name}: ${gate.reason}`);
+  const found = line.gates.filter(gate => !gate.passed).map(gate => `${said(gate.name)}: ${said(gate.reason)}`);
   if (found.length) return found;
   if (old(line)) found.push(text("calibration_old", {days: state.calibration_valid_days}));
-  return [...found, ...line.gates.filter(near).map(gate => text("gate_near", {gate: gate.name}))];
+  return [...found, ...line.gates.filter(near).map(gate => text("gate_near", {gate: said(gate.name)}))];
 }
 
 const number = value => value === null ? text("no_number") : Number(value.toPrecision(3)).toString();
@@ -47,20 +48,20 @@ function gateBar(gate) {
 
 function gates(calibration) {
   return calibration.gates.map(gate => row(
-    make("span", {className: gate.passed ? "well" : "badly", textContent: text(gate.passed ? "passed" : "not_passed")}), gate.name, number(gate.value),
-    `${text(gate.at_least ? "at_least" : "at_most")} ${number(gate.limit)}`, gateBar(gate), gate.reason));
+    make("span", {className: gate.passed ? "well" : "badly", textContent: text(gate.passed ? "passed" : "not_passed")}), said(gate.name), number(gate.value),
+    `${text(gate.at_least ? "at_least" : "at_most")} ${number(gate.limit)}`, gateBar(gate), said(gate.reason)));
 }
 
 // The sources of the error of a radiance, for both lamps; the whole is the root of the sum of squares.
 function budget(sources) {
   const most = Math.max(...sources.flatMap(one => [one.front, one.behind]), 1e-6), high = 34;
   const bars = sources.flatMap((one, i) => [
-    draw("text", {x: 0, y: i * high + 21}, one.source),
+    draw("text", {x: 0, y: i * high + 21}, said(one.source)),
     draw("rect", {x: 330, y: i * high + 4, width: Math.max(1, 260 * one.front / most), height: 11, class: "lamp-front"}),
     draw("rect", {x: 330, y: i * high + 17, width: Math.max(1, 260 * one.behind / most), height: 11, class: "lamp-behind"}),
     draw("text", {x: 600, y: i * high + 21}, `${percent(one.front, 2)} · ${percent(one.behind, 2)}`)]);
   return draw("svg", {viewBox: `0 0 760 ${sources.length * high + 4}`, role: "img", class: "plot",
-                      "aria-label": text("budget_in_words", {list: sources.map(one => `${one.source} ${percent(one.front, 2)}, ${percent(one.behind, 2)}`).join("; ")})}, ...bars);
+                      "aria-label": text("budget_in_words", {list: sources.map(one => `${said(one.source)} ${percent(one.front, 2)}, ${percent(one.behind, 2)}`).join("; ")})}, ...bars);
 }
 
 // The whole error of each calibration over time: whether the bench gets worse.

@@ -2,6 +2,7 @@
 
 import {calibrationVerdict, newestCalibration} from "/calibration.js";
 import {allow, byId, fill, row, show, text} from "/document.js";
+import {said} from "/phrases.js";
 import {post, startJob, state, whyNot} from "/station.js";
 
 const numbers = ["turns", "diameter_mm"];
@@ -41,7 +42,7 @@ function remember(person) {
 
 function showQueue() {
   const queue = state.queues.find(one => one.name === byId("queue-form").queue.value);
-  byId("queue-problem").textContent = queue && queue.problem ? queue.problem : "";
+  byId("queue-problem").textContent = queue ? said(queue.problem) : "";
   show(byId("queue-rows"), queue, () => (queue ? queue.spools : []).map(spool =>
     row(spool.session, spool.sample.name, spool.sample.lot, spool.sample.material, spool.sample.colour, spool.state || text("waiting"))));
 }
@@ -66,7 +67,7 @@ async function writeSpool(event) {
   for (const key of numbers) fields[key] = Number(fields[key]);
   if (!state.simulated_spools.length) delete fields.simulated;
   const answer = await post("/api/spool", fields);
-  byId("spool-said").textContent = answer.message || "";
+  byId("spool-said").textContent = said(answer.message);
   if (!answer.ok) return;
   const capture = byId("capture-form");
   if (![...capture.spool.options].some(option => option.value === answer.name)) capture.spool.append(new Option(answer.name, answer.name));

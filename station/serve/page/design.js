@@ -2,6 +2,7 @@
 
 import {allow, byId, fill, make, show, text} from "/document.js";
 import {tellClipping} from "/exposure.js";
+import {said} from "/phrases.js";
 import {picture, startJob, state, whyNot} from "/station.js";
 
 const kPictures = ["swatch", "cylinder"];
@@ -22,7 +23,7 @@ function propose() {
 
 function shown(design) {
   const card = make("article", {className: "thread"}, make("h3", {textContent: design.name}));
-  if (design.problem) return card.append(make("p", {textContent: design.problem})), card;
+  if (design.problem) return card.append(make("p", {textContent: said(design.problem)})), card;
   const [warp, weft] = design.threads;
   card.append(make("p", {textContent: `${design.draft} · ${warp === weft ? warp : `${text("warp")} ${warp} · ${text("weft")} ${weft}`}`}),
     ...kPictures.map(view => {

@@ -1,5 +1,7 @@
 // Elements of the page, texts, and nothing else: no request, no state.
 
+import {readPhrases} from "/phrases.js";
+
 const kLanguages = ["en", "de"];
 
 let texts = {};
@@ -11,6 +13,7 @@ export async function readTexts() {
   const wanted = localStorage.language || navigator.language.slice(0, 2);
   document.documentElement.lang = kLanguages.includes(wanted) ? wanted : kLanguages[0];
   texts = await (await fetch(`/texts.${language()}.json`)).json();
+  await readPhrases(language());
   for (const element of document.querySelectorAll("[data-text]")) element.textContent = text(element.dataset.text);
   for (const element of document.querySelectorAll("[data-label]")) element.setAttribute("aria-label", text(element.dataset.label));
   for (const element of document.querySelectorAll("[data-alt]")) element.alt = text(element.dataset.alt);

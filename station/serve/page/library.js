@@ -3,7 +3,7 @@
 import {ago, allow, byId, fill, make, percent, row, show, text} from "/document.js";
 import {curves} from "/curves.js";
 import {threadPicture} from "/overview.js";
-import {ask, go, post, startJob, state, whyNot} from "/station.js";
+import {ask, go, inControl, post, startJob, state, whyNot} from "/station.js";
 import {chip, colourMeans, colourWords, unknownRows} from "/result.js";
 
 const kFields = ["name", "barcode", "lot", "material", "colour", "note"];
@@ -70,6 +70,7 @@ function lines(thread, twins) {
   name.append(make("span", {className: "about", textContent: `${ago(thread.added_utc)}${thread.sample.note ? ` · ${thread.sample.note}` : ""}`}));
   const actions = make("div", {className: "row tight"}, exported(thread),
     button("edit", thread, () => { edited = edited === thread.number ? 0 : thread.number; showLibrary(); }),
+    make("a", {className: "as-button", href: "/label?" + new URLSearchParams({number: thread.number}), target: "_blank", rel: "noopener", textContent: text("label"), ariaLabel: `${text("label")} ${thread.number}`}),
     button("design_of", thread, () => go("design", thread.number)),
     button("take_out", thread, () => change({number: thread.number, removed: true})));
   const shown = row(choice(thread), make("span", {className: "thumb"}, ...threadPicture(thread)), thread.number, name, thread.sample.barcode, thread.sample.lot,
@@ -103,10 +104,34 @@ export function showLibrary() {
   const twins = thread => thread.sample.barcode ? state.threads.filter(other => other.sample.barcode === thread.sample.barcode).length : 1;
   const before = byId("threads").shown;
   show(byId("threads"), [found, chosen, edited, state.exports, byId("export-format").value, whyNot()], () => found.flatMap(thread => lines(thread, twins(thread))));
-  if (before !== byId("threads").shown) return showComparison();
+  byId("import-files").disabled = !inControl();
+  if (before === byId("threads").shown) return null;
+  if (state.threads.length) showLots();
+  return showComparison();
+}
+
+// Spools of one lot should look alike.
+async function showLots() {
+  const lots = await ask("/api/lots") || [];
+  byId("lots-part").hidden = lots.length === 0;
+  byId("lots").replaceChildren(...lots.map(lot => row(make("strong", {textContent: lot.lot}), lot.numbers.join(", "),
+    make("span", {}, chip(lot.colour), ` ${colourWords(lot.colour)}`),
+    `${lot.mean_delta_e_2000.toFixed(1)} / ${lot.largest_delta_e_2000.toFixed(1)}`,
+    lot.diameter_mm[0] === lot.diameter_mm[1] ? `${lot.diameter_mm[0]} mm` : `${lot.diameter_mm.join(" – ")} mm`)));
+}
+
+// A thread file, and beside it perhaps what the other lab knows of its spool.
+async function importFiles(input) {
+  const files = await Promise.all([...input.files].map(async file => ({name: file.name, content: await file.text()})));
+  input.value = "";
+  const format = file => { try { return JSON.parse(file.content).format; } catch { return ""; } };
+  const sample = files.find(file => format(file) === "threadstation/sample");
+  for (const file of files)
+    if (file !== sample) await post("/api/import", {name: file.name, thread: file.content, ...(sample ? {sample: sample.content} : {})});
 }
 
 export function beginLibrary() {
+  byId("import-files").onchange = event => importFiles(event.target);
   byId("search").oninput = showLibrary;
   byId("export-format").onchange = showLibrary;
 }

@@ -3,6 +3,7 @@
 import {allow, byId, fill, hasText, make, percent, row, text} from "/document.js";
 import {curves} from "/curves.js";
 import {fillStops, tellClipping} from "/exposure.js";
+import {said} from "/phrases.js";
 import {ask, picture, startJob, state, whyNot} from "/station.js";
 import {session} from "/session.js";
 
@@ -93,7 +94,7 @@ export async function showResult() {
   byId("swatch").style.backgroundColor = result.colour.srgb;
   byId("colour-words").textContent = colourWords(result.colour);
   byId("colour-means").textContent = colourMeans(result.colour);
-  byId("doubts").replaceChildren(...result.doubts.map(doubt => make("li", {textContent: doubt})));
+  byId("doubts").replaceChildren(...result.doubts.map(doubt => make("li", {textContent: said(doubt)})));
   byId("unknowns").replaceChildren(...unknownRows(result));
   byId("curves").replaceChildren(curves([result]));
   fill(byId("view-choice"), result.views.map(view => view.id), result.views.map(view => `${view.id} · ${percent(view.relative_rmse)}`));

@@ -1,6 +1,7 @@
 // Session: the contact sheet with a verdict for each view, and what can be done next, or why it cannot.
 
 import {ago, allow, byId, fill, make, text, time} from "/document.js";
+import {said} from "/phrases.js";
 import {ask, jobRuns, picture, startJob, state, whyNot} from "/station.js";
 import {openViewer} from "/viewer.js";
 
@@ -20,7 +21,7 @@ function tile(view) {
     element.append(enlarge);
   }
   element.append(make("p", {textContent: view.step}),
-                 make("p", {className: "verdict", textContent: text(view.grade || "missing") + (view.reason ? `: ${view.reason}` : "")}));
+                 make("p", {className: "verdict", textContent: text(view.grade || "missing") + (view.reason ? `: ${said(view.reason)}` : "")}));
   if (view.grade && view.grade !== "good") element.append(make("p", {}, make("a", {href: "/handbook/verdicts.html", target: "_blank", textContent: text("what_to_do")})));
   if (view.grade) {
     const again = make("button", {type: "button", textContent: text("reshoot")});

@@ -1,6 +1,7 @@
 // The station behind the page: what it knows, and what it is asked to do.
 
 import {byId, text} from "/document.js";
+import {said} from "/phrases.js";
 
 const kSoon_ms = 100, kLater_ms = 1000;  // until the state is asked for again: after a change, after a failure
 
@@ -26,7 +27,7 @@ export async function ask(path, query = {}) {
   try {
     const answer = await fetch(path + "?" + new URLSearchParams(query));
     if (answer.ok) return await answer.json();
-    say((await answer.json()).message);
+    say(said((await answer.json()).message));
   } catch { say(text("lost")); }
   return null;
 }
@@ -40,7 +41,7 @@ export async function post(path, fields = {}, told = true) {
       body: JSON.stringify({client, ...fields}),
     });
     const found = await answer.json();
-    if (told) say(found.message);
+    if (told) say(said(found.message));
     return {...found, ok: answer.ok};
   } catch {
     say(text("lost"));

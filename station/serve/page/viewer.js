@@ -1,6 +1,7 @@
 // A view of a session as large as the window, beside the same view of another session.
 
 import {byId, fill, make, text} from "/document.js";
+import {said} from "/phrases.js";
 import {picture, state} from "/station.js";
 
 let shown = null, before = null;
@@ -21,7 +22,7 @@ export function openViewer(session, view) {
   before = document.activeElement;
   byId("viewer").hidden = false;
   byId("viewer-title").textContent = `${view.number} · ${view.step}`;
-  byId("viewer-verdict").textContent = text(view.grade || "missing") + (view.reason ? `: ${view.reason}` : "");
+  byId("viewer-verdict").textContent = text(view.grade || "missing") + (view.reason ? `: ${said(view.reason)}` : "");
   const others = state.sessions.map(line => line.name).filter(name => name !== session);
   fill(byId("viewer-other"), ["", ...others], [text("none"), ...others]);
   byId("viewer-other").value = "";

@@ -17,6 +17,7 @@
 #include "station/session/record/picture_record.h"
 #include "station/thread/report/capture_report.h"
 #include "station/thread/report/contact_sheet.h"
+#include "station/thread/report/fitted_twins.h"
 #include "station/thread/report/thread_report.h"
 
 namespace station {

@@ -15,10 +15,9 @@ constexpr double kParts = 10000;
 
 }  // namespace
 
-nlohmann::json make_exits(const std::filesystem::path& out, std::uint64_t seed, ProgressStyle style) {
+nlohmann::json make_exits(const std::filesystem::path& out, renderer::ExitOptions options, ProgressStyle style) {
   watch_interrupts();
   ProgressDisplay display("exits", style);
-  renderer::ExitOptions options{.seed = seed};
   options.progress = [&](int done, int total) {
     display.show(done, total, "threads simulated");
     return !interrupted();
@@ -32,7 +31,8 @@ nlohmann::json make_exits(const std::filesystem::path& out, std::uint64_t seed, 
       text += (text.empty() ? "" : " ") + std::to_string(std::lround(kParts * *share / sum));
     rows.push_back(text);
   }
-  const nlohmann::json document{{"made_by", "threadstation scatter exits --seed " + std::to_string(seed)},
+  const nlohmann::json document{{"made_by", "threadstation scatter exits --seed " + std::to_string(options.seed) +
+                                                " --configurations " + std::to_string(options.configurations)},
                                 {"offset_bins", options.offset_bins},
                                 {"azimuth_bins", options.azimuth_bins},
                                 {"rows", rows}};

@@ -1,5 +1,6 @@
 #include "station/thread/scatter/make_prior.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "station/documents/reader.h"
@@ -23,15 +24,17 @@ json numbers(const renderer::PriorVector& v) {
 
 }  // namespace
 
-json make_prior(const std::filesystem::path& out, std::uint64_t seed, ProgressStyle style) {
+json make_prior(const std::filesystem::path& out, renderer::PriorOptions options, std::size_t threads,
+                ProgressStyle style) {
   watch_interrupts();
   ProgressDisplay display("prior", style);
-  renderer::PriorOptions options{.seed = seed};
   options.progress = [&](int done, int total) {
     display.show(done, total, "threads simulated and fitted");
     return !interrupted();
   };
-  const std::vector<renderer::LibraryFit> fits = renderer::fit_library(renderer::thread_library(), options);
+  std::vector<renderer::LibraryThread> library_threads = renderer::thread_library();
+  library_threads.resize(std::min(threads, library_threads.size()));
+  const std::vector<renderer::LibraryFit> fits = renderer::fit_library(library_threads, options);
   const renderer::ThreadPrior prior = renderer::prior_of(fits);
   json covariance = json::array(), library = json::array();
   for (int i = 0; i < prior.covariance.rows(); ++i) covariance.push_back(numbers(prior.covariance.row(i).transpose()));
@@ -43,7 +46,8 @@ json make_prior(const std::filesystem::path& out, std::uint64_t seed, ProgressSt
                        {"relative_l2_error", rounded(fit.error)},
                        {"unknowns", numbers(fit.unknowns)},
                        {"deviations", numbers(fit.covariance.diagonal().cwiseSqrt())}});
-  const json document{{"made_by", "threadstation scatter prior --seed " + std::to_string(seed)},
+  const json document{{"made_by", "threadstation scatter prior --seed " + std::to_string(options.seed) +
+                                      " --configurations " + std::to_string(options.configurations)},
                       {"unknowns", {"beta_R", "beta_TT", "beta_TRT", "L0", "L1", "concavity", "r1a", "d2", "w2", "n2"}},
                       {"threads", prior.threads},
                       {"mean", numbers(prior.mean)},

@@ -1,6 +1,8 @@
 #include "tests/calibration/geometry/synthetic_views.h"
 
+#include <array>
 #include <numbers>
+#include <span>
 
 #include "calibration/geometry/target_stand.h"
 #include "calibration/sensor/degree.h"

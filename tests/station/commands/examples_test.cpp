@@ -104,6 +104,7 @@ class Examples : public testing::Test {
       {"compare", [this] { fs::copy_file(folder_ / "swatch.exr", folder_ / "photograph.exr"); }},
       {"scatter eval", [this] { directions(); }},
       {"validate", [this] { write("rig.json", hasty_rig(rig(1, 1))); }},
+      {"validate-cloth", [this] { write("rig.json", hasty_rig(rig(1, 1))); }},
   };
   const TemporaryFolder folder_;
 };
@@ -112,14 +113,12 @@ class Examples : public testing::Test {
 const std::map<std::string, std::string> kUntilInterrupted{{"simulate-hardware", "Ctrl-C ends"}, {"serve", "http://"}};
 // installation_test.cpp runs it.
 const char* const kWholeJob = "demo";
-// Open: these take minutes each, and are not run here.
-const std::set<std::string> kTakeMinutes{"scatter prior", "scatter exits", "validate-cloth"};
 
 TEST_F(Examples, OfHelpAllRunInTheOrderOfTheWork) {
   int run_of_them = 0;
   for (const Words& command : every_command()) {
     const std::string name = joined(command), example = example_of(command);
-    if (example.empty() || name == kWholeJob || kTakeMinutes.contains(name)) continue;
+    if (example.empty() || name == kWholeJob) continue;
     SCOPED_TRACE(example);
     if (const auto needs = before_.find(name); needs != before_.end()) needs->second();
     const auto begun = std::chrono::steady_clock::now();

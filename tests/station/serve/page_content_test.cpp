@@ -382,6 +382,63 @@ TEST_F(TechnicianPage, AThreadOfTheLibraryIsShownWithItsCurves) {
   EXPECT_EQ(get("/api/state").at("threads")[0].at("number"), 1);
 }
 
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST_F(TechnicianPage, AThreadOfAnotherStationIsImportedWithItsSampleAndGetsALabel) {
+  post("/api/control", {{"client", "me"}});
+  const std::string thread = text_of(std::filesystem::path(DATA_DIR) / "threads/silk_blue.json");
+  station::write_sample_file(
+      folder_ / "sample.json",
+      {.barcode = "4006381333948", .name = "blue <silk>", .lot = "B 3", .material = "silk", .colour = "", .note = ""});
+  const json wanted{
+      {"client", "me"}, {"name", "thread.json"}, {"thread", thread}, {"sample", text_of(folder_ / "sample.json")}};
+  const HttpResponse made = post("/api/import", wanted);
+  ASSERT_EQ(made.status, 200) << made.body;
+  EXPECT_EQ(json::parse(made.body).at("number"), 1);
+  const json line = get("/api/state").at("threads").at(0);
+  EXPECT_EQ(line.at("sample").at("barcode"), "4006381333948");
+  EXPECT_EQ(line.at("sample").at("lot"), "B 3");
+
+  const HttpResponse label = asked("/label", {{"number", "1"}});
+  EXPECT_EQ(label.content_type, "image/svg+xml");
+  EXPECT_NE(label.body.find("blue &lt;silk&gt;"), std::string::npos) << label.body;
+  EXPECT_EQ(asked("/label", {{"number", "7"}}).status, 404);
+  EXPECT_EQ(asked("/label", {{"number", "x"}}).status, 400);
+
+  EXPECT_NE(json::parse(post("/api/import", wanted).body)
+                .at("message")
+                .get<std::string>()
+                .find("in the library already, as number 1"),
+            std::string::npos);
+  json other = wanted;
+  other["thread"] = "{\"format\": \"threadstation/spool\"}";
+  EXPECT_EQ(refused_with("/api/import", other), 409);
+  other["name"] = "../thread.json";
+  EXPECT_EQ(refused_with("/api/import", other), 400);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "bench/jobs/import"));
+}
+
+TEST_F(TechnicianPage, ALotIsSeenBesideItself) {
+  EXPECT_EQ(asked("/api/lots", {}).status, 404);
+  station::Library library(folder_ / "bench/library", true);
+  for (const char* thread : {"silk_red.json", "silk_blue.json", "silk_gold.json"})
+    library.add(std::filesystem::path(DATA_DIR) / "threads" / thread, "2026-11-21T10:20:30.123Z");
+  for (const int number : {1, 2})
+    library.edit(number,
+                 {.barcode = "", .name = std::to_string(number), .lot = "A", .material = "", .colour = "", .note = ""});
+  const json lots = json::parse(asked("/api/lots", {}).body);
+  ASSERT_EQ(lots.size(), 1U);
+  EXPECT_EQ(lots[0].at("numbers"), json({1, 2}));
+  // Of two, each is about half of their difference from the mean.
+  const double apart = json::parse(asked("/api/thread", {{"number", "1"}, {"with", "2"}}).body).at("delta_e_2000");
+  EXPECT_GT(lots[0].at("largest_delta_e_2000").get<double>(), 0.25 * apart);
+  EXPECT_LT(lots[0].at("mean_delta_e_2000").get<double>(), apart);
+  EXPECT_EQ(lots[0].at("diameter_mm").size(), 2U);
+}
+
 // What is photographed with light from the front is the thread's colour, not what its model scatters.
 TEST(ThreadsColour, IsThatOfThePhotographsBesideAWhiteCard) {
   station::ThreadFile thread = station::read_thread(std::string(DATA_DIR) + "/threads/silk_red.json");

@@ -331,6 +331,31 @@ async function german(station) {
   await station.until("English", () => document.documentElement.lang === "en" && document.body.dataset.job, 20);
 }
 
+// Somebody who reads German and only watches.
+async function germanWatcher(station) {
+  const watching = await station.another();
+  watching.expected.push(/net::ERR_/);
+  await watching.page.evaluate(() => { localStorage.language = "de"; });
+  await watching.page.reload({waitUntil: "load"});
+  await watching.until("German", () => document.documentElement.lang === "de" && document.body.dataset.job, 20);
+  await watching.page.evaluate(() => { localStorage.language = "en"; });
+  await watching.click('[data-screen="bench"]');
+  await station.page.bringToFront();
+  return watching;
+}
+
+// Nothing that the program has said during the whole job was left in English.
+async function nothingUntold(watching) {
+  await watching.page.bringToFront();
+  for (const screen of ["calibrate", "session", "result", "library", "bench"]) {
+    await watching.click(`[data-screen="${screen}"]`);
+    await pause(1);
+  }
+  await watching.look("de-watched");
+  assert.deepEqual(await watching.page.evaluate(() => import("/phrases.js").then(({untold}) => [...untold])), []);
+  await watching.closePage();
+}
+
 // A stop that does not reach the station is said so that nobody can miss it.
 async function stopWithoutServer(station) {
   station.expected.push(/./);
@@ -374,6 +399,7 @@ writeFileSync(inWorkspace("queues/week.csv"), "barcode,name,lot,material,colour,
 const server = await startServer(program, writeRig(), workspace);
 let station = await WatchedPage.open(server.address, path.join(folder, "browser"));
 try {
+  const watching = await germanWatcher(station);
   await check(station);
   await calibrate(station);
   await stopByKey(station);
@@ -383,6 +409,7 @@ try {
   await library(station);
   await design(station);
   await german(station);
+  await nothingUntold(watching);
   await stopWithoutServer(station);
 } catch (error) {
   console.log(await station.report());
