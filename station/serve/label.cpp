@@ -12,7 +12,7 @@ namespace station {
 namespace {
 
 constexpr double kWidth_mm = 62, kHeight_mm = 29, kMargin_mm = 4, kCode_mm = 21;  // scanners want four modules free
-constexpr std::size_t kLine = 20;  // characters that fit beside the code
+constexpr std::size_t kLine = 20;                                                 // characters that fit beside the code
 
 // Black modules as squares of one unit, from (0, 0).
 std::string modules_of(const QRcode& code) {

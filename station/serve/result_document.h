@@ -25,8 +25,9 @@ nlohmann::json thread_document(const ThreadFile& thread);
 nlohmann::json result_document(const std::filesystem::path& session);
 
 // What the threads of each lot have in common, of lots with two threads or more, in the order of their names: {"lot",
-// "numbers", "colour": of the mean (Lab) of their colours, "mean_delta_e_2000", "largest_delta_e_2000": of each from it,
-// "diameter_mm": [least, most]}. Where some were photographed, colours are of these alone. Errors: those of read_thread.
+// "numbers", "colour": of the mean (Lab) of their colours, "mean_delta_e_2000", "largest_delta_e_2000": of each from
+// it, "diameter_mm": [least, most]}. Where some were photographed, colours are of these alone. Errors: those of
+// read_thread.
 nlohmann::json lots_document(const Library& library);
 
 // CIEDE2000 between the "colour" of two such documents.

@@ -10,8 +10,8 @@
 
 namespace station {
 
-// options.progress is replaced. Simulates and fits the first `threads` of the library, writes mean, covariance and every
-// thread with its fit, and returns the document. Ctrl-C stops it between threads.
+// options.progress is replaced. Simulates and fits the first `threads` of the library, writes mean, covariance and
+// every thread with its fit, and returns the document. Ctrl-C stops it between threads.
 nlohmann::json make_prior(const std::filesystem::path& out, renderer::PriorOptions options, std::size_t threads,
                           ProgressStyle progress);
 

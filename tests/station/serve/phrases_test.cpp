@@ -1,4 +1,4 @@
-// The catalogues of what the program says, station/serve/page/phrases.*.json: each template is one of its own sentences.
+// The catalogues of what the program says, station/serve/page/phrases.*.json: templates are its own sentences.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -81,8 +81,9 @@ export class WatchedPage {
     return this.page.$eval(selector, element => element.textContent.trim());
   }
 
-  // As a person does: what is hidden, covered or disabled cannot be clicked.
+  // As a person does: what is hidden, covered or disabled cannot be clicked. A page behind another one draws nothing.
   async click(selector) {
+    await this.page.bringToFront();
     await this.until(`${selector} to be enabled`, found => {
       const element = document.querySelector(found);
       return element && !element.disabled && element.offsetParent !== null;
