@@ -57,10 +57,10 @@ function budget(sources) {
   const most = Math.max(...sources.flatMap(one => [one.front, one.behind]), 1e-6), high = 34;
   const bars = sources.flatMap((one, i) => [
     draw("text", {x: 0, y: i * high + 21}, said(one.source)),
-    draw("rect", {x: 330, y: i * high + 4, width: Math.max(1, 260 * one.front / most), height: 11, class: "lamp-front"}),
-    draw("rect", {x: 330, y: i * high + 17, width: Math.max(1, 260 * one.behind / most), height: 11, class: "lamp-behind"}),
-    draw("text", {x: 600, y: i * high + 21}, `${percent(one.front, 2)} · ${percent(one.behind, 2)}`)]);
-  return draw("svg", {viewBox: `0 0 760 ${sources.length * high + 4}`, role: "img", class: "plot",
+    draw("rect", {x: 430, y: i * high + 4, width: Math.max(1, 260 * one.front / most), height: 11, class: "lamp-front"}),
+    draw("rect", {x: 430, y: i * high + 17, width: Math.max(1, 260 * one.behind / most), height: 11, class: "lamp-behind"}),
+    draw("text", {x: 700, y: i * high + 21}, `${percent(one.front, 2)} · ${percent(one.behind, 2)}`)]);
+  return draw("svg", {viewBox: `0 0 860 ${sources.length * high + 4}`, role: "img", class: "plot",
                       "aria-label": text("budget_in_words", {list: sources.map(one => `${said(one.source)} ${percent(one.front, 2)}, ${percent(one.behind, 2)}`).join("; ")})}, ...bars);
 }
 
