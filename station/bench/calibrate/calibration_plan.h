@@ -1,5 +1,5 @@
 // Which pictures a rig calibration needs, in an order in which a person does little: the empty platform turning (axis,
-// world frame), the tag board on two to four stands (lens), the Spectralon panel before the lens (white field), on
+// world frame), the tag board on three or four stands (lens), the Spectralon panel before the lens (white field), on
 // stands under the lamp in front (sensor, light, vignetting), the colour chart, darkness, and the panel under the lamp
 // behind.
 #pragma once

@@ -57,8 +57,8 @@ TEST_P(CalibrationPlan, NoPoseComesTwice) {
   if (by_hand)
     EXPECT_LE(turned + if_needed + 9, 60);
   else
-    EXPECT_LE(turned, 2 * 16 + 4 * 10);
-  EXPECT_LE(if_needed, 2 * 16);
+    EXPECT_LE(turned, 3 * 16 + 4 * 10);
+  EXPECT_LE(if_needed, 16);
 }
 
 TEST_P(CalibrationPlan, ThePlatformIsNotTurnedFurtherThanItMay) {

@@ -80,7 +80,7 @@ TEST_F(Coverage, TheWholePlanShowsMostOfThePicture) {
   EXPECT_GT(covered.share(), 0.8);
 }
 
-TEST_F(Coverage, TwoStandsOfGoodPicturesMakeTheLensKnown) {
+TEST_F(Coverage, ThreeStandsOfGoodPicturesMakeTheLensKnown) {
   EXPECT_FALSE(covered.lens_is_known()) << "nothing was seen";
   photograph_plan(false, 0.04);
   EXPECT_TRUE(covered.lens_is_known());

@@ -29,7 +29,7 @@ const pause = ms => new Promise(resolve => setTimeout(resolve, ms));
 
 // The page's own elements that a person could use now; nothing that leads away from it.
 function act(choice, word) {
-  const usable = [...document.querySelectorAll("button, a[href^='#'], select, input, summary")].filter(element => !element.disabled &&
+  const usable = [...document.querySelectorAll("button, a[href^='#'], select, input:not([type=file]), summary")].filter(element => !element.disabled &&
     element.offsetParent !== null && element.id !== "language" && element.id !== "live-full");
   const element = usable[Math.floor(choice * usable.length)];
   if (!element) return "nothing";
