@@ -220,12 +220,13 @@ HttpResponse TechnicianPage::import_thread(const json& asked) {
   const fs::path folder = workspace_.folder() / "jobs" / "import", file = folder / name_of(asked, "name");
   int number = 0;
   try {
-    fs::create_directories(folder);
+    const fs::path sample_file = folder / "of its spool" / "sample.json";
+    fs::create_directories(sample_file.parent_path());
     write_text_file(file, text);
     std::optional<Sample> told;
     if (!sample.empty()) {
-      write_text_file(folder / "sample.json", sample);
-      told = read_sample_file(folder / "sample.json");
+      write_text_file(sample_file, sample);
+      told = sample_of_form(to_json(read_sample_file(sample_file)));
     }
     rig::SystemClock clock;
     Library library(workspace_.threads_folder(), true);

@@ -10,6 +10,7 @@ const kFields = ["name", "barcode", "lot", "material", "colour", "note"];
 
 let chosen = [];   // numbers, the last two that were marked
 let edited = 0;    // the number of the thread whose form is open
+let lotsOf = "";   // the threads whose lots are shown
 let takenOut = 0;  // the number that can be put back
 
 function matches(thread, words) {
@@ -106,13 +107,16 @@ export function showLibrary() {
   show(byId("threads"), [found, chosen, edited, state.exports, byId("export-format").value, whyNot()], () => found.flatMap(thread => lines(thread, twins(thread))));
   byId("import-files").disabled = !inControl();
   if (before === byId("threads").shown) return null;
-  if (state.threads.length) showLots();
+  showLots();
   return showComparison();
 }
 
-// Spools of one lot should look alike.
+// Spools of one lot should look alike. The station reads all their threads for it: only when one has come, gone or changed.
 async function showLots() {
-  const lots = await ask("/api/lots") || [];
+  const now = JSON.stringify(state.threads.map(thread => [thread.number, thread.sample.lot]));
+  if (now === lotsOf) return;
+  lotsOf = now;
+  const lots = state.threads.length ? await ask("/api/lots") || [] : [];
   byId("lots-part").hidden = lots.length === 0;
   byId("lots").replaceChildren(...lots.map(lot => row(make("strong", {textContent: lot.lot}), lot.numbers.join(", "),
     make("span", {}, chip(lot.colour), ` ${colourWords(lot.colour)}`),
@@ -120,14 +124,14 @@ async function showLots() {
     lot.diameter_mm[0] === lot.diameter_mm[1] ? `${lot.diameter_mm[0]} mm` : `${lot.diameter_mm.join(" – ")} mm`)));
 }
 
-// A thread file, and beside it perhaps what the other lab knows of its spool.
+// Thread files, or one and beside it what the other lab knows of its spool.
 async function importFiles(input) {
   const files = await Promise.all([...input.files].map(async file => ({name: file.name, content: await file.text()})));
   input.value = "";
   const format = file => { try { return JSON.parse(file.content).format; } catch { return ""; } };
   const sample = files.find(file => format(file) === "threadstation/sample");
-  for (const file of files)
-    if (file !== sample) await post("/api/import", {name: file.name, thread: file.content, ...(sample ? {sample: sample.content} : {})});
+  const threads = files.filter(file => file !== sample), told = sample && threads.length === 1 ? {sample: sample.content} : {};
+  for (const file of threads) await post("/api/import", {name: file.name, thread: file.content, ...told});
 }
 
 export function beginLibrary() {

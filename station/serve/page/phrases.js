@@ -7,6 +7,9 @@ const kBorder = /[.!?]\s/;  // between two sentences: no value reaches across
 
 let templates = null, known = new Map();
 
+// What was looked up of late, null where nothing fits: a log is shown again and again.
+const kKept = 5000, looked = new Map();
+
 // What was shown without a translation.
 export const untold = new Set();
 
@@ -33,17 +36,21 @@ const isWord = words => /[A-Za-z]{2}/.test(words) && !kName.test(words) && !kUni
 function whole(words) {
   if (!isWord(words)) return words;
   if (known.has(words)) return known.get(words);
+  if (looked.size > kKept) looked.clear();
+  if (!looked.has(words)) looked.set(words, byTemplate(words));
+  return looked.get(words);
+}
+
+function byTemplate(words) {
   for (const template of templates) {
     const found = words.match(template.pattern);
     if (!found || found.slice(1).some(value => kBorder.test(value))) continue;
     const values = found.slice(1).map(value => pieces(value));
     if (template.length < kJoins && values.includes(null)) continue;
-    const told = template.own.replace(/\{([a-z])\}/g, (all, letter) => {
+    return template.own.replace(/\{([a-z])\}/g, (all, letter) => {
       const at = template.letters.indexOf(letter);
       return values[at] ?? found[at + 1];
     });
-    known.set(words, told);
-    return told;
   }
   return null;
 }
@@ -64,12 +71,10 @@ function pieces(words) {
 // `counted`: whether it is missed in `untold` where nothing fits.
 export function said(words, counted = true) {
   if (!templates || !words) return words || "";
-  const parts = words.split(/(\n+|(?<=[.!?:])\s+)/);
   const found = pieces(words);
   if (found !== null) return found;
-  return parts.map((part, i) => {
-    if (i % 2) return part;
-    const told = pieces(part);
+  return words.split(/(\n+|(?<=[.!?:])\s+)/).map((part, i) => {
+    const told = i % 2 ? part : pieces(part);
     if (told === null && counted) untold.add(part);
     return told ?? part;
   }).join("");

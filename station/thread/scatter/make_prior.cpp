@@ -46,8 +46,9 @@ json make_prior(const std::filesystem::path& out, renderer::PriorOptions options
                        {"relative_l2_error", rounded(fit.error)},
                        {"unknowns", numbers(fit.unknowns)},
                        {"deviations", numbers(fit.covariance.diagonal().cwiseSqrt())}});
-  const json document{{"made_by", "threadstation scatter prior --seed " + std::to_string(options.seed) +
-                                      " --configurations " + std::to_string(options.configurations)},
+  const json document{{"made_by", "threadstation scatter prior --seed " + std::to_string(options.seed) + " --threads " +
+                                      std::to_string(library_threads.size()) + " --configurations " +
+                                      std::to_string(options.configurations)},
                       {"unknowns", {"beta_R", "beta_TT", "beta_TRT", "L0", "L1", "concavity", "r1a", "d2", "w2", "n2"}},
                       {"threads", prior.threads},
                       {"mean", numbers(prior.mean)},

@@ -419,6 +419,14 @@ TEST_F(TechnicianPage, AThreadOfAnotherStationIsImportedWithItsSampleAndGetsALab
   other["name"] = "../thread.json";
   EXPECT_EQ(refused_with("/api/import", other), 400);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "bench/jobs/import"));
+  // A sample without any name is refused before anything is added.
+  other = wanted;
+  other["thread"] = text_of(std::filesystem::path(DATA_DIR) / "threads/silk_red.json");
+  json nameless = json::parse(text_of(folder_ / "sample.json"));
+  nameless["name"] = nameless["barcode"] = "";
+  other["sample"] = nameless.dump();
+  EXPECT_EQ(refused_with("/api/import", other), 409);
+  EXPECT_EQ(get("/api/state").at("threads").size(), 1U);
 }
 
 TEST_F(TechnicianPage, ALotIsSeenBesideItself) {
