@@ -30,21 +30,31 @@ std::vector<Vector2d> by_length(const std::vector<Vector2d>& line, int steps) {
   return points;
 }
 
-double length_of(const std::vector<Vector2d>& line) {
-  double sum = 0;
-  for (std::size_t i = 1; i < line.size(); ++i) sum += (line[i] - line[i - 1]).norm();
-  return sum;
-}
+// A line that folds: each point lies at base + amplitude x fold.
+struct FoldedLine {
+  std::vector<Vector2d> base, fold;
 
-// The smallest amplitude >= 0 at which line(amplitude) is `wanted` long.
-template <class Line>
-std::vector<Vector2d> folded_to(double wanted, double most, const Line& line) {
+  std::vector<Vector2d> at(double amplitude) const {
+    std::vector<Vector2d> line;
+    for (std::size_t i = 0; i < base.size(); ++i) line.emplace_back(base[i] + amplitude * fold[i]);
+    return line;
+  }
+  double length(double amplitude) const {
+    double sum = 0;
+    for (std::size_t i = 1; i < base.size(); ++i)
+      sum += (base[i] - base[i - 1] + amplitude * (fold[i] - fold[i - 1])).norm();
+    return sum;
+  }
+};
+
+// The line at the smallest amplitude >= 0 at which it is `wanted` long.
+std::vector<Vector2d> folded_to(double wanted, double most, const FoldedLine& line) {
   double low = 0, high = most;
   for (int i = 0; i < 40; ++i) {
     const double middle = (low + high) / 2;
-    (length_of(line(middle)) < wanted ? low : high) = middle;
+    (line.length(middle) < wanted ? low : high) = middle;
   }
-  return line(high);
+  return line.at(high);
 }
 
 // Rows of points that hang below one another, `step_mm` of cloth apart on average.
@@ -95,20 +105,15 @@ struct Maker {
       const double even_mm = ring_mm / (2 * std::numbers::pi), part = static_cast<double>(row) / kDown;
       // A ring gets wider by a third of what it could; the rest goes into folds.
       const double radius_mm = s.waist_radius_mm + 0.33 * (even_mm - s.waist_radius_mm);
-      rings.push_back(by_length(folded_to(ring_mm, radius_mm,
-                                          [&](double amplitude) {
-                                            std::vector<Vector2d> line;
-                                            for (int i = 0; i <= kFine; ++i) {
-                                              const double angle = 2 * std::numbers::pi * (i % kFine) / kFine;
-                                              const double wave = s.folds * angle + 0.9 * std::sin(2 * angle) +
-                                                                  0.35 * part * std::sin(3 * angle + 1);
-                                              const double r = radius_mm + amplitude * std::cos(wave) *
-                                                                               (1 + 0.2 * std::sin(angle + 0.7));
-                                              line.emplace_back(r * std::cos(angle), r * std::sin(angle));
-                                            }
-                                            return line;
-                                          }),
-                                kAcross));
+      FoldedLine ring;
+      for (int i = 0; i <= kFine; ++i) {
+        const double angle = 2 * std::numbers::pi * (i % kFine) / kFine;
+        const double wave = s.folds * angle + 0.9 * std::sin(2 * angle) + 0.35 * part * std::sin(3 * angle + 1);
+        const Vector2d outwards(std::cos(angle), std::sin(angle));
+        ring.base.emplace_back(radius_mm * outwards);
+        ring.fold.emplace_back(std::cos(wave) * (1 + 0.2 * std::sin(angle + 0.7)) * outwards);
+      }
+      rings.push_back(by_length(folded_to(ring_mm, radius_mm, ring), kAcross));
     }
     return hanging_mesh(rings, step_mm, [&](int column, int row) {
       const double angle = sector_rad * column / kAcross, radius = inner_mm + row * step_mm;
@@ -124,19 +129,14 @@ struct Maker {
       go_on(static_cast<double>(row) / (kDown + 1));
       const double part = static_cast<double>(row) / kDown;
       const double hung_mm = s.width_mm * (s.gathered + 0.5 * (0.9 - s.gathered) * part);
-      rows.push_back(by_length(folded_to(s.width_mm, s.width_mm / s.pleats,
-                                         [&](double amplitude) {
-                                           std::vector<Vector2d> line;
-                                           for (int i = 0; i <= kFine; ++i) {
-                                             const double x = static_cast<double>(i) / kFine;
-                                             const double wave = 2 * std::numbers::pi *
-                                                                 (s.pleats * x + 0.35 * part * std::sin(5 * x + 1));
-                                             line.emplace_back(hung_mm * (x - 0.5) + 0.12 * s.width_mm * part * part,
-                                                               amplitude * std::sin(wave + 0.3 * std::sin(wave)));
-                                           }
-                                           return line;
-                                         }),
-                               kAcross));
+      FoldedLine hung;
+      for (int i = 0; i <= kFine; ++i) {
+        const double x = static_cast<double>(i) / kFine;
+        const double wave = 2 * std::numbers::pi * (s.pleats * x + 0.35 * part * std::sin(5 * x + 1));
+        hung.base.emplace_back(hung_mm * (x - 0.5) + 0.12 * s.width_mm * part * part, 0);
+        hung.fold.emplace_back(0, std::sin(wave + 0.3 * std::sin(wave)));
+      }
+      rows.push_back(by_length(folded_to(s.width_mm, s.width_mm / s.pleats, hung), kAcross));
     }
     return hanging_mesh(rows, step_mm, [&](int column, int row) {
       return Vector2d(s.width_mm * column / kAcross, s.height_mm - row * step_mm);

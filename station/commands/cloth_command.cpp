@@ -1,7 +1,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "station/cloth/cloth_preview.h"
+#include "station/cloth/preview/cloth_preview.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
 #include "station/session/results.h"
@@ -17,14 +17,14 @@ void add_cloth_command(CLI::App& app) {
   };
   auto arguments = std::make_shared<ClothArguments>();
   ClothPreviewRequest& request = arguments->request;
-  CLI::App* command = app.add_subcommand("cloth", "what digitized threads weave into: a swatch and a cylinder");
+  CLI::App* command = app.add_subcommand("cloth", "what digitized threads weave into, in pictures");
   command
       ->add_option("session", arguments->of,
                    "session folder with a fitted thread or bundle, or, with --out, a thread or bundle file")
       ->required();
-  command->add_option("--draft", request.draft, "draft (JSON or WIF); scaled to the threads")->required();
-  command->add_option("--weft", request.weft_thread, "thread or bundle file of the weft; the warp's without it");
-  command->add_option("--out", request.out,
+  command->add_option("--draft", request.cloth.draft, "draft (JSON or WIF); scaled to the threads")->required();
+  command->add_option("--weft", request.cloth.weft_thread, "thread or bundle file of the weft; the warp's without it");
+  command->add_option("--out", request.cloth.out,
                       "folder for a cloth that belongs to no session, with copies of its threads");
   command->add_option("--model", arguments->model, "the session's fitted model that it is woven of: thread or bundle")
       ->check(CLI::IsMember({"thread", "bundle"}))
@@ -32,20 +32,31 @@ void add_cloth_command(CLI::App& app) {
   command->add_option("--warp-colour", arguments->warp_colour,
                       "like #c01830: only the thread's absorption changes; its own without it");
   command->add_option("--weft-colour", arguments->weft_colour, "likewise");
-  command->add_flag("--quick", request.quick, "smaller pictures");
+  command->add_option("--shape", request.shapes, "what the cloth is made into, one or several")
+      ->check(CLI::IsMember(cloth_shapes()))
+      ->capture_default_str();
+  command->add_option("--turn", request.view.turn_deg, "degrees by which the camera goes round the cloth")
+      ->capture_default_str();
+  command->add_option("--tilt", request.view.tilt_deg, "degrees by which it rises")->capture_default_str();
+  command->add_option("--light-turn", request.view.light_turn_deg, "likewise, of the lamp")->capture_default_str();
+  command->add_option("--light-tilt", request.view.light_tilt_deg, "likewise, of the lamp")->capture_default_str();
+  command->add_option("--zoom", request.view.zoom, "how much closer the camera looks")->capture_default_str();
+  command->add_option("--size", request.size_px,
+                      "the longer side of a picture in pixels, 2362 for 20 cm at 300 dpi; a screen's without it");
+  command->add_flag("--quick", request.quick, "smaller pictures of fewer samples");
   arguments->output.add_to(*command);
   command->callback([arguments] {
     ClothPreviewRequest& asked = arguments->request;
-    if (!arguments->warp_colour.empty()) asked.warp_colour = parse_colour(arguments->warp_colour);
-    if (!arguments->weft_colour.empty()) asked.weft_colour = parse_colour(arguments->weft_colour);
+    if (!arguments->warp_colour.empty()) asked.cloth.warp_colour = parse_colour(arguments->warp_colour);
+    if (!arguments->weft_colour.empty()) asked.cloth.weft_colour = parse_colour(arguments->weft_colour);
     asked.progress_style = arguments->output.progress_style();
-    weave_thread_of(asked, arguments->of, arguments->model);
+    weave_thread_of(asked.cloth, arguments->of, arguments->model);
     const nlohmann::json made_of = preview_cloth(asked);
     if (arguments->output.json) {
       std::cout << made_of.dump() << "\n";
       return;
     }
-    for (const auto& file : pictures_of_cloth(asked.out)) std::cout << file.string() << "\n";
+    for (const auto& file : pictures_of_cloth(asked.cloth.out)) std::cout << file.string() << "\n";
   });
 }
 

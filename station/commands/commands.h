@@ -18,6 +18,7 @@ void add_develop_command(CLI::App& app);
 void add_devices_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_library_command(CLI::App& app);
+void add_look_command(CLI::App& app);
 void add_pattern_command(CLI::App& app);
 void add_plan_command(CLI::App& app);
 void add_predict_command(CLI::App& app);

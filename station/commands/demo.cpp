@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "station/bench/calibrate/calibrate_rig.h"
-#include "station/cloth/cloth_preview.h"
+#include "station/cloth/preview/cloth_preview.h"
 #include "station/data/data_folder.h"
 #include "station/documents/reader.h"
 #include "station/session/capture_session.h"
@@ -68,9 +68,9 @@ DemoResult run_demo(const DemoRequest& request) {
     inversion.samples_per_pixel = kQuickSamples;
   }
   const InvertResult thread = invert_session(inversion);
-  preview_cloth({.thread = thread.file,
-                 .out = cloth_folder(session),
-                 .draft = data_folder() / "drafts" / "twill_2_2.json",
+  preview_cloth({.cloth = {.thread = thread.file,
+                           .out = cloth_folder(session),
+                           .draft = data_folder() / "drafts" / "twill_2_2.json"},
                  .quick = request.quick,
                  .progress_style = request.progress_style});
   return {.session = session,

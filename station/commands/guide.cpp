@@ -56,6 +56,9 @@ constexpr Guide kGuides[] = {
 
     {"weave", "Predict cloth", "weave --draft DATA/drafts/twill_2_2.json --out twill.json --view twill.png"},
     {"cloth", "Predict cloth", "cloth session --draft DATA/drafts/twill_2_2.json --quick"},
+    {"look", "Predict cloth",
+     "look DATA/threads/silk_red.json --weft DATA/threads/silk_gold.json --draft DATA/drafts/plain.json --spp 1 "
+     "--out looked"},
     {"render", "Predict cloth", "render DATA/scenes/plain_swatch.json --out swatch.exr --spp 4 --png"},
     {"pattern", "Predict cloth",
      "pattern --image DATA/motifs/flower.jpg --thread DATA/threads/silk_gold.json --draft DATA/drafts/satin_5.json "

@@ -9,6 +9,7 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <climits>
 #include <csignal>
 #include <cstring>
 #include <fstream>
@@ -114,9 +115,19 @@ class Job::Process {
     const std::scoped_lock lock(mutex_);
     if (question_.is_null() || question_.at("id") != id || !takes(question_, answer) || gone_) return false;
     question_ = nullptr;
-    // Shorter than a pipe holds; a process that has gone is seen by the follower.
-    [[maybe_unused]] const ssize_t written = write(input_, line.data(), line.size());
+    write_line(line);  // a process that has gone is seen by the follower
     return true;
+  }
+
+  bool tell(const nlohmann::json& said) {
+    const std::string line = said.dump() + "\n";
+    const std::scoped_lock lock(mutex_);
+    return !gone_ && !status_ && write_line(line);
+  }
+
+  nlohmann::json shown() const {
+    const std::scoped_lock lock(mutex_);
+    return shown_;
   }
 
   void signal(int times) {
@@ -130,6 +141,11 @@ class Job::Process {
   }
 
  private:
+  // Whole or not at all: it is shorter than what a pipe takes in one piece, and who does not read makes nobody wait.
+  bool write_line(const std::string& line) const {
+    return line.size() < PIPE_BUF && write(input_, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+  }
+
   // Of a job that has ended.
   const char* outcome() const {
     return *status_ == 0 ? "well" : signals_ == 0 ? "badly" : signals_ == 1 ? "paused" : "stopped";
@@ -146,6 +162,7 @@ class Job::Process {
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0)
       throw std::runtime_error("cannot start " + request_.title + ": " + std::strerror(errno));
+    fcntl(ends[1], F_SETFL, O_NONBLOCK);
     const std::filesystem::path out = with_ending(request_.said, ".out"),
                                 progress = with_ending(request_.said, ".progress");
     constexpr int kAdd = O_WRONLY | O_CREAT | O_APPEND;
@@ -245,6 +262,7 @@ class Job::Process {
     if (said.contains("answered") && said["answered"] == open) question_ = nullptr;
     if (said.contains("remark") && said["remark"].is_object() && said["remark"].value("id", -2) == open)
       question_["remark"] = said["remark"].value("text", "");
+    if (said.contains("shown")) shown_ = said["shown"];
     if (said.contains("note") && said["note"].is_string()) add_line(said["note"].get<std::string>());
     if (!said.contains("done") || !said.contains("total")) return;
     done_ = said.value("done", 0), total_ = said.value("total", 0);
@@ -270,6 +288,7 @@ class Job::Process {
   std::string label_, task_;  // what is done now, and which stage of the command it belongs to
   std::vector<std::string> lines_;
   nlohmann::json question_;  // null: none is open
+  nlohmann::json shown_;
   std::jthread follower_;
 };
 
@@ -287,6 +306,14 @@ nlohmann::json Job::state() const {
 
 bool Job::answer(int id, const std::string& answer) {
   return process_->answer(id, answer);
+}
+
+bool Job::tell(const nlohmann::json& line) {
+  return process_->tell(line);
+}
+
+nlohmann::json Job::shown() const {
+  return process_->shown();
 }
 
 void Job::pause() {

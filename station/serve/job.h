@@ -48,8 +48,12 @@ class Job {
   // Answers the question with this id. False, and nothing is done, when another question is open or none (a second
   // click on the same button must not answer the next one), or when the question does not take this answer.
   bool answer(int id, const std::string& answer);
-  void pause();     // ctrl-C: at the next safe point
-  void stop_now();  // both ctrl-C: the platform stops at once, whatever is under way is given up
+  // Says something that nobody asked for to a process that listens (cloth/preview/cloth_look.h). False when it does not
+  // come through: the process has gone, or has left so much unread that it seems to.
+  bool tell(const nlohmann::json& line);
+  nlohmann::json shown() const;  // what such a process showed last, {"shown": this}; null before
+  void pause();                  // ctrl-C: at the next safe point
+  void stop_now();               // both ctrl-C: the platform stops at once, whatever is under way is given up
 
  private:
   class Process;

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "station/cloth/preview/cloth_stage.h"
 #include "station/data/data_folder.h"
 #include "station/serve/page_answers.h"
 #include "station/session/results.h"
@@ -146,16 +147,44 @@ Words cloth(const Asked& asked) {
   return words;
 }
 
+// How it is seen, and how large.
+void add_view(Words& words, const Asked& asked) {
+  const ClothView view = cloth_view_of(asked.fields);
+  if (const auto problem = problem_of(view)) throw Refused(400, *problem);
+  for (const auto& [option, value] : {std::pair("--turn=", view.turn_deg),
+                                      {"--tilt=", view.tilt_deg},
+                                      {"--light-turn=", view.light_turn_deg},
+                                      {"--light-tilt=", view.light_tilt_deg},
+                                      {"--zoom=", view.zoom}})
+    words.push_back(option + std::to_string(value));
+  if (asked.fields.contains("size_px")) words.insert(words.end(), {"--size", std::to_string(asked.number("size_px"))});
+}
+
 // Cloth of one thread of the library or of two.
 Words design(const Asked& asked) {
   const fs::path folder = asked.workspace.design(asked.new_name());
   if (fs::exists(folder / kMadeOf))
     throw Refused(409, "there is a design " + folder.filename().string() + " already; give this one another name");
-  Words words{"cloth", asked.thread(), "--out", folder};
-  if (const int weft = asked.number("weft"); weft != asked.number("number"))
-    words.insert(words.end(), {"--weft", asked.workspace.thread_in_library(weft).string()});
-  add_cloth_options(words, asked);
+  Words words = design_words(asked.fields, asked.workspace);
+  words.insert(words.begin(), "cloth");
+  words.insert(words.end(), {"--out", folder});
+  add_view(words, asked);
+  if (asked.flag("quick")) words.emplace_back("--quick");
   return words;
+}
+
+// For programs that render cloth by textures, coarse enough to wait for.
+Words design_export(const Asked& asked) {
+  const fs::path folder = asked.workspace.design(name_of(asked.fields, "design"));
+  if (!fs::exists(folder / kMadeOf)) throw Refused(404, "there is no design " + folder.filename().string());
+  return {"export",  "cloth",
+          "--draft", folder / "draft.json",
+          "--warp",  folder / "warp_thread.json",
+          "--weft",  folder / "weft_thread.json",
+          "--only",  "gltf,textures",
+          "--size",  "256",
+          "--spp",   "16",
+          "--out",   asked.workspace.exported(asked.name())};
 }
 
 using Commands = std::map<std::string, std::function<Words(const Asked&)>>;
@@ -239,6 +268,7 @@ const Commands kKinds{
     {"report", [](const Asked& asked) { return report(asked.session()); }},
     {"cloth", cloth},
     {"design", design},
+    {"design_export", design_export},
     {"add", [](const Asked& asked) { return add(asked, asked.session()); }},
     {"export", exported},
 };
@@ -268,6 +298,21 @@ JobCommand job_command(const json& asked, const Workspace& workspace, const fs::
   std::vector<JobStep> steps = steps_of(kind, {asked, workspace, rig});
   const std::string name = text_of(asked, "name");
   return {.title = kind + (name.empty() ? "" : " " + name), .steps = std::move(steps)};
+}
+
+std::vector<std::string> design_words(const json& fields, const Workspace& workspace) {
+  const fs::path no_rig;
+  const Asked asked{fields, workspace, no_rig};
+  Words words{asked.thread()};
+  if (const int weft = asked.number("weft"); weft != asked.number("number"))
+    words.insert(words.end(), {"--weft", workspace.thread_in_library(weft).string()});
+  words.insert(words.end(), {"--draft", ready_draft(name_of(fields, "draft")).string()});
+  if (const std::string shape = asked.text("shape"); !shape.empty()) {
+    const std::vector<std::string> shapes = cloth_shapes();
+    if (std::ranges::find(shapes, shape) == shapes.end()) throw Refused(404, "there is no shape " + shape);
+    words.insert(words.end(), {"--shape", shape});
+  }
+  return words;
 }
 
 std::vector<std::string> export_formats() {

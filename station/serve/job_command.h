@@ -17,7 +17,8 @@ namespace station {
 //   capture (calibration, spool, person), resume, reshoot (view), queue (calibration, person)
 //   develop, invert (quick), report, cloth (draft, warp_colour, weft_colour, quick), add
 //   digitize: capture, and then develop, invert, report and add; process: those of them that a session still lacks
-//   export (number, format)
+//   export (number, format), design_export (design): the cloth of a design as glTF and textures
+//   design (number, weft, draft, shape, size_px and the view of cloth_stage.h)
 struct JobCommand {
   std::string title;  // for people
   std::vector<JobStep> steps;
@@ -27,6 +28,10 @@ struct JobCommand {
 // text behind its option's "=". The name of what is new may be any text; its file is called by safe_name(). Throws
 // Refused for what may not be asked.
 JobCommand job_command(const nlohmann::json& asked, const Workspace& workspace, const std::filesystem::path& rig);
+
+// The arguments that say which cloth a design is, for `cloth` and `look`: threads, draft and, where it is asked for,
+// shape. Throws Refused likewise.
+std::vector<std::string> design_words(const nlohmann::json& asked, const Workspace& workspace);
 
 // The forms in which a thread of the library may be exported.
 std::vector<std::string> export_formats();

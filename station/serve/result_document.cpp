@@ -6,7 +6,7 @@
 
 #include "calibration/light/colour_chart.h"
 #include "inversion/fit/energy_bands.h"
-#include "station/cloth/cloth_preview.h"
+#include "station/cloth/preview/cloth_preview.h"
 #include "station/documents/matrix_rows.h"
 #include "station/documents/number_text.h"
 #include "station/documents/reader.h"

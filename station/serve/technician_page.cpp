@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "rig/devices/clock.h"
+#include "station/cloth/preview/cloth_stage.h"
 #include "station/documents/disk/whole_file.h"
 #include "station/documents/reader.h"
 #include "station/serve/checked_devices.h"
@@ -90,6 +91,7 @@ TechnicianPage::TechnicianPage(const fs::path& rig, const fs::path& workspace, s
       rig_(read_rig(rig)),
       workspace_(workspace),
       frame_(workspace_, rig_),
+      look_(workspace_, program_),
       changed_(std::move(changed)) {}
 
 std::shared_ptr<Job> TechnicianPage::job() const {
@@ -155,6 +157,8 @@ HttpResponse TechnicianPage::get(const HttpRequest& request) {
             .body = from_library(workspace_, [at = number_of(word_of(request, "number"))](const Library& library) {
               return label_svg(library.show(at));
             })};
+  if (request.path == "/api/look") return answered(look_.state());
+  if (request.path == "/picture" && word_of(request, "of") == "look") return look_.picture();
   if (request.path == "/picture") return page_picture(request, workspace_, frame_);
   if (request.path == "/download") {
     const std::string& name = checked_name(word_of(request, "name"));
@@ -171,13 +175,14 @@ HttpResponse TechnicianPage::post(const HttpRequest& request) {
   if (request.path == "/api/control") return take_control(asked);
   const auto& path = request.path;
   if (path != "/api/job" && path != "/api/answer" && path != "/api/pause" && path != "/api/spool" &&
-      path != "/api/thread" && path != "/api/import")
+      path != "/api/thread" && path != "/api/import" && path != "/api/look")
     refuse_path(request);
   if (!in_control(asked)) throw Refused(409, "another browser is in control; take control first");
   if (path == "/api/job") return start(asked);
   if (path == "/api/answer") return answer(asked);
   if (path == "/api/thread") return change_thread(asked);
   if (path == "/api/import") return import_thread(asked);
+  if (path == "/api/look") return look(asked);
   if (path == "/api/spool") {
     const std::string name = write_spool(asked, workspace_, rig_file_);
     changed_();
@@ -243,6 +248,12 @@ HttpResponse TechnicianPage::import_thread(const json& asked) {
   return response;
 }
 
+HttpResponse TechnicianPage::look(const json& asked) {
+  if (!asked.contains("ended")) return answered({{"look", look_.show(asked)}});
+  look_.end();
+  return said(200, "the look has ended");
+}
+
 HttpResponse TechnicianPage::answer(const json& asked) {
   const std::shared_ptr<Job> running = running_job();
   const auto question = asked.find("question"), answer = asked.find("answer");
@@ -273,6 +284,7 @@ json TechnicianPage::state() {
   json document = workspace_.contents();
   document["rig"] = rig_.name;
   document["drafts"] = ready_drafts();
+  document["shapes"] = cloth_shapes();
   document["export_formats"] = export_formats();
   document["simulated_spools"] = rig_.simulation ? simulated_spools() : std::vector<std::string>();
   document["calibration_valid_days"] = rig_.calibration_valid_days;

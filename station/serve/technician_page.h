@@ -2,7 +2,7 @@
 // (workspace.h) holds, and one job at a time.
 //
 //   GET  /                     the page; its other files by their names
-//   GET  /api/state            {"rig", "job", "control", "drafts", "export_formats", "simulated_spools",
+//   GET  /api/state            {"rig", "job", "control", "drafts", "shapes", "export_formats", "simulated_spools",
 //                              "calibration_valid_days", "devices": {"passed" (null: never checked), "checked_ms"},
 //                              and the workspace's contents}
 //   GET  /api/events           event stream: a line when something has changed
@@ -12,8 +12,9 @@
 //   GET  /api/result?name=     result_document.h, of a session
 //   GET  /api/thread?number=   result_document.h, of a thread in the library; with=: of another one, the difference
 //   GET  /api/lots             result_document.h, of the lots in the library
+//   GET  /api/look             design_look.h
 //   GET  /label?number=        label.h, of a thread in the library
-//   GET  /picture?of=...       page_pictures.h
+//   GET  /picture?of=...       page_pictures.h; of=look: the cloth that is designed now
 //   GET  /report?name=         the session's report.html
 //   GET  /calibration?name=    the calibration's calibration.html
 //   GET  /download?name=       exports/<name> as a ZIP archive
@@ -23,6 +24,7 @@
 //   POST /api/thread {"client", "number", "removed": whether it is out of the library | the fields of its sample}
 //   POST /api/import {"client", "name": of the file, "thread": the text of a thread file, "sample": of a sample file;
 //                     may be left out} adds a thread of another station to the library
+//   POST /api/look {"client", "ended": true | design_look.h}  answers {"look"}
 //   POST /api/answer {"client", "question", "answer"}  to the question with this id that the job asks (job.h)
 //   POST /api/pause {"client"}
 //   POST /api/stop          emergency stop: any browser's, at once, also of a job that an earlier server has left
@@ -37,6 +39,7 @@
 #include <string>
 
 #include "station/documents/rig_file.h"
+#include "station/serve/design_look.h"
 #include "station/serve/http_message.h"
 #include "station/serve/job.h"
 #include "station/serve/last_frame.h"
@@ -67,6 +70,7 @@ class TechnicianPage {
   HttpResponse answer(const nlohmann::json& asked);
   HttpResponse change_thread(const nlohmann::json& asked);
   HttpResponse import_thread(const nlohmann::json& asked);
+  HttpResponse look(const nlohmann::json& asked);
   void end_live_view();
   bool in_control(const nlohmann::json& asked) const;
   std::shared_ptr<Job> job() const;
@@ -76,6 +80,7 @@ class TechnicianPage {
   RigFile rig_;
   Workspace workspace_;
   LastFrame frame_;
+  DesignLook look_;
   std::function<void()> changed_;
   mutable std::mutex mutex_;
   std::shared_ptr<Job> job_;

@@ -85,9 +85,12 @@ json design_line(const fs::path& folder) {
   const std::string name = folder.filename().string();
   try {
     const json made_of = read_json_file(folder / kMadeOf);
+    json pictures = json::array();
+    for (const fs::path& picture : pictures_of_cloth(folder)) pictures.push_back(picture.stem().string());
     return {{"name", name},
             {"draft", made_of.value("draft", "")},
             {"threads", made_of.value("threads", json::array({"", ""}))},
+            {"pictures", pictures},
             {"made", fs::last_write_time(folder / kMadeOf).time_since_epoch().count()}};
   } catch (const std::exception& problem) {
     return {{"name", name}, {"problem", problem_line(problem)}};

@@ -5,6 +5,7 @@
 //   queues/<name>.csv      tables of spools             library/           digitized threads
 //   exports/<name>/        made by export               jobs/              what each job said
 //   designs/<name>/        made by cloth, of threads in the library
+//   look/                  made by look, of the cloth that is designed now
 //   rigs/<name>.json       made by rig new              preview.jpg          the camera's live view
 #pragma once
 
@@ -44,8 +45,9 @@ class Workspace {
   // A line for each thread of the library: {"number", "name", "sample", "added_utc", "diameter_mm", "session" (its
   // folder's name), "sha256" (of its file), "relative_rmse"}.
   nlohmann::json thread_lines() const;
-  // {"calibrations" (calibration_line.h), "spools", "sessions", "threads", "queues", "exports", "designs"},
-  // the last each {"name", "draft", "threads" (names of warp and weft), "made" (what changes when it is made anew)}
+  // {"calibrations" (calibration_line.h), "spools", "sessions", "threads", "queues", "exports", "designs"}, the last
+  // each {"name", "draft", "threads" (names of warp and weft), "pictures" (their shapes), "made" (what changes when it
+  // is made anew)}
   nlohmann::json contents();
   // One session: its line in contents(), and "views" with "number", "step", "grade", "reason", "picture" (which file it
   // is, absent without one). Throws Refused (404) when there is none.

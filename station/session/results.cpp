@@ -7,7 +7,7 @@
 namespace station {
 namespace {
 
-constexpr std::array<const char*, 2> kClothPictures{"swatch", "cylinder"};
+constexpr std::array<const char*, 5> kClothPictures{"swatch", "cylinder", "skirt", "pleats", "drape"};
 
 }  // namespace
 

@@ -27,9 +27,10 @@ std::filesystem::path cloth_made_of_file(const std::filesystem::path& session);
 inline constexpr const char* kMadeOf = "made_of.json";  // in a cloth's folder
 
 // {"draft", "model", "threads": [warp's name, weft's], "warp", "weft", "white_card": by picture, the radiance (camera
-// RGB) of a white card in the place of the cloth, "reflectance": the mean of the swatch over its card}; "warp" and
-// "weft" {"srgb": [r, g, b], "delta_e_2000": how far the thread's gamut is from it}, or null for the digitized thread's
-// own colour. Of earlier versions "threads" may be absent, or what is told of cards. Null when there is no preview.
+// RGB) of a white card in the place of the cloth, "views": likewise, how it is seen (cloth_stage.h), "reflectance": the
+// mean of the swatch over its card, where it is seen as it stands}; "warp" and "weft" {"srgb": [r, g, b],
+// "delta_e_2000": how far the thread's gamut is from it}, or null for the digitized thread's own colour. Of earlier
+// versions "threads" may be absent, or what is told of cards and views. Null when there is no preview.
 nlohmann::json cloth_made_of(const std::filesystem::path& session);
 
 // The EXR pictures that are in a cloth's folder, swatch first, and those of a session.

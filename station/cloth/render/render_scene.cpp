@@ -158,8 +158,13 @@ void remove_what_was_left(const std::filesystem::path& out) {
 
 renderer::Film film_to_begin_with(const RenderRequest& request, const RenderIdentity& identity, const cv::Size& size) {
   if (request.fresh) remove_what_was_left(request.out);
-  std::optional<renderer::Film> film = read_checkpoint(checkpoint_of(request.out), identity, size);
-  return film ? *film : renderer::empty_film(size.width, size.height);
+  try {
+    if (const auto film = read_checkpoint(checkpoint_of(request.out), identity, size)) return *film;
+  } catch (const std::runtime_error&) {
+    if (!request.only_this) throw;
+    remove_what_was_left(request.out);
+  }
+  return renderer::empty_film(size.width, size.height);
 }
 
 // Goes on with the film until it is finished. Errors: as render_scene.

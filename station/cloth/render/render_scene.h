@@ -24,6 +24,7 @@ struct RenderRequest {
   bool png = false;                   // a display picture beside the EXR, a.exr -> a.png
   bool keep_finished = false;         // nothing is done where `out` is this very rendering already
   bool fresh = false;                 // a checkpoint that is there is thrown away
+  bool only_this = false;             // likewise, if it cannot be gone on from: its rendering is not wanted any more
   double checkpoint_every_s = 300;
   ProgressStyle progress = ProgressStyle::automatic;
   std::string task = "render";  // for the progress

@@ -2,11 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <opencv2/core.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "renderer/picture/image_file.h"
 #include "tests/places.h"
@@ -110,6 +114,75 @@ TEST_F(ClothPreview, OfTwoThreadFilesIsADesignOfItsOwn) {
   const ProgramResult mixed = design(folder_ / "other.json");
   EXPECT_EQ(mixed.status, 1);
   EXPECT_NE(mixed.error.find("two cameras"), std::string::npos) << mixed.error;
+}
+
+// What it is of, from which side, how large; and what an earlier rendering left does not stand in the way.
+TEST_F(ClothPreview, IsOfTheShapeAndTheViewThatAreAskedFor) {
+  const fs::path folder = folder_ / "design", picture = folder / "swatch.exr";
+  const auto design = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"cloth",   std::string(DATA_DIR) + "/threads/silk_red.json",
+                                   "--draft", std::string(DATA_DIR) + "/drafts/plain.json",
+                                   "--out",   folder,
+                                   "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_threadstation(words);
+  };
+  ASSERT_EQ(design({"--shape", "swatch", "--size", "200"}).status, 0);
+  EXPECT_FALSE(fs::exists(folder / "cylinder.exr"));
+  const cv::Mat3f ahead = renderer::read_exr(picture);
+  EXPECT_EQ(ahead.size(), cv::Size(200, 200));
+  std::ofstream(folder / "swatch.exr.checkpoint") << "of something else";
+  const ProgramResult turned = design({"--shape", "swatch", "--size", "200", "--turn", "60"});
+  ASSERT_EQ(turned.status, 0) << turned.error;
+  const auto made_of = nlohmann::json::parse(turned.out);
+  EXPECT_EQ(made_of.at("views").at("swatch").at("turn_deg"), 60);
+  EXPECT_FALSE(made_of.contains("reflectance")) << "it is told of the swatch as it stands";
+  // A square that is turned by 60 degrees is half as wide.
+  const auto share = [](const cv::Mat3f& one) {
+    cv::Mat1f grey;
+    cv::transform(one, grey, cv::Matx13f(1, 1, 1));
+    return cv::countNonZero(grey > 0) / static_cast<double>(grey.total());
+  };
+  EXPECT_NEAR(share(renderer::read_exr(picture)) / share(ahead), 0.5, 0.08);
+  ASSERT_EQ(design({"--shape", "swatch", "--size", "200", "--light-turn", "180"}).status, 0);
+  const cv::Mat3f behind = renderer::read_exr(picture);
+  EXPECT_NEAR(share(behind) / share(ahead), 1, 0.02) << "seen as before";
+  EXPECT_GT(std::abs(cv::mean(behind)[0] / cv::mean(ahead)[0] - 1), 0.2) << "lit from behind";
+
+  EXPECT_NE(design({"--shape", "cube"}).status, 0);
+  const ProgramResult large = design({"--size", "1000000"});
+  EXPECT_EQ(large.status, 1);
+  EXPECT_NE(large.error.find("1000000 pixels"), std::string::npos) << large.error;
+}
+
+// Lines on its input turn it, the last picture is as good as was asked for, and what is no line ends it.
+TEST_F(ClothPreview, ALookGetsBetterAndTurns) {
+  const std::string look = std::string(THREADSTATION_PROGRAM) + " look " + DATA_DIR +
+                           "/threads/silk_red.json --draft " + DATA_DIR +
+                           "/drafts/plain.json --spp 16 --size 360 --json --out " + (folder_ / "look").string();
+  const ProgramResult looked = run_shell(R"((echo '{"look": 5, "turn_deg": 60}'; sleep 1) | )" + look);
+  ASSERT_EQ(looked.status, 0) << looked.error;
+  std::vector<nlohmann::json> shown;
+  std::istringstream lines(looked.out);
+  for (std::string line; std::getline(lines, line);) shown.push_back(nlohmann::json::parse(line).at("shown"));
+  ASSERT_GE(shown.size(), 3U);
+  EXPECT_EQ(shown.back().at("look"), 5);
+  EXPECT_EQ(shown.back().at("samples"), 16);
+  for (std::size_t i = 1; i < shown.size(); ++i) {
+    EXPECT_EQ(shown[i].at("picture"), shown[i - 1].at("picture").get<int>() + 1);
+    EXPECT_GE(shown[i].at("samples"), shown[i - 1].at("samples"));
+  }
+  // The same cloth by the other command, drawn with other samples.
+  ASSERT_EQ(cloth({"--shape", "swatch", "--turn", "60"}).status, 0);
+  const cv::Scalar seen = cv::mean(renderer::read_linear_srgb(folder_ / "look" / "look.png")),
+                   woven = cv::mean(renderer::read_linear_srgb(result() / "cloth/swatch.png"));
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c] / woven[c], 1, 0.05) << c;
+
+  for (const char* line : {"turn it", R"({"look": 1, "zoom": 0})"}) {
+    const ProgramResult refused = run_shell(std::string("(echo '") + line + "'; sleep 1) | " + look);
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_EQ(refused.error_lines(), 1) << refused.error;
+  }
 }
 
 TEST_F(ClothPreview, RefusesToColourABundleAndNamesAModelThatIsMissing) {

@@ -174,6 +174,48 @@ TEST_F(TechnicianPage, NoNameOfARequestLeavesItsFolder) {
 
 // The browsers' connections are among them: one that a job keeps open is never closed.
 
+// Beside the jobs: another draft is another cloth, another view the same one; a stop is not for it.
+TEST_F(TechnicianPage, ADesignIsSeenWhileItIsMade) {
+  ASSERT_EQ(run_threadstation({"library", "add", std::string(DATA_DIR) + "/threads/silk_red.json", "--library",
+                               folder_ / "bench/library"})
+                .status,
+            0);
+  json wanted{{"client", "me"}, {"number", 1}, {"weft", 1}, {"draft", "plain"}, {"shape", "swatch"}};
+  EXPECT_EQ(refused_with("/api/look", wanted), 409) << "nobody is in control";
+  post("/api/control", {{"client", "me"}});
+  const auto shown = [&](int look) {
+    json state;
+    EXPECT_TRUE(eventually([&] {
+      state = get("/api/look");
+      return !state.at("shown").is_null() && state["shown"]["look"] == look;
+    })) << state;
+    return state;
+  };
+  const auto looked = [&] { return json::parse(post("/api/look", wanted).body).at("look").get<int>(); };
+  EXPECT_EQ(asked("/picture", {{"of", "look"}}).status, 404);
+  const json first = shown(looked());
+  EXPECT_EQ(asked("/picture", {{"of", "look"}}).body.substr(1, 3), "PNG");
+  wanted["turn_deg"] = 40;
+  const json turned = shown(looked());
+  EXPECT_EQ(turned.at("of"), first.at("of"));
+  EXPECT_EQ(json::parse(post("/api/stop", {}).body).at("message"), "nothing is running");
+  EXPECT_TRUE(get("/api/look").at("running"));
+  wanted["draft"] = "satin_5";
+  EXPECT_NE(shown(looked()).at("of"), first.at("of"));
+  for (const auto& [key, value] : {std::pair<const char*, json>("shape", "cube"),
+                                   {"draft", "../plain"},
+                                   {"number", 7},
+                                   {"zoom", 100},
+                                   {"weft", "1"}}) {
+    json wrong = wanted;
+    wrong[key] = value;
+    EXPECT_GE(refused_with("/api/look", wrong), 400) << key;
+  }
+  EXPECT_TRUE(get("/api/look").at("running"));
+  EXPECT_EQ(post("/api/look", {{"client", "me"}, {"ended", true}}).status, 200);
+  EXPECT_FALSE(get("/api/look").at("running"));
+}
+
 TEST_F(TechnicianPage, AJobKeepsNoneOfTheServersFilesOpen) {
   std::array<int, 2> ends{};
   ASSERT_EQ(pipe(ends.data()), 0);

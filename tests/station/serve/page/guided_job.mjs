@@ -295,12 +295,34 @@ async function editing(station) {
   await station.until("the thread to be back", () => /C 4/.test(document.getElementById("threads").textContent), 10);
 }
 
+// The cloth before it is woven, turned by the mouse, the lamp by a key.
+async function seenAtOnce(station) {
+  const look = () => station.page.$eval("#look-picture", image => image.dataset.look);
+  const another = before => station.until("another look", one => document.getElementById("look-picture").dataset.look !== one, 20, before);
+  await station.page.select('#design-form [name="shape"]', "cylinder");
+  await station.until("the cloth", () => document.getElementById("look-picture").naturalWidth > 0, 20);
+  await station.page.$eval("#look-picture", image => image.scrollIntoView());
+  let before = await look();
+  const {x, y} = await (await station.page.$("#look-picture")).boundingBox();
+  await station.page.mouse.move(x + 100, y + 100);
+  await station.page.mouse.down();
+  await station.page.mouse.move(x + 180, y + 130, {steps: 4});
+  await station.page.mouse.up();
+  await another(before);
+  before = await look();
+  await station.page.focus('#look-sliders [name="light_turn_deg"]');
+  await station.page.keyboard.press("ArrowRight");
+  await another(before);
+  await station.until("a finer picture", () => !/Coarse/.test(document.getElementById("look-state").textContent), 60);
+}
+
 // Of a thread of the library, in a folder that is downloaded as one.
 async function design(station) {
   await station.click('[data-screen="library"]');
   await station.click('[aria-label="Weave 2"]');
   await station.until("the thread that was chosen", () => document.querySelector('#design-form [name="weft"]').value === "2", 10);
   await station.page.select('#design-form [name="draft"]', "plain");
+  await seenAtOnce(station);
   await station.type('#design-form [name="name"]', "Kissen, groß");
   await station.click('#design-form [name="quick"]');
   await station.click("#design-form .primary");
@@ -309,9 +331,11 @@ async function design(station) {
   await station.page.$eval("#designs", designs => designs.scrollIntoView());  // pictures are fetched when they are seen
   await station.until("its pictures", () => {
     const pictures = [...document.querySelectorAll("#designs img")];
-    return pictures.length === 2 && pictures.every(image => image.naturalWidth > 0);
+    return pictures.length === 1 && pictures.every(image => image.naturalWidth > 0);
   }, 30);
   assert.match(await station.text("#designs h3"), /^Kissen-gro/);
+  const made = JSON.parse(readFileSync(inWorkspace("designs", await station.text("#designs h3"), "made_of.json"), "utf8"));
+  assert.ok(Math.abs(made.views.cylinder.turn_deg) > 10, "it is woven as it was seen");
   await station.look("design");
 }
 

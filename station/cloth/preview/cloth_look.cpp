@@ -1,0 +1,213 @@
+#include "station/cloth/preview/cloth_look.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <functional>
+#include <iostream>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include "renderer/picture/image_file.h"
+#include "renderer/trace/path_tracer.h"
+#include "station/cloth/preview/cloth_preview.h"
+#include "station/cloth/render/build_scene.h"
+#include "station/documents/disk/stored_file.h"
+#include "station/documents/scene_file.h"
+#include "station/output/display.h"
+#include "station/output/interrupt.h"
+
+namespace station {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+struct AskedLook {
+  int number = 0;
+  ClothView view{};
+};
+
+AskedLook look_of(const std::string& line) {
+  const json document = json::parse(line, nullptr, false);
+  if (!document.is_object() || !document.contains("look") || !document["look"].is_number_integer())
+    throw std::runtime_error("a look was asked for by '" + line.substr(0, 80) +
+                             "', which is no view; give a line such as {\"look\": 1, \"turn_deg\": 30}");
+  const AskedLook asked{document["look"].get<int>(), cloth_view_of(document)};
+  if (const auto problem = problem_of(asked.view)) throw std::runtime_error(*problem);
+  return asked;
+}
+
+// The lines of whoever looks, of which only the last one counts.
+class Looks {
+ public:
+  explicit Looks(int descriptor) : descriptor_(descriptor) {}
+
+  // Waits at most so long for a line. True when there is one that next() has not taken, or ctrl-C came.
+  bool wait(int longest_ms) {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(longest_ms);
+    while (!asked_ && !interrupted() && !closed_) {
+      pollfd one{.fd = descriptor_, .events = POLLIN, .revents = 0};
+      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+      if (poll(&one, 1, std::max(0, static_cast<int>(left.count()))) <= 0) break;
+      read_more();
+    }
+    return asked_ || interrupted();
+  }
+  // The line that came last.
+  std::optional<AskedLook> next() { return std::exchange(asked_, std::nullopt); }
+
+ private:
+  void read_more() {
+    std::array<char, 4096> bytes{};
+    const ssize_t count = read(descriptor_, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) return;
+    if (count <= 0) {
+      closed_ = true;
+      return;
+    }
+    open_.append(bytes.data(), static_cast<std::size_t>(count));
+    for (std::size_t end = 0; (end = open_.find('\n')) != std::string::npos; open_.erase(0, end + 1))
+      asked_ = look_of(open_.substr(0, end));
+  }
+
+  int descriptor_;
+  bool closed_ = false;
+  std::string open_;
+  std::optional<AskedLook> asked_;
+};
+
+// The cloth and its shape, which stay; lamps and camera go with the view.
+class Studio {
+ public:
+  Studio(const ClothLookRequest& request, const ClothStage& stage)
+      : folder_(request.cloth.out),
+        stage_(stage),
+        scale_(request.size_px > 0 ? scale_to(stage, request.size_px) : 1),
+        woven_(weave_threads(request.cloth, request.progress_style)) {
+    scene_ = scene_of({});
+    ProgressDisplay progress("look", request.progress_style);
+    cloths_ = build_cloths(scene_, progress);
+    exposure_.white = white_card(stage_, woven_.files, folder_);
+    tracer_.emplace(build_scene(scene_, cloths_));
+  }
+
+  void turn(const ClothView& view) {
+    const bool same_light = view.light_turn_deg == view_.light_turn_deg && view.light_tilt_deg == view_.light_tilt_deg;
+    scene_ = scene_of(view);
+    view_ = view;
+    if (!same_light) tracer_.emplace(build_scene(scene_, cloths_));
+  }
+
+  const renderer::PathTracer& tracer() const { return *tracer_; }
+  const renderer::Camera& camera() const { return scene_.camera; }
+  cv::Mat3b shown(const cv::Mat3f& linear) const { return display(linear, exposure_, woven_.linear_srgb_from_camera); }
+
+ private:
+  SceneFile scene_of(const ClothView& view) const {
+    return parse_scene(scene_on_stage(stage_, woven_.files, view, scale_), stage_.scene, folder_);
+  }
+
+  fs::path folder_;
+  const ClothStage& stage_;
+  double scale_;
+  WovenThreads woven_;
+  ClothView view_;
+  SceneFile scene_;
+  std::vector<BuiltCloth> cloths_;
+  Exposure exposure_;
+  std::optional<renderer::PathTracer> tracer_;
+};
+
+renderer::Camera coarse(renderer::Camera camera, int times) {
+  const double scale = 1.0 / times;
+  camera.width = std::max(1, camera.width / times), camera.height = std::max(1, camera.height / times);
+  camera.fx *= scale, camera.fy *= scale;
+  camera.cx = (camera.cx + 0.5) * scale - 0.5, camera.cy = (camera.cy + 0.5) * scale - 0.5;
+  return camera;
+}
+
+class Look {
+ public:
+  Look(const ClothLookRequest& request, Looks& looks)
+      : request_(request), looks_(looks), studio_(request, cloth_stage(request.shape)) {}
+
+  // Until another view is asked for, or this one is as good as it gets.
+  void show(const AskedLook& asked) {
+    asked_ = asked;
+    studio_.turn(asked.view);
+    const renderer::Camera& camera = studio_.camera();
+    cv::Mat3f best;
+    for (const int times : {6, 2}) {
+      constexpr int kFew = 4;
+      const renderer::Camera small = coarse(camera, times);
+      renderer::Film film = renderer::empty_film(small.width, small.height);
+      if (!studio_.tracer().refine(small, {.samples_per_pixel = kFew, .progress = undisturbed()}, film)) return;
+      cv::resize(renderer::mean_radiance(film), best, {camera.width, camera.height}, 0, 0, cv::INTER_LINEAR);
+      put(best, 0);
+    }
+    renderer::Film film = renderer::empty_film(camera.width, camera.height);
+    constexpr auto kBetween = std::chrono::milliseconds(700);
+    for (bool done = false; !done;) {
+      const auto until = std::chrono::steady_clock::now() + kBetween;
+      const auto unseen = undisturbed();
+      done = studio_.tracer().refine(
+          camera,
+          {.samples_per_pixel = request_.samples_per_pixel,
+           .progress = [&](double part) { return unseen(part) && std::chrono::steady_clock::now() < until; }},
+          film);
+      if (!done && looks_.wait(0)) return;
+      cv::Mat3f picture = renderer::mean_radiance(film);
+      best.copyTo(picture, film.counts == 0);
+      double least = 0;
+      cv::minMaxLoc(film.counts, &least);
+      put(picture, static_cast<int>(least));
+    }
+  }
+
+ private:
+  std::function<bool(double)> undisturbed() {
+    return [this](double) { return !looks_.wait(0); };
+  }
+
+  void put(const cv::Mat3f& linear, int samples) {
+    const std::string png = renderer::encode_png(studio_.shown(linear));
+    FileSystem disk;
+    store_file(disk, request_.cloth.out / kLookPicture, std::as_bytes(std::span(png)));
+    std::cout << json{{"shown",
+                       {{"look", asked_.number},
+                        {"picture", ++pictures_},
+                        {"samples", samples},
+                        {"of", request_.samples_per_pixel}}}}
+                     .dump()
+              << std::endl;
+  }
+
+  const ClothLookRequest& request_;
+  Looks& looks_;
+  Studio studio_;
+  AskedLook asked_;
+  int pictures_ = 0;
+};
+
+}  // namespace
+
+void look_at_cloth(const ClothLookRequest& request) {
+  constexpr int kLongest_ms = 3'600'000;
+  watch_interrupts();
+  Looks looks(request.input);
+  Look look(request, looks);
+  for (std::optional<AskedLook> asked = AskedLook{}; asked && !interrupted(); asked = looks.next()) {
+    look.show(*asked);
+    looks.wait(kLongest_ms);
+  }
+}
+
+}  // namespace station

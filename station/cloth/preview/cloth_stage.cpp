@@ -1,0 +1,128 @@
+#include "station/cloth/preview/cloth_stage.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "station/data/data_folder.h"
+#include "station/documents/reader.h"
+
+namespace station {
+namespace {
+
+using Eigen::Vector3d;
+using nlohmann::json;
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kMostTurn_deg = 360, kLeastZoom = 0.25, kMostZoom = 20;
+
+Vector3d vector_of(const json& numbers) {
+  return {numbers.at(0).get<double>(), numbers.at(1).get<double>(), numbers.at(2).get<double>()};
+}
+
+struct Turning {
+  Vector3d middle, up;
+  bool above_floor;  // z = 0
+
+  Vector3d turned(const Vector3d& place, double turn_deg, double tilt_deg) const {
+    constexpr double kSteepest = 88 * kDegree, kAboveFloor_mm = 20;
+    if (turn_deg == 0 && tilt_deg == 0) return place;
+    const Vector3d offset = place - middle;
+    const double distance = offset.norm(), height = offset.dot(up);
+    const double floor = std::asin(std::clamp((kAboveFloor_mm - middle.z()) / distance, -1.0, 1.0));
+    const double lowest = above_floor ? std::max(floor, -kSteepest) : -kSteepest;
+    const double elevation = std::clamp(std::asin(height / distance) + tilt_deg * kDegree, lowest, kSteepest);
+    const Vector3d ahead = Eigen::AngleAxisd(turn_deg * kDegree, up) * (offset - height * up).normalized();
+    return middle + distance * (std::cos(elevation) * ahead + std::sin(elevation) * up);
+  }
+};
+
+}  // namespace
+
+const std::vector<ClothStage>& cloth_stages() {
+  static const std::vector<ClothStage> stages{{"swatch", "twill_swatch.json", 720, 720, 32, {0, 0, 0}},
+                                              {"cylinder", "satin_cylinder.json", 480, 720, 32, {41, 0, 84}},
+                                              {"skirt", "satin_skirt.json", 617, 720, 64, {190, -60, 280}},
+                                              {"pleats", "twill_pleats.json", 540, 720, 64, {60, -60, 540}},
+                                              {"drape", "satin_drape.json", 720, 540, 64, {200, -100, 320}}};
+  return stages;
+}
+
+std::vector<std::string> cloth_shapes() {
+  std::vector<std::string> shapes;
+  for (const ClothStage& stage : cloth_stages()) shapes.push_back(stage.shape);
+  return shapes;
+}
+
+const ClothStage& cloth_stage(const std::string& shape) {
+  const auto found = std::ranges::find(cloth_stages(), shape, &ClothStage::shape);
+  if (found == cloth_stages().end())
+    throw std::runtime_error("there is no shape '" + shape +
+                             "' for cloth; take swatch, cylinder, skirt, pleats or drape");
+  return *found;
+}
+
+double scale_to(const ClothStage& stage, int longer_side_px) {
+  return static_cast<double>(longer_side_px) / std::max(stage.width_px, stage.height_px);
+}
+
+bool operator==(const ClothView& one, const ClothView& other) {
+  return to_json(one) == to_json(other);
+}
+
+json to_json(const ClothView& view) {
+  return {{"turn_deg", view.turn_deg},
+          {"tilt_deg", view.tilt_deg},
+          {"light_turn_deg", view.light_turn_deg},
+          {"light_tilt_deg", view.light_tilt_deg},
+          {"zoom", view.zoom}};
+}
+
+ClothView cloth_view_of(const json& document) {
+  const auto number = [&](const char* key, double otherwise) {
+    const auto found = document.find(key);
+    return found != document.end() && found->is_number() ? found->get<double>() : otherwise;
+  };
+  return {number("turn_deg", 0), number("tilt_deg", 0), number("light_turn_deg", 0), number("light_tilt_deg", 0),
+          number("zoom", 1)};
+}
+
+std::optional<std::string> problem_of(const ClothView& view) {
+  for (const double angle : {view.turn_deg, view.tilt_deg, view.light_turn_deg, view.light_tilt_deg})
+    if (!(std::abs(angle) <= kMostTurn_deg))
+      return "cannot turn view or light by more than 360 degrees; give -360 to 360";
+  if (!(view.zoom >= kLeastZoom && view.zoom <= kMostZoom)) return "cannot zoom so far; give 0.25 to 20";
+  return std::nullopt;
+}
+
+json scene_on_stage(const ClothStage& stage, const std::array<std::string, 2>& threads, const ClothView& view,
+                    double scale) {
+  json scene = read_json_file(data_folder() / "scenes" / stage.scene);
+  scene["name"] = "the thread as a " + stage.shape;
+  scene["threads"] = threads;
+  for (json& cloth : scene["cloths"]) {
+    for (const char* key : {"draft", "warp_threads", "weft_threads"}) cloth.erase(key);
+    cloth["patch"] = "patch.json";
+  }
+  json& camera = scene["camera"];
+  const json objects = scene.value("objects", json::array());
+  const Turning turning{
+      .middle = vector_of(camera["target_mm"]),
+      .up = vector_of(camera.value("up", json{0, 0, 1})).normalized(),
+      .above_floor = std::ranges::any_of(objects, [](const json& one) { return one["kind"] == "plane"; })};
+  camera["eye_mm"] = to_json(turning.turned(vector_of(camera["eye_mm"]), view.turn_deg, view.tilt_deg));
+  for (json& light : scene["lights"])
+    if (light.contains("position_mm"))
+      light["position_mm"] =
+          to_json(turning.turned(vector_of(light["position_mm"]), view.light_turn_deg, view.light_tilt_deg));
+  const double enlarged = scale * stage.width_px / camera["width_px"].get<double>();
+  camera["width_px"] = std::max(1, static_cast<int>(std::lround(scale * stage.width_px)));
+  camera["height_px"] = std::max(1, static_cast<int>(std::lround(scale * stage.height_px)));
+  camera["focal_length_px"] = camera["focal_length_px"].get<double>() * enlarged * view.zoom;
+  scene["samples_per_pixel"] = stage.samples_per_pixel;
+  return scene;
+}
+
+}  // namespace station

@@ -1,0 +1,47 @@
+// The stages on which cloth is shown: ready scenes (station/data/scenes) in which cloth and threads are replaced, and
+// the camera and the lamps are turned about the middle of the picture.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace station {
+
+struct ClothStage {
+  std::string shape;                // "swatch", "cylinder", "skirt", "pleats" or "drape"
+  std::string scene;                // in station/data/scenes
+  int width_px = 0, height_px = 0;  // on a screen
+  int samples_per_pixel = 0;
+  Eigen::Vector3d front_mm{0, 0, 0};  // a place of the cloth's face, where a white card would stand
+};
+
+const std::vector<ClothStage>& cloth_stages();
+std::vector<std::string> cloth_shapes();  // the stages' names
+// Errors: std::runtime_error, one line, for a shape that is none of them.
+const ClothStage& cloth_stage(const std::string& shape);
+double scale_to(const ClothStage& stage, int longer_side_px);
+
+// Angles from where the ready scene has camera and lamps, in degrees: `turn` counter-clockwise seen from above, `tilt`
+// upwards. They end short of the floor, where the stage has one, and of straight above and below.
+struct ClothView {
+  double turn_deg = 0, tilt_deg = 0, light_turn_deg = 0, light_tilt_deg = 0;
+  double zoom = 1;  // of the focal length
+};
+bool operator==(const ClothView& one, const ClothView& other);
+
+// {"turn_deg", "tilt_deg", "light_turn_deg", "light_tilt_deg", "zoom"}; what is left out is the ready scene's.
+nlohmann::json to_json(const ClothView& view);
+ClothView cloth_view_of(const nlohmann::json& document);
+// The line that refuses a view beyond 360 degrees or a zoom outside 0.25 to 20; nothing for a view that can be shown.
+std::optional<std::string> problem_of(const ClothView& view);
+
+// The scene of patch.json, beside which it is written, with the threads of warp and weft. `scale`: of the picture's
+// size.
+nlohmann::json scene_on_stage(const ClothStage& stage, const std::array<std::string, 2>& threads, const ClothView& view,
+                              double scale);
+
+}  // namespace station
