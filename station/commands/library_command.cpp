@@ -11,16 +11,16 @@ namespace {
 
 struct LibraryArguments {
   std::string folder = "library", words, what, out;
-  std::optional<std::string> barcode, name, lot, material, colour, note;
+  std::optional<std::string> barcode, name, lot, material, colour, note, tags;
   int number = 0;
   bool json = false;
 };
 
 nlohmann::json to_json(const LibraryThread& thread) {
-  nlohmann::json document = {{"number", thread.number},           {"sample", to_json(thread.sample)},
-                             {"thread", thread.thread_name},      {"added_utc", thread.added_utc},
-                             {"sha256", thread.sha256},           {"session", thread.session},
-                             {"session_utc", thread.session_utc}, {"diameter_mm", thread.diameter_mm}};
+  nlohmann::json document = {
+      {"number", thread.number},           {"sample", to_json(thread.sample)},  {"thread", thread.thread_name},
+      {"added_utc", thread.added_utc},     {"sha256", thread.sha256},           {"session", thread.session},
+      {"session_utc", thread.session_utc}, {"diameter_mm", thread.diameter_mm}, {"tags", thread.tags}};
   if (thread.relative_rmse) document["relative_rmse"] = *thread.relative_rmse;
   return document;
 }
@@ -33,15 +33,21 @@ void print_line(const LibraryThread& thread) {
   std::printf("\n");
 }
 
+std::string joined(const std::vector<std::string>& tags) {
+  std::string text;
+  for (const std::string& tag : tags) text += (text.empty() ? "" : ", ") + tag;
+  return text;
+}
+
 void print_all(const LibraryThread& thread) {
   std::printf(
       "number      %d\nthread      %s\nbarcode     %s\nspool       %s\nlot         %s\nmaterial    %s\n"
       "colour      %s\nnote        %s\ndiameter    %.4g mm\nsession     %s\ncaptured    %s\nadded       %s\n"
-      "sha256      %s\n",
+      "sha256      %s\ntags        %s\n",
       thread.number, thread.thread_name.c_str(), thread.sample.barcode.c_str(), thread.sample.name.c_str(),
       thread.sample.lot.c_str(), thread.sample.material.c_str(), thread.sample.colour.c_str(),
       thread.sample.note.c_str(), thread.diameter_mm, thread.session.c_str(), thread.session_utc.c_str(),
-      thread.added_utc.c_str(), thread.sha256.c_str());
+      thread.added_utc.c_str(), thread.sha256.c_str(), joined(thread.tags).c_str());
   if (thread.relative_rmse) std::printf("agreement   %.1f %% relative RMSE\n", 100 * *thread.relative_rmse);
 }
 
@@ -73,6 +79,7 @@ void edit(const LibraryArguments& arguments) {
   sample.material = arguments.material.value_or(sample.material);
   sample.colour = arguments.colour.value_or(sample.colour);
   sample.note = arguments.note.value_or(sample.note);
+  if (arguments.tags) library.tag(arguments.number, tags_of(*arguments.tags));
   print(library.edit(arguments.number, sample), arguments.json);
 }
 
@@ -116,6 +123,7 @@ void add_library_command(CLI::App& app) {
   edited->add_option("--material", arguments->material, "its fiber");
   edited->add_option("--colour", arguments->colour, "in words");
   edited->add_option("--note", arguments->note, "any text");
+  edited->add_option("--tags", arguments->tags, "words of the lab's own, parted by commas, in place of earlier ones");
   edited->add_flag("--json", arguments->json, "as JSON, for machines");
   edited->callback([arguments] { edit(*arguments); });
   CLI::App* removed = add("remove", "take a thread out of the list; its file and number stay");

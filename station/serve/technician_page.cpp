@@ -207,7 +207,9 @@ HttpResponse TechnicianPage::change_thread(const json& asked) {
       else
         library.restore(number->get<int>());
     } else {
-      library.edit(number->get<int>(), sample_of_form(asked));
+      const Sample sample = sample_of_form(asked);
+      if (asked.contains("tags")) library.tag(number->get<int>(), tags_of(text_of(asked, "tags")));
+      library.edit(number->get<int>(), sample);
     }
   } catch (const Refused&) {
     throw;

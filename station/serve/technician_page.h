@@ -21,7 +21,8 @@
 //   POST /api/control {"client", "take"}          one browser controls, the others watch
 //   POST /api/job {"client", "kind", ...}         job_command.h; a live view ends for it
 //   POST /api/spool {"client", ...}               spool_form.h
-//   POST /api/thread {"client", "number", "removed": whether it is out of the library | the fields of its sample}
+//   POST /api/thread {"client", "number", "removed": whether it is out of the library | the fields of its sample,
+//                     "tags": parted by commas; may be left out}
 //   POST /api/import {"client", "name": of the file, "thread": the text of a thread file, "sample": of a sample file;
 //                     may be left out} adds a thread of another station to the library
 //   POST /api/look {"client", "ended": true | design_look.h}  answers {"look"}

@@ -46,6 +46,7 @@ json thread_lines_of(const fs::path& folder) {
                      {"diameter_mm", thread.diameter_mm},
                      {"session", fs::path(thread.session).filename().string()},
                      {"sha256", thread.sha256},
+                     {"tags", thread.tags},
                      {"relative_rmse", nullptr}});
     if (thread.relative_rmse) lines.back()["relative_rmse"] = *thread.relative_rmse;
   }

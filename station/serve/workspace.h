@@ -43,7 +43,7 @@ class Workspace {
   std::filesystem::path preview() const { return folder_ / "preview.jpg"; }
 
   // A line for each thread of the library: {"number", "name", "sample", "added_utc", "diameter_mm", "session" (its
-  // folder's name), "sha256" (of its file), "relative_rmse"}.
+  // folder's name), "sha256" (of its file), "tags", "relative_rmse"}.
   nlohmann::json thread_lines() const;
   // {"calibrations" (calibration_line.h), "spools", "sessions", "threads", "queues", "exports", "designs"}, the last
   // each {"name", "draft", "threads" (names of warp and weft), "pictures" (their shapes), "made" (what changes when it

@@ -2,7 +2,9 @@
 
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <functional>
+#include <sstream>
 #include <stdexcept>
 
 #include "station/documents/disk/new_folder.h"
@@ -18,7 +20,7 @@ namespace station {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 constexpr const char* kTables = R"(
 CREATE TABLE IF NOT EXISTS spools (id INTEGER PRIMARY KEY, barcode TEXT NOT NULL, name TEXT NOT NULL, lot TEXT NOT NULL,
   material TEXT NOT NULL, colour TEXT NOT NULL, note TEXT NOT NULL, UNIQUE (barcode, name, lot));
@@ -28,11 +30,13 @@ CREATE TABLE IF NOT EXISTS threads (id INTEGER PRIMARY KEY AUTOINCREMENT, spool 
   session INTEGER REFERENCES sessions (id), name TEXT NOT NULL, sha256 TEXT NOT NULL UNIQUE, added_utc TEXT NOT NULL,
   diameter_mm REAL NOT NULL, relative_rmse REAL);
 )";
-// What version 2 added.
+// What versions 2 and 3 added.
 constexpr const char* kRemoved = "ALTER TABLE threads ADD COLUMN removed_utc TEXT";
+constexpr const char* kTags = "ALTER TABLE threads ADD COLUMN tags TEXT NOT NULL DEFAULT ''";  // parted by ", "
 constexpr const char* kSelect =
     "SELECT threads.id, barcode, spools.name, lot, material, colour, note, threads.name, added_utc, sha256, "
-    "coalesce(sessions.folder, ''), coalesce(sessions.utc, ''), relative_rmse, diameter_mm "
+    "coalesce(sessions.folder, ''), coalesce(sessions.utc, ''), relative_rmse, diameter_mm, "
+    "tags "
     "FROM threads JOIN spools ON spools.id = threads.spool LEFT JOIN sessions ON sessions.id = threads.session ";
 
 }  // namespace
@@ -56,11 +60,12 @@ class Library::Index {
     if (version == kVersion) return;
     execute("BEGIN IMMEDIATE");  // two programs may open it at once
     run("PRAGMA user_version", {}, [&](sqlite3_stmt* row) { version = sqlite3_column_int(row, 0); });
-    if (version < kVersion) {
+    if (version < 2) {
       execute(kTables);
       execute(kRemoved);
-      execute("PRAGMA user_version = 2");
     }
+    if (version < 3) execute(kTags);
+    if (version < kVersion) execute(("PRAGMA user_version = " + std::to_string(kVersion)).c_str());
     execute("COMMIT");
   }
   ~Index() { sqlite3_close(db_); }
@@ -132,12 +137,31 @@ LibraryThread thread_of(sqlite3_stmt* row, const std::function<std::string(sqlit
                        .session = text(row, 10),
                        .session_utc = text(row, 11),
                        .relative_rmse = std::nullopt,
-                       .diameter_mm = sqlite3_column_double(row, 13)};
+                       .diameter_mm = sqlite3_column_double(row, 13),
+                       .tags = tags_of(text(row, 14))};
   if (sqlite3_column_type(row, 12) != SQLITE_NULL) thread.relative_rmse = sqlite3_column_double(row, 12);
   return thread;
 }
 
 }  // namespace
+
+std::vector<std::string> tags_of(const std::string& text) {
+  constexpr std::size_t kMost = 20, kLongest = 40;
+  constexpr const char* kBlank = " \t\r\n";
+  std::vector<std::string> tags;
+  std::istringstream parts(text);
+  for (std::string tag; std::getline(parts, tag, ',');) {
+    const std::size_t begin = tag.find_first_not_of(kBlank);
+    if (begin == std::string::npos) continue;
+    tag = tag.substr(begin, tag.find_last_not_of(kBlank) - begin + 1);
+    if (tag.size() > kLongest)
+      throw std::runtime_error("the tag '" + tag + "' is longer than 40 characters; tags are short, parted by commas");
+    if (std::ranges::find(tags, tag) == tags.end()) tags.push_back(tag);
+  }
+  if (tags.size() > kMost)
+    throw std::runtime_error("a thread was to have " + std::to_string(tags.size()) + " tags; give at most 20");
+  return tags;
+}
 
 Library::Library(const fs::path& folder, bool make) : folder_(folder) {
   const fs::path file = folder / "index.sqlite";
@@ -222,7 +246,8 @@ std::vector<LibraryThread> Library::list(const std::string& words) const {
   index_->run(
       std::string(kSelect) +
           "WHERE instr(lower(barcode || ' ' || spools.name || ' ' || lot || ' ' || material || ' ' || colour || "
-          "' ' || note || ' ' || threads.name), lower(?)) > 0 AND removed_utc IS NULL ORDER BY threads.id",
+          "' ' || note || ' ' || threads.name || ' ' || tags), lower(?)) > 0 AND removed_utc IS NULL ORDER BY "
+          "threads.id",
       {words}, [&](sqlite3_stmt* row) { threads.push_back(thread_of(row, Index::text)); });
   return threads;
 }
@@ -253,6 +278,14 @@ LibraryThread Library::edit(int number, const Sample& sample) {
     index_->run("ROLLBACK", {});
     throw;
   }
+  return show(number);
+}
+
+LibraryThread Library::tag(int number, const std::vector<std::string>& tags) {
+  show(number);
+  std::string text;
+  for (const std::string& tag : tags) text += (text.empty() ? "" : ", ") + tag;
+  index_->run("UPDATE threads SET tags = ? WHERE id = CAST(? AS INTEGER)", {text, std::to_string(number)});
   return show(number);
 }
 

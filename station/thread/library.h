@@ -24,7 +24,12 @@ struct LibraryThread {
   std::string session, session_utc;            // where it was captured; empty for a lone thread file
   std::optional<double> relative_rmse;         // the fit's
   double diameter_mm = 0;
+  std::vector<std::string> tags{};  // words of the lab's own
 };
+
+// The tags in a text where they are parted by commas: without empty ones and repetitions. Errors: std::runtime_error
+// for more than 20, or one of more than 40 bytes.
+std::vector<std::string> tags_of(const std::string& text);
 
 class Library {
  public:
@@ -44,6 +49,7 @@ class Library {
   // What the lab knows of the thread's spool, written anew; other threads of the same spool (barcode, name and lot)
   // share it only as long as these three are the same. Errors: as above, also for a sample without any name.
   LibraryThread edit(int number, const Sample& sample);
+  LibraryThread tag(int number, const std::vector<std::string>& tags);  // in place of those that it had
   // Takes a thread out of the list, and puts it back; its file and its number stay. Errors: as above, also where it is
   // out, or in, already.
   void remove(int number, const std::string& utc);

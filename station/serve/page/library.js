@@ -1,4 +1,4 @@
-// Library: pictures, search, duplicates by barcode, edit, taking out and putting back, two threads side by side, export.
+// Library: pictures, search, tags, duplicates by barcode, edit, taking out and putting back, two threads side by side, export.
 
 import {ago, allow, byId, fill, make, percent, row, show, text} from "/document.js";
 import {curves} from "/curves.js";
@@ -14,7 +14,7 @@ let lotsOf = "";   // the threads whose lots are shown
 let takenOut = 0;  // the number that can be put back
 
 function matches(thread, words) {
-  const all = [thread.number, thread.name, thread.session, thread.added_utc, ...Object.values(thread.sample)].join(" ").toLowerCase();
+  const all = [thread.number, thread.name, thread.session, thread.added_utc, ...Object.values(thread.sample), ...thread.tags].join(" ").toLowerCase();
   return words.toLowerCase().split(/\s+/).every(word => all.includes(word));
 }
 
@@ -47,6 +47,11 @@ function exported(thread) {
   return made;
 }
 
+function searchFor(words) {
+  byId("search").value = words;
+  showLibrary();
+}
+
 async function change(fields) {
   const answer = await post("/api/thread", fields);
   if (answer.ok && "removed" in fields) takenOut = fields.removed ? fields.number : 0;
@@ -56,7 +61,8 @@ async function change(fields) {
 
 function editForm(thread) {
   const form = make("form", {className: "edit"}, ...kFields.map(key => make("label", {}, make("span", {textContent: text(key === "material" ? "fiber" : key)}),
-    make("input", {name: key, value: thread.sample[key], maxLength: 100, autocomplete: "off"}))), make("button", {textContent: text("keep")}),
+    make("input", {name: key, value: thread.sample[key], maxLength: 100, autocomplete: "off"}))),
+    make("label", {}, make("span", {textContent: text("tags_how")}), make("input", {name: "tags", value: thread.tags.join(", "), maxLength: 200, autocomplete: "off"})), make("button", {textContent: text("keep")}),
     button("cancel", thread, () => { edited = 0; showLibrary(); }));
   form.onsubmit = event => {
     event.preventDefault();
@@ -69,6 +75,11 @@ function lines(thread, twins) {
   const name = make("span", {}, make("strong", {textContent: thread.name}));
   if (twins > 1) name.append(make("span", {className: "badge", textContent: text("same_barcode", {n: twins})}));
   name.append(make("span", {className: "about", textContent: `${ago(thread.added_utc)}${thread.sample.note ? ` · ${thread.sample.note}` : ""}`}));
+  for (const tag of thread.tags) {
+    const shown = make("button", {type: "button", className: "tag", textContent: tag, onclick: () => searchFor(tag)});
+    shown.setAttribute("aria-label", `${text("search")} ${tag}`);
+    name.append(shown);
+  }
   const actions = make("div", {className: "row tight"}, exported(thread),
     button("edit", thread, () => { edited = edited === thread.number ? 0 : thread.number; showLibrary(); }),
     make("a", {className: "as-button", href: "/label?" + new URLSearchParams({number: thread.number}), target: "_blank", rel: "noopener", textContent: text("label"), ariaLabel: `${text("label")} ${thread.number}`}),

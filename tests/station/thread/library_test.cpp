@@ -62,6 +62,22 @@ TEST_F(ThreadLibrary, EditsTheSampleOfOneThreadOnly) {
   EXPECT_THAT(message_of([&] { library.edit(3, sample); }), HasSubstr("no thread number 3"));
 }
 
+TEST_F(ThreadLibrary, HasTagsOfTheLabsOwnByWhichThreadsAreFound) {
+  Library library(place, true);
+  library.add(thread("silk_blue"), kNow);
+  library.add(thread("silk_red"), kNow);
+  library.tag(2, tags_of(" summer, Sari 4,, summer ,"));
+  EXPECT_THAT(Library(place, false).show(2).tags, testing::ElementsAre("summer", "Sari 4"));
+  ASSERT_EQ(library.list("sari").size(), 1U);
+  EXPECT_EQ(library.list("sari").front().number, 2);
+  EXPECT_THAT(library.tag(2, {}).tags, testing::IsEmpty());
+  EXPECT_EQ(library.list("sari").size(), 0U);
+  EXPECT_THAT(message_of([&] { tags_of(std::string(41, 'x')); }), HasSubstr("40 characters"));
+  std::string many;
+  for (int i = 0; i < 21; ++i) many += std::to_string(i) + ",";
+  EXPECT_THAT(message_of([&] { tags_of(many); }), HasSubstr("21 tags"));
+}
+
 TEST_F(ThreadLibrary, TakesOutAndPutsBackWithoutLosingAnything) {
   Library library(place, true);
   library.add(thread("silk_blue"), kNow);
@@ -77,22 +93,24 @@ TEST_F(ThreadLibrary, TakesOutAndPutsBackWithoutLosingAnything) {
   library.export_thread(1, folder / "out");
 }
 
-// A library of version 1, as it was made before threads could be taken out.
-TEST_F(ThreadLibrary, ReadsOneOfTheVersionBefore) {
-  {
-    Library library(place, true);
-    library.add(thread("silk_blue"), kNow);
+// Libraries as they were made before threads could be taken out, and before there were tags.
+TEST_F(ThreadLibrary, ReadsThoseOfTheVersionsBefore) {
+  const std::string kWithoutTags = "ALTER TABLE threads DROP COLUMN tags; ",
+                    kWithoutRemoved = "ALTER TABLE threads DROP COLUMN removed_utc; ";
+  for (const std::string& before :
+       {kWithoutTags + kWithoutRemoved + "PRAGMA user_version = 1", kWithoutTags + "PRAGMA user_version = 2"}) {
+    fs::remove_all(place);
+    Library(place, true).add(thread("silk_blue"), kNow);
+    sqlite3* index = nullptr;
+    ASSERT_EQ(sqlite3_open((place / "index.sqlite").c_str(), &index), SQLITE_OK);
+    ASSERT_EQ(sqlite3_exec(index, before.c_str(), nullptr, nullptr, nullptr), SQLITE_OK) << before;
+    sqlite3_close(index);
+    Library library(place, false);
+    ASSERT_EQ(library.list().size(), 1U);
+    EXPECT_EQ(library.tag(1, {"old"}).tags.size(), 1U);
+    library.remove(1, kNow);
+    EXPECT_EQ(Library(place, false).list().size(), 0U);
   }
-  sqlite3* index = nullptr;
-  ASSERT_EQ(sqlite3_open((place / "index.sqlite").c_str(), &index), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(index, "ALTER TABLE threads DROP COLUMN removed_utc; PRAGMA user_version = 1", nullptr,
-                         nullptr, nullptr),
-            SQLITE_OK);
-  sqlite3_close(index);
-  Library library(place, false);
-  ASSERT_EQ(library.list().size(), 1U);
-  library.remove(1, kNow);
-  EXPECT_EQ(Library(place, false).list().size(), 0U);
 }
 
 // A flipped bit is not passed on.

@@ -287,8 +287,12 @@ async function weave(station) {
 async function editing(station) {
   await station.click('[aria-label="Edit 2"]');
   await station.type('.edit [name="lot"]', "C 4");
+  await station.type('.edit [name="tags"]', "summer, sari");
   await station.click(".edit button");
   await station.until("the new lot", () => /C 4/.test(document.getElementById("threads").textContent), 10);
+  await station.click('[aria-label="Search sari"]');
+  await station.until("the tagged thread alone", () => document.getElementById("found").textContent === "1 / 2", 10);
+  await station.type("#search", " ");
   await station.click('[aria-label="Take out 2"]');
   await station.until("the thread to be out", () => !/C 4/.test(document.getElementById("threads").textContent), 10);
   await station.click("#undo-button");
