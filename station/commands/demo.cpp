@@ -6,6 +6,8 @@
 #include "station/cloth/preview/cloth_preview.h"
 #include "station/data/data_folder.h"
 #include "station/documents/reader.h"
+#include "station/documents/session_file.h"
+#include "station/documents/thread_file.h"
 #include "station/session/capture_session.h"
 #include "station/session/develop/develop_session.h"
 #include "station/session/results.h"
@@ -48,16 +50,20 @@ bool prepare_folder(const std::filesystem::path& out, const nlohmann::json& rig,
   return keep && std::filesystem::exists(out / "calibration");
 }
 
-}  // namespace
+// Whether this threadstation has developed and fitted the session as it is.
+bool is_fitted(const std::filesystem::path& session) {
+  const std::filesystem::path views = session / "linear" / "views.json", thread = thread_file_of(session);
+  return is_made(views, {session / "journal.jsonl"}) && is_made(thread, {views}) &&
+         read_thread(thread).provenance.value("fitted_by", "") == software_version();
+}
 
-DemoResult run_demo(const DemoRequest& request) {
-  const bool kept = prepare_folder(request.out, demo_rig(request.quick), request.fresh);
-  const std::filesystem::path rig = request.out / "rig.json", session = request.out / "session";
-  calibrate_rig({.rig = rig, .out = request.out / "calibration", .progress_style = request.progress_style});
+// Captures, develops and fits.
+void digitize(const std::filesystem::path& session, const DemoRequest& request) {
   CaptureRequest capture{.session = session, .progress_style = request.progress_style};
   if (!is_session(session))
-    capture.new_session = NewSession{
-        .rig = rig, .calibration = request.out / "calibration", .spool = data_folder() / "spools" / "silk_blue.json"};
+    capture.new_session = NewSession{.rig = request.out / "rig.json",
+                                     .calibration = request.out / "calibration",
+                                     .spool = data_folder() / "spools" / "silk_blue.json"};
   if (capture_session(capture) != RunState::complete)
     throw std::runtime_error("the demo was interrupted; the same command goes on from here");
   develop_session(session, request.progress_style);
@@ -67,15 +73,27 @@ DemoResult run_demo(const DemoRequest& request) {
     inversion.fit.other_starts.clear();
     inversion.samples_per_pixel = kQuickSamples;
   }
-  const InvertResult thread = invert_session(inversion);
-  preview_cloth({.cloth = {.thread = thread.file,
-                           .out = cloth_folder(session),
-                           .draft = data_folder() / "drafts" / "twill_2_2.json"},
-                 .quick = request.quick,
-                 .progress_style = request.progress_style});
+  invert_session(inversion);
+}
+
+}  // namespace
+
+DemoResult run_demo(const DemoRequest& request) {
+  const bool kept = prepare_folder(request.out, demo_rig(request.quick), request.fresh);
+  const std::filesystem::path session = request.out / "session", thread = thread_file_of(session);
+  if (!is_fitted(session)) {
+    calibrate_rig({.rig = request.out / "rig.json",
+                   .out = request.out / "calibration",
+                   .progress_style = request.progress_style});
+    digitize(session, request);
+  }
+  preview_cloth(
+      {.cloth = {.thread = thread, .out = cloth_folder(session), .draft = data_folder() / "drafts" / "twill_2_2.json"},
+       .quick = request.quick,
+       .progress_style = request.progress_style});
   return {.session = session,
-          .thread = thread.file,
-          .relative_rmse = thread.relative_rmse,
+          .thread = thread,
+          .relative_rmse = read_thread(thread).fit.at("relative_rmse").get<double>(),
           .cloth = cloth_pictures(session),
           .report = write_session_report(session),
           .kept = kept};

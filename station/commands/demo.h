@@ -25,7 +25,7 @@ struct DemoResult {
 };
 
 // Runs the demo. What an earlier demo on the same rig left whole in the folder is kept: an interrupted one goes on, a
-// finished one is only developed, fitted and reported again. Another rig (or --quick against full) starts from the
+// finished one is only reported again. Another rig (or --quick against full) starts from the
 // beginning.
 DemoResult run_demo(const DemoRequest& request);
 

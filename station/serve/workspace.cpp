@@ -59,17 +59,6 @@ std::set<std::string> hashes_of(const json& thread_lines) {
   return hashes;
 }
 
-// Whether the file is there and not older than all that it is made from.
-bool is_made(const fs::path& file, const std::vector<fs::path>& from) {
-  std::error_code error;
-  const auto made = fs::last_write_time(file, error);
-  if (error) return false;
-  return std::ranges::none_of(from, [&](const fs::path& one) {
-    const auto time = fs::last_write_time(one, error);
-    return !error && time > made;
-  });
-}
-
 // As Workspace::work_left() says, but for the library.
 std::set<std::string> work_left_of(const fs::path& session, bool complete) {
   const fs::path views = session / "linear" / "views.json", thread = thread_file_of(session);

@@ -1,6 +1,8 @@
 #include "station/session/results.h"
 
+#include <algorithm>
 #include <array>
+#include <system_error>
 
 #include "station/documents/reader.h"
 
@@ -30,6 +32,16 @@ std::filesystem::path thread_file_of(const std::filesystem::path& session) {
 std::filesystem::path fitted_file_of(const std::filesystem::path& session, const std::string& view,
                                      const std::string& model) {
   return results_of(session, model) / "fitted" / (view + ".exr");
+}
+
+bool is_made(const std::filesystem::path& file, const std::vector<std::filesystem::path>& from) {
+  std::error_code error;
+  const auto made = std::filesystem::last_write_time(file, error);
+  if (error) return false;
+  return std::ranges::none_of(from, [&](const std::filesystem::path& one) {
+    const auto time = std::filesystem::last_write_time(one, error);
+    return !error && time > made;
+  });
 }
 
 std::filesystem::path cloth_folder(const std::filesystem::path& session) {

@@ -20,6 +20,9 @@ std::filesystem::path thread_file_of(const std::filesystem::path& session);
 std::filesystem::path fitted_file_of(const std::filesystem::path& session, const std::string& view,
                                      const std::string& model = "thread");
 
+// Whether a file is there and not older than all that it is made from, as far as that is there.
+bool is_made(const std::filesystem::path& file, const std::vector<std::filesystem::path>& from);
+
 // The folder of the cloth that the session's thread weaves into, and the file that says what it is made of.
 std::filesystem::path cloth_folder(const std::filesystem::path& session);
 std::filesystem::path cloth_made_of_file(const std::filesystem::path& session);
