@@ -7,6 +7,7 @@
 
 #include "rig/devices/clock.h"
 #include "station/cloth/preview/cloth_stage.h"
+#include "station/data/data_folder.h"
 #include "station/documents/disk/whole_file.h"
 #include "station/documents/reader.h"
 #include "station/serve/checked_devices.h"
@@ -92,7 +93,9 @@ TechnicianPage::TechnicianPage(const fs::path& rig, const fs::path& workspace, s
       workspace_(workspace),
       frame_(workspace_, rig_),
       look_(workspace_, program_),
-      changed_(std::move(changed)) {}
+      changed_(std::move(changed)) {
+  data_folder();  // without it no screen would come up
+}
 
 std::shared_ptr<Job> TechnicianPage::job() const {
   const std::scoped_lock lock(mutex_);

@@ -51,7 +51,7 @@ namespace station {
 class TechnicianPage {
  public:
   // Makes the workspace's folders. `changed` is called, from any thread, when /api/state is different. Errors:
-  // std::runtime_error for a rig file or workspace that cannot be used.
+  // std::runtime_error for a rig file or workspace that cannot be used, and without what comes with the program.
   TechnicianPage(const std::filesystem::path& rig, const std::filesystem::path& workspace,
                  std::function<void()> changed, std::filesystem::path program = kThisProgram);
 

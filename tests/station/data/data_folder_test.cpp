@@ -61,6 +61,12 @@ TEST_F(DataFolder, IsFoundFromTheProgramsOwnPlace) {
   EXPECT_EQ(without.status, 1);
   EXPECT_THAT(without.error, AllOf(HasSubstr("share/threadstation"), HasSubstr("THREADSTATION_DATA")));
   EXPECT_EQ(without.error_lines(), 1) << without.error;
+  // A page that nobody could use does not come up.
+  const station_test::ProgramResult serve = station_test::run_shell(
+      "cd / && timeout 20 '" + program.string() +
+      "' serve --port 0 --rig '" DATA_DIR "/rigs/simulated.json' --workspace '" + (folder_ / "lab").string() + "'");
+  EXPECT_EQ(serve.status, 1);
+  EXPECT_THAT(serve.error, HasSubstr("share/threadstation"));
   fs::create_directories(data / "rigs");  // found, and then its rig is missed
   EXPECT_THAT(station_test::run_shell(line).error, HasSubstr(data / "rigs/simulated.json"));
 }
