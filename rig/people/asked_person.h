@@ -27,6 +27,7 @@ struct Question {
   std::vector<Choice> choices = {{kDone, "", "Done"}, {kDecline, "q", "Cannot be done now"}};
   std::string typed{};   // what may be typed instead of a choice ("the angle in degrees"); empty: nothing
   std::string remark{};  // why it is asked again; empty the first time
+  std::optional<double> turn_to_deg{};  // what the platform is to be turned to, for a drawing
   // Done again and again while nobody has answered; what it returns is the answer then. A terminal leaves it out: there
   // an Enter that comes too late would answer the next question.
   std::function<std::optional<std::string>()> meanwhile{};
@@ -64,8 +65,9 @@ std::unique_ptr<AskedPerson> make_person_at_terminal(std::istream& in, std::ostr
 
 // One line each way. A question, on `out`:
 //   {"question": {"id": 3, "text": ..., "choices": [{"answer": "done", "label": "Done"}, ...], "typed": ...,
-//    "remark": ..., "step": 2, "of": 17, "arrangement": {...}}}
-// with "typed" and "remark" where the question has them, and the context that was prepared. Its answer, on `in`:
+//    "remark": ..., "turn_to_deg": 15, "step": 2, "of": 17, "arrangement": {...}}}
+// with "typed", "remark" and "turn_to_deg" where the question has them, and the context that was prepared. Its answer,
+// on `in`:
 //   {"id": 3, "answer": "done"}
 // Meanwhile, on `out`: {"remark": {"id": 3, "text": ...}}, and {"answered": 3} when it was answered by what is seen.
 // Every question has an id of its own. A line that does not answer the open question is not taken, and `out` says so:

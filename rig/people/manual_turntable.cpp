@@ -60,7 +60,8 @@ class ManualTurntable final : public TrackedTurntable {
   double confirmed(double angle_rad, const std::string& todo) {
     Question question{.text = todo,
                       .how = "Press Enter when it stands there, or type the angle that you read; q and Enter to end: ",
-                      .typed = "the angle that you read, in degrees"};
+                      .typed = "the angle that you read, in degrees",
+                      .turn_to_deg = angle_rad / kDegree};
     question.choices.front().label = "It stands there";
     for (int tries = 0; tries < kMostTries; ++tries) {
       const std::string answer = ask_or_end(asked_, question);

@@ -40,6 +40,7 @@ class PersonBehindProgram final : public AskedPerson {
       asked["choices"].push_back({{"answer", choice.answer}, {"label", choice.label}});
     if (!question.typed.empty()) asked["typed"] = question.typed;
     if (!question.remark.empty()) asked["remark"] = question.remark;
+    if (question.turn_to_deg) asked["turn_to_deg"] = *question.turn_to_deg;
     return asked;
   }
 

@@ -5,7 +5,7 @@ import {outcomeText} from "/frame.js";
 import {beginLive, newFrame} from "/live.js";
 import {said} from "/phrases.js";
 import {ask, inControl, jobRuns, picture, post, startJob, state, whyNot} from "/station.js";
-import {stepPicture} from "/step_picture.js";
+import {stepPicture, turnPicture} from "/step_picture.js";
 
 let shownFrame = "", shownArrangement = "";
 
@@ -82,11 +82,13 @@ function helpOn(question) {
 
 function showStep(question) {
   byId("step-help").href = `/handbook/${helpOn(question)}`;
-  const wanted = JSON.stringify([question.arrangement, question.drawing]);
+  byId("question").classList.toggle("turns", "turn_to_deg" in question);
+  const wanted = JSON.stringify([question.arrangement, question.drawing, question.turn_to_deg]);
   if (wanted === shownArrangement) return;
   shownArrangement = wanted;
   const drawing = question.drawing ? [make("img", {src: `/handbook/drawings/${question.drawing}.svg`, alt: text("measure_drawing")})] : [];
-  byId("step").replaceChildren(...(question.arrangement ? [stepPicture(question.arrangement)] : drawing));
+  byId("step").replaceChildren(...("turn_to_deg" in question ? [turnPicture(question.turn_to_deg)]
+                               : question.arrangement ? [stepPicture(question.arrangement)] : drawing));
 }
 
 function histogram(bins) {

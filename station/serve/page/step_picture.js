@@ -1,5 +1,5 @@
-// A drawing of how the bench should stand, for each step that a person does: seen from above, and what is on the platform
-// as the camera sees it.
+// Drawings for each step that a person does: how the bench should stand, seen from above and as the camera sees what is on
+// the platform, or how far the platform is to be turned.
 
 import {draw, text} from "/document.js";
 
@@ -71,4 +71,22 @@ export function stepPicture(wanted) {
   return draw("svg", {viewBox: "0 0 600 320", role: "img", "aria-label": text("step_picture")},
     fromAbove(wanted), front(wanted),
     words(300, 308, light, {class: wanted.room_light ? "lit" : "dim"}));
+}
+
+// The platform seen from above, its mark where it should be; counter-clockwise is more, and 0 is in front, at the camera.
+export function turnPicture(degrees) {
+  const at = (angle, radius) => { const turn = angle * Math.PI / 180; return [300 + radius * Math.sin(turn), 130 + radius * Math.cos(turn)].map(value => value.toFixed(1)); };
+  const marks = Array.from({length: 24}, (unused, i) => {
+    const [x1, y1] = at(15 * i, 92), [x2, y2] = at(15 * i, i % 6 ? 98 : 104);
+    return draw("line", {x1, y1, x2, y2, class: "scale"});
+  });
+  const turned = ((degrees % 360) + 360) % 360, way = Math.min(Math.max(turned, 0.1), 359.9), end = at(way, 76).join(" ");
+  return draw("svg", {viewBox: "0 0 600 320", role: "img", "aria-label": text("turn_picture", {degrees: degrees.toFixed(1)})},
+    draw("circle", {cx: 300, cy: 130, r: 92, class: "platform"}), ...marks,
+    ...(turned ? [draw("path", {d: `M${at(0, 76).join(" ")} A76 76 0 ${way > 180 ? 1 : 0} 0 ${end}`, class: "way"})] : []),
+    draw("line", {x1: 300, y1: 130, x2: at(turned, 88)[0], y2: at(turned, 88)[1], class: "mark"}),
+    draw("circle", {cx: at(turned, 88)[0], cy: at(turned, 88)[1], r: 9, class: "thing"}),
+    draw("text", {x: 300, y: 120, "text-anchor": "middle", class: "angle"}, `${degrees.toFixed(1)}°`),
+    draw("path", {d: "M280 262 h40 v22 h-40 z M291 262 l4 -12 h10 l4 12", class: "camera"}),
+    words(300, 308, "camera"));
 }

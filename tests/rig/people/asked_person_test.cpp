@@ -49,7 +49,8 @@ TEST_F(BehindProgram, AQuestionIsALineWithAnIdItsChoicesAndWhatItIsAbout) {
   person->prepare({{"step", 2}, {"of", 17}, {"arrangement", {{"lamp", "front"}}}}, "a drawing");
   EXPECT_EQ(person->ask({.text = "Do it."}), rig::kDone);
   person->prepare({{"arrangement", nullptr}, {"step", 3}}, "");
-  EXPECT_EQ(person->ask({.text = "Do that.", .typed = "an angle", .remark = "\"No\"."}), rig::kDecline);
+  EXPECT_EQ(person->ask({.text = "Do that.", .typed = "an angle", .remark = "\"No\".", .turn_to_deg = 15}),
+            rig::kDecline);
   const json choices{{{"answer", "done"}, {"label", "Done"}}, {{"answer", "decline"}, {"label", "Cannot be done now"}}};
   EXPECT_EQ(said(), (std::vector<json>{{{"question",
                                          {{"id", 1},
@@ -64,6 +65,7 @@ TEST_F(BehindProgram, AQuestionIsALineWithAnIdItsChoicesAndWhatItIsAbout) {
                                           {"choices", choices},
                                           {"typed", "an angle"},
                                           {"remark", "\"No\"."},
+                                          {"turn_to_deg", 15.0},
                                           {"step", 3},
                                           {"of", 17}}}}}));
 }

@@ -47,21 +47,5 @@ TEST_F(DimLight, IsCalibratedByTwelveActionsInAQuarterOfAnHour) {
   EXPECT_EQ(station::failed_gates(station::all_gates(station::read_calibration(folder))), "");
 }
 
-TEST_F(TurnedByHand, IsCalibratedAndASpoolCapturedFromThePage) {
-  EXPECT_GT(attend({{"client", "me"}, {"kind", "calibrate"}, {"name", "monday"}}).size(), 5U);
-  ASSERT_EQ(post("/api/spool", {{"client", "me"},
-                                {"name", "silk"},
-                                {"turns", 50},
-                                {"diameter_mm", 0.5},
-                                {"sheets", "front"},
-                                {"simulated", "silk_red"}})
-                .status,
-            200);
-  const auto asked =
-      attend({{"client", "me"}, {"kind", "capture"}, {"name", "silk"}, {"calibration", "monday"}, {"spool", "silk"}});
-  EXPECT_GT(asked.size(), 1U);
-  EXPECT_EQ(get("/api/session", "silk").at("state"), "complete");
-}
-
 }  // namespace
 }  // namespace station_test

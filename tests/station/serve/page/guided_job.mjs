@@ -1,7 +1,8 @@
-// node guided_job.mjs PROGRAM DATA FOLDER
+// node guided_job.mjs PROGRAM DATA FOLDER [hand]
 // The whole guided job through the technician's page, clicked as a person clicks it, with the real drivers on the simulated
 // wires: check, live view, calibration, spool form, 17 views, development, fit, cloth, library, export; what a page must not do
 // to somebody who scans, presses keys and looks away; German. FOLDER is made anew; its screenshots are for looking at.
+// hand: the rig has no motor, and the person turns the platform; from check to the thread in the library.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {existsSync, mkdirSync, readFileSync, rmSync, writeFileSync} from "node:fs";
@@ -10,7 +11,8 @@ import {disturb} from "./disturb.mjs";
 import {startServer} from "./station_server.mjs";
 import {WatchedPage} from "./watched_page.mjs";
 
-const [program, data, folder] = process.argv.slice(2);
+const [program, data, folder, turned] = process.argv.slice(2);
+const byHand = turned === "hand";
 const workspace = path.join(folder, "bench");
 const session = "4006381333948-B-3";
 const inWorkspace = (...parts) => path.join(workspace, ...parts);
@@ -20,7 +22,8 @@ const note = text => console.log(`${((Date.now() - began) / 1000).toFixed(1).pad
 
 // The documented rig with a person at it, drawn with few samples a pixel.
 function writeRig() {
-  const rig = JSON.parse(readFileSync(path.join(data, "rigs/simulated_wire_grbl.json"), "utf8"));
+  const rig = JSON.parse(readFileSync(path.join(data, byHand ? "rigs/simulated.json" : "rigs/simulated_wire_grbl.json"), "utf8"));
+  if (byHand) rig.turntable = "manual";
   rig.operator = "console";
   rig.simulation.samples_per_pixel = 2;
   rig.simulation.target_samples_per_pixel = 4;
@@ -71,7 +74,7 @@ async function check(station) {
   await station.look("bench-idle");
   await station.click('[data-screen="overview"]');
   await station.click("#next-button");
-  await attend(station, "check", 60);
+  assert.equal(await attend(station, "check", 60) > 0, byHand);
   assert.equal((await station.page.$$("#devices .well")).length, 2, "turntable and camera are sound");
   await station.click("#preview");
   await station.until("a live picture", () => {
@@ -205,6 +208,17 @@ async function capture(station) {
   await verdicts(later);
   await later.look("session");
   return later;
+}
+
+// Every turn is a question.
+async function captureByHand(station) {
+  await fillSpool(station);
+  await station.click("#capture-form [name=whole]");
+  await station.click("#capture-form .primary");
+  assert.ok(await attend(station, "capture", 300) >= 17);
+  await station.click('[data-screen="session"]');
+  await verdicts(station);
+  return station;
 }
 
 // A thousand connections of no use while the run is under way: the page comes back by itself, the run has not noticed.
@@ -430,15 +444,21 @@ try {
   const watching = await germanWatcher(station);
   await check(station);
   await calibrate(station);
-  await stopByKey(station);
-  station = await capture(station);
-  await fit(station);
-  await weave(station);
-  await library(station);
-  await design(station);
-  await german(station);
-  await nothingUntold(watching);
-  await stopWithoutServer(station);
+  if (byHand) {
+    station = await captureByHand(station);
+    await fit(station);
+    await nothingUntold(watching);
+  } else {
+    await stopByKey(station);
+    station = await capture(station);
+    await fit(station);
+    await weave(station);
+    await library(station);
+    await design(station);
+    await german(station);
+    await nothingUntold(watching);
+    await stopWithoutServer(station);
+  }
 } catch (error) {
   console.log(await station.report());
   throw error;
@@ -446,8 +466,8 @@ try {
   await station.close();
   server.stop();
 }
-for (const file of [`sessions/${session}/report.html`, "exports/thread-2-folder/thread.json", "exports/thread-2-folder/manifest.json",
-  "exports/thread-2-materials/export.json"])
+const exported = ["exports/thread-2-folder/thread.json", "exports/thread-2-folder/manifest.json", "exports/thread-2-materials/export.json"];
+for (const file of [`sessions/${session}/report.html`, ...(byHand ? [] : exported)])
   assert.ok(existsSync(inWorkspace(file)), file);
 assert.match(execFileSync(program, ["verify", inWorkspace("sessions", session)]).toString(), /17/);
 note(`${station.shared.pictures} screenshots in ${station.folder}`);
