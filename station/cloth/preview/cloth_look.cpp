@@ -153,26 +153,34 @@ class Look {
       cv::resize(renderer::mean_radiance(film), best, {camera.width, camera.height}, 0, 0, cv::INTER_LINEAR);
       put(best, 0);
     }
+    // The first passes are short, so that the whole picture gets better alike.
     renderer::Film film = renderer::empty_film(camera.width, camera.height);
+    for (const int samples : {1, 4, renderer::kBatch, request_.samples_per_pixel})
+      if (!refine(camera, std::min(samples, request_.samples_per_pixel), best, film)) return;
+  }
+
+ private:
+  // Shows the picture now and then until it has so many samples; false when another view was asked for before.
+  bool refine(const renderer::Camera& camera, int samples, const cv::Mat3f& coarser, renderer::Film& film) {
     constexpr auto kBetween = std::chrono::milliseconds(700);
     for (bool done = false; !done;) {
       const auto until = std::chrono::steady_clock::now() + kBetween;
       const auto unseen = undisturbed();
       done = studio_.tracer().refine(
           camera,
-          {.samples_per_pixel = request_.samples_per_pixel,
+          {.samples_per_pixel = samples,
            .progress = [&](double part) { return unseen(part) && std::chrono::steady_clock::now() < until; }},
           film);
-      if (!done && looks_.wait(0)) return;
+      if (!done && looks_.wait(0)) return false;
       cv::Mat3f picture = renderer::mean_radiance(film);
-      best.copyTo(picture, film.counts == 0);
+      coarser.copyTo(picture, film.counts == 0);
       double least = 0;
       cv::minMaxLoc(film.counts, &least);
       put(picture, static_cast<int>(least));
     }
+    return true;
   }
 
- private:
   std::function<bool(double)> undisturbed() {
     return [this](double) { return !looks_.wait(0); };
   }

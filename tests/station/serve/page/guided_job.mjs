@@ -354,6 +354,7 @@ async function design(station) {
   assert.match(await station.text("#designs h3"), /^Kissen-gro/);
   const made = JSON.parse(readFileSync(inWorkspace("designs", await station.text("#designs h3"), "made_of.json"), "utf8"));
   assert.ok(Math.abs(made.views.cylinder.turn_deg) > 10, "it is woven as it was seen");
+  await station.page.evaluate(() => scrollTo(0, 0));
   await station.look("design");
 }
 
