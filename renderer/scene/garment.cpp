@@ -173,7 +173,7 @@ class HangingGrid {
   }
 
   void settle(int steps, const std::function<void(int steps_done)>& go_on) {
-    constexpr double kStep_s = 1 / 240.0, kGravity = -9810, kKept = 0.98;  // of the speed, after each step
+    constexpr double kGravity = -9810, kKept = 0.98;  // of the speed, after each step
     constexpr int kSweeps = 20;
     std::vector<Vector3d> speeds(places_.size(), Vector3d::Zero());
     for (int step = 0; step < steps; ++step) {
@@ -182,7 +182,7 @@ class HangingGrid {
       for (std::size_t i = 0; i < places_.size(); ++i)
         places_[i] += kStep_s * (kKept * speeds[i] + Vector3d(0, 0, kGravity * kStep_s));
       for (int sweep = 0; sweep < kSweeps; ++sweep) {
-        for (const Link& link : links_) pull(link, kStep_s);
+        for (const Link& link : links_) pull(link);
         for (std::size_t i = 0; i < places_.size(); ++i) keep_outside(before[i], places_[i]);
       }
       for (std::size_t i = 0; i < places_.size(); ++i) speeds[i] = (places_[i] - before[i]) / kStep_s;
@@ -200,10 +200,11 @@ class HangingGrid {
   }
 
  private:
+  static constexpr double kStep_s = 1 / 240.0;
   static constexpr double kClearance_mm = 1.5, kFriction = 0.6;  // of a slide that is held back, each sweep
   struct Link {
     std::uint32_t a, b;
-    double length_mm, compliance_s2;
+    double length_mm, yielding;  // the share of its stretch that each end takes
   };
 
   std::uint32_t index(int column, int row) const { return static_cast<std::uint32_t>(row * (side_ + 1) + column); }
@@ -214,27 +215,30 @@ class HangingGrid {
       int right, up;
       double compliance_s2;
     };
-    for (int row = 0; row <= side_; ++row)
-      for (int column = 0; column <= side_; ++column)
-        for (const Kind& kind : {Kind{1, 0, kThread},
-                                 {0, 1, kThread},
-                                 {1, 1, kShear},
-                                 {-1, 1, kShear},
-                                 {2, 0, kBending},
-                                 {0, 2, kBending},
-                                 {5, 0, kBending},
-                                 {0, 5, kBending}}) {
-          const int to_column = column + kind.right, to_row = row + kind.up;
-          if (to_column < 0 || to_column > side_ || to_row > side_) continue;
-          links_.push_back({index(column, row), index(to_column, to_row), cell_mm_ * std::hypot(kind.right, kind.up),
-                            kind.compliance_s2});
-        }
+    // Links that follow one another share no point, so that a processor works on several at once.
+    for (const Kind& kind : {Kind{1, 0, kThread},
+                             {0, 1, kThread},
+                             {1, 1, kShear},
+                             {-1, 1, kShear},
+                             {2, 0, kBending},
+                             {0, 2, kBending},
+                             {5, 0, kBending},
+                             {0, 5, kBending}})
+      for (const int half : {0, 1})
+        for (int row = 0; row <= side_; ++row)
+          for (int column = 0; column <= side_; ++column) {
+            const int to_column = column + kind.right, to_row = row + kind.up;
+            if (to_column < 0 || to_column > side_ || to_row > side_) continue;
+            if ((kind.up > 0 ? row / kind.up : column / kind.right) % 2 != half) continue;
+            links_.push_back({index(column, row), index(to_column, to_row), cell_mm_ * std::hypot(kind.right, kind.up),
+                              1 / (2 + kind.compliance_s2 / (kStep_s * kStep_s))});
+          }
   }
 
-  void pull(const Link& link, double step_s) {
+  void pull(const Link& link) {
     const Vector3d between = places_[link.b] - places_[link.a];
     const double length = std::max(between.norm(), 1e-9);
-    const double share = (length - link.length_mm) / length / (2 + link.compliance_s2 / (step_s * step_s));
+    const double share = (1 - link.length_mm / length) * link.yielding;
     places_[link.a] += share * between;
     places_[link.b] -= share * between;
   }
