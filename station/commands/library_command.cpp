@@ -79,8 +79,10 @@ void edit(const LibraryArguments& arguments) {
   sample.material = arguments.material.value_or(sample.material);
   sample.colour = arguments.colour.value_or(sample.colour);
   sample.note = arguments.note.value_or(sample.note);
-  if (arguments.tags) library.tag(arguments.number, tags_of(*arguments.tags));
-  print(library.edit(arguments.number, sample), arguments.json);
+  const std::vector<std::string> tags = tags_of(arguments.tags.value_or(""));  // refused before anything is written
+  LibraryThread edited = library.edit(arguments.number, sample);
+  if (arguments.tags) edited = library.tag(arguments.number, tags);
+  print(edited, arguments.json);
 }
 
 }  // namespace

@@ -92,18 +92,16 @@ class Studio {
         stage_(stage),
         scale_(request.size_px > 0 ? scale_to(stage, request.size_px) : 1),
         woven_(weave_threads(request.cloth, request.progress_style)) {
-    scene_ = scene_of({});
     ProgressDisplay progress("look", request.progress_style);
-    cloths_ = build_cloths(scene_, progress);
+    cloths_ = build_cloths(scene_of({}), progress);
     exposure_.white = white_card(stage_, woven_.files, folder_);
-    tracer_.emplace(build_scene(scene_, cloths_));
   }
 
   void turn(const ClothView& view) {
     const bool same_light = view.light_turn_deg == view_.light_turn_deg && view.light_tilt_deg == view_.light_tilt_deg;
     scene_ = scene_of(view);
     view_ = view;
-    if (!same_light) tracer_.emplace(build_scene(scene_, cloths_));
+    if (!tracer_ || !same_light) tracer_.emplace(build_scene(scene_, cloths_));
   }
 
   const renderer::PathTracer& tracer() const { return *tracer_; }
@@ -139,7 +137,7 @@ class Look {
   Look(const ClothLookRequest& request, Looks& looks)
       : request_(request), looks_(looks), studio_(request, cloth_stage(request.shape)) {}
 
-  // Until another view is asked for, or this one is as good as it gets.
+  // Shows it until another view is asked for, or this one is as good as it gets.
   void show(const AskedLook& asked) {
     asked_ = asked;
     studio_.turn(asked.view);

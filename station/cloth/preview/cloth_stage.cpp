@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -68,10 +69,6 @@ double scale_to(const ClothStage& stage, int longer_side_px) {
   return static_cast<double>(longer_side_px) / std::max(stage.width_px, stage.height_px);
 }
 
-bool operator==(const ClothView& one, const ClothView& other) {
-  return to_json(one) == to_json(other);
-}
-
 json to_json(const ClothView& view) {
   return {{"turn_deg", view.turn_deg},
           {"tilt_deg", view.tilt_deg},
@@ -83,7 +80,8 @@ json to_json(const ClothView& view) {
 ClothView cloth_view_of(const json& document) {
   const auto number = [&](const char* key, double otherwise) {
     const auto found = document.find(key);
-    return found != document.end() && found->is_number() ? found->get<double>() : otherwise;
+    if (found == document.end()) return otherwise;
+    return found->is_number() ? found->get<double>() : std::numeric_limits<double>::quiet_NaN();
   };
   return {number("turn_deg", 0), number("tilt_deg", 0), number("light_turn_deg", 0), number("light_tilt_deg", 0),
           number("zoom", 1)};

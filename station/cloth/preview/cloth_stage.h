@@ -30,10 +30,11 @@ double scale_to(const ClothStage& stage, int longer_side_px);
 struct ClothView {
   double turn_deg = 0, tilt_deg = 0, light_turn_deg = 0, light_tilt_deg = 0;
   double zoom = 1;  // of the focal length
+  bool operator==(const ClothView&) const = default;
 };
-bool operator==(const ClothView& one, const ClothView& other);
 
-// {"turn_deg", "tilt_deg", "light_turn_deg", "light_tilt_deg", "zoom"}; what is left out is the ready scene's.
+// {"turn_deg", "tilt_deg", "light_turn_deg", "light_tilt_deg", "zoom"}; what is left out is the ready scene's, and what
+// is no number is none, which problem_of() refuses.
 nlohmann::json to_json(const ClothView& view);
 ClothView cloth_view_of(const nlohmann::json& document);
 // The line that refuses a view beyond 360 degrees or a zoom outside 0.25 to 20; nothing for a view that can be shown.

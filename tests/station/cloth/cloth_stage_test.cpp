@@ -73,6 +73,8 @@ TEST(ClothStage, RefusesWhatCannotBeShown) {
   for (const station::ClothView& view : {station::ClothView{.turn_deg = 361}, station::ClothView{.light_tilt_deg = NAN},
                                          station::ClothView{.zoom = 0}, station::ClothView{.zoom = 21}})
     EXPECT_TRUE(station::problem_of(view));
+  EXPECT_TRUE(station::problem_of(station::cloth_view_of({{"turn_deg", "far"}}))) << "no silent guess";
+  EXPECT_EQ(station::cloth_view_of(json::object()), station::ClothView{});
   EXPECT_THROW(station::cloth_stage("cube"), std::runtime_error);
 }
 
