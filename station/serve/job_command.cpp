@@ -10,9 +10,9 @@
 
 #include "station/cloth/preview/cloth_stage.h"
 #include "station/data/data_folder.h"
+#include "station/documents/disk/file_name.h"
 #include "station/serve/page_answers.h"
 #include "station/session/results.h"
-#include "station/session/spool_queue.h"
 
 namespace station {
 namespace {

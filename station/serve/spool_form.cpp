@@ -4,11 +4,11 @@
 
 #include "station/bench/bench_picture.h"
 #include "station/data/data_folder.h"
+#include "station/documents/disk/file_name.h"
 #include "station/documents/reader.h"
 #include "station/documents/sample.h"
 #include "station/documents/spool.h"
 #include "station/serve/page_answers.h"
-#include "station/session/spool_queue.h"
 
 namespace station {
 namespace {

@@ -1,7 +1,6 @@
 #include "station/session/spool_queue.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <initializer_list>
 #include <map>
 #include <stdexcept>
@@ -16,19 +15,6 @@
 
 namespace station {
 namespace {
-
-bool plain(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-}
-
-// The code point of a UTF-8 text that begins at `at`, which moves behind it.
-unsigned code_point(const std::string& text, std::size_t& at) {
-  const auto first = static_cast<unsigned char>(text[at++]);
-  int more = first >= 0xF0 ? 3 : first >= 0xE0 ? 2 : first >= 0xC0 ? 1 : 0;
-  unsigned code = more == 0 ? first : first & (0x3FU >> more);
-  for (; more > 0 && at < text.size(); --more) code = code << 6 | (static_cast<unsigned char>(text[at++]) & 0x3FU);
-  return code;
-}
 
 constexpr const char* kNone = "none";
 
@@ -81,24 +67,6 @@ QueuedSpool queued(const std::filesystem::path& file, const TextTable& table, co
 }
 
 }  // namespace
-
-std::string safe_name(const std::string& text) {
-  std::string name;
-  for (std::size_t at = 0; at < text.size();) {
-    const unsigned code = code_point(text, at);
-    if (code < 128 && plain(static_cast<char>(code))) {
-      name += static_cast<char>(code);
-    } else if (code >= 128) {
-      char written[16];
-      std::snprintf(written, sizeof written, "u%04x", code);
-      name += written;
-    } else if (!name.empty() && name.back() != '-') {
-      name += '-';
-    }
-  }
-  while (name.ends_with('-')) name.pop_back();
-  return name;
-}
 
 std::vector<QueuedSpool> read_queue(const std::filesystem::path& file) {
   std::vector<QueuedSpool> queue;

@@ -26,10 +26,6 @@ struct QueuedSpool {
 // that another row has already; two rows whose session names would be the same.
 std::vector<QueuedSpool> read_queue(const std::filesystem::path& file);
 
-// A text as the name of a folder: ASCII letters, digits and _ are kept, accents and other scripts are written as their
-// code ("u00e9"), and others between them become one -.
-std::string safe_name(const std::string& text);
-
 // kept: the session was complete already. failed: the queue goes on with the next spool. bench_fault: the queue stops,
 // and the spools that are not complete wait.
 enum class QueueOutcome { captured, resumed, kept, failed, bench_fault, waiting };

@@ -13,4 +13,9 @@ namespace station {
 // names that Windows keeps for devices.
 std::optional<std::string> problem_with_name(std::string_view name);
 
+// A text (UTF-8) as the name of a file or folder: ASCII letters, digits and _ are kept, letters of other alphabets are
+// written in Latin ones as Germans do ("Weiße Größe" is Weisse-Groesse), what has no letters as its code ("u1f9f6"),
+// and others between them become one -. The name may still be empty or too long.
+std::string safe_name(const std::string& text);
+
 }  // namespace station

@@ -6,7 +6,6 @@
 #include <csignal>
 
 #include "station/bench/bench_fault.h"
-#include "station/documents/disk/file_name.h"
 #include "station/output/interrupt.h"
 #include "station/session/spool_queue.h"
 #include "tests/places.h"
@@ -73,12 +72,7 @@ TEST_F(Queue, ASpoolThatStandsThereTwiceIsNoticed) {
   EXPECT_EQ(read("barcode,lot,spool\n7,1,a.json\n7,2,\n").size(), 2U) << "two lots of one thread";
 }
 
-TEST_F(Queue, EveryNameThatPeopleWriteBecomesASafeFileNameOrIsRefused) {
-  EXPECT_EQ(safe_name("Seide, rot/2"), "Seide-rot-2");
-  EXPECT_EQ(safe_name("s\xC3\xA9 ie"), "su00e9-ie");
-  EXPECT_EQ(safe_name("../../etc"), "etc");
-  for (const char* name : {"a", "Blau 7", "\xE7\xB5\xB2", "x..y", "-rf"})
-    EXPECT_FALSE(problem_with_name(safe_name(name))) << safe_name(name);
+TEST_F(Queue, NamesOfWhichNoFolderCanBeMadeAreRefused) {
   EXPECT_THAT(refusal("name,spool\nCON,a.json\n"), HasSubstr("Windows"));
   EXPECT_THAT(refusal("name,spool\n...,a.json\n"), HasSubstr("empty"));
   EXPECT_THAT(refusal("name,spool\n" + std::string(300, 'x') + ",a.json\n"), HasSubstr("300 characters"));

@@ -23,6 +23,19 @@ TEST(FileName, NamesThatLeaveTheFolderHideOrMeanADeviceAreRefused) {
   }
 }
 
+TEST(FileName, WhatPeopleWriteBecomesANameThatTheyCanRead) {
+  EXPECT_EQ(safe_name("Seide, rot/2"), "Seide-rot-2");
+  EXPECT_EQ(safe_name("Wei\u00dfe Baumwolle, Gr\u00f6\u00dfe 7"), "Weisse-Baumwolle-Groesse-7");
+  EXPECT_EQ(safe_name("Gro\u0308sse"), "Groesse") << "as macOS writes it, in two parts";
+  EXPECT_EQ(safe_name("soie gr\u00e8ge"), "soie-grege");
+  EXPECT_EQ(safe_name("\u0448\u0451\u043b\u043a"), "selk");
+  EXPECT_EQ(safe_name("\u7d72"), "si");
+  EXPECT_EQ(safe_name("\U0001f9f6"), "u1f9f6");
+  EXPECT_EQ(safe_name("../../etc"), "etc");
+  for (const char* name : {"a", "Blau 7", "\u7d72", "x..y", "-rf", "\xff\xfe", "\u00bd"})
+    EXPECT_FALSE(problem_with_name(safe_name(name))) << safe_name(name);
+}
+
 TEST(Sha256, AgreesWithTheStandardsExample) {
   // FIPS 180-4, the message "abc".
   EXPECT_EQ(sha256_hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
