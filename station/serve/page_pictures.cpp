@@ -113,13 +113,18 @@ HttpResponse design(const Asked& asked) {
   return cloth_of(asked.workspace.design(asked.name("name")), asked);
 }
 
-// How a thread of the library looks: the cloth of its session, or else its spool in the first view.
+// How a thread of the library looks: the cloth of its session, or else its spool in the first view; cloth of its own
+// where it came without a session.
 HttpResponse thread(const Asked& asked) {
   const json lines = asked.workspace.thread_lines();
   const auto line = std::ranges::find_if(
       lines, [&](const json& one) { return std::to_string(one.at("number").get<int>()) == asked.word("number"); });
   if (line == lines.end()) throw Refused(404, "there is no such thread in the library");
-  const fs::path session = asked.workspace.existing_session(line->at("session").get<std::string>());
+  if (const fs::path own = asked.workspace.thread_picture(line->at("sha256")); fs::is_regular_file(own))
+    return png_file(own);
+  const std::string& name = line->at("session").get_ref<const std::string&>();
+  if (name.empty()) throw Refused(404, "there is no picture of this thread yet");
+  const fs::path session = asked.workspace.existing_session(name);
   if (const fs::path swatch = cloth_folder(session) / "swatch.png"; fs::is_regular_file(swatch))
     return png_file(swatch);
   for (const auto& [step, picture] : taken_pictures(read_journal(session / "journal.jsonl").records))

@@ -93,6 +93,7 @@ TechnicianPage::TechnicianPage(const fs::path& rig, const fs::path& workspace, s
       workspace_(workspace),
       frame_(workspace_, rig_),
       look_(workspace_, program_),
+      pictures_(workspace_, changed, program_),
       changed_(std::move(changed)) {
   data_folder();  // without it no screen would come up
 }
@@ -295,7 +296,9 @@ json TechnicianPage::state() {
   document["calibration_valid_days"] = rig_.calibration_valid_days;
   document["devices"] = devices_summary(workspace_);
   document["job"] = nullptr;
-  if (const std::shared_ptr<Job> of = job()) document["job"] = of->state();
+  const std::shared_ptr<Job> of = job();
+  if (of) document["job"] = of->state();
+  pictures_.mark(document["threads"], !(of && of->running()) && look_.state()["running"] == false);
   const std::scoped_lock lock(mutex_);
   if (!document["job"].is_null()) document["job"].update({{"number", jobs_}, {"kind", job_kind_}});
   document["control"] = controller_;

@@ -44,6 +44,7 @@
 #include "station/serve/http_message.h"
 #include "station/serve/job.h"
 #include "station/serve/last_frame.h"
+#include "station/serve/thread_pictures.h"
 #include "station/serve/workspace.h"
 
 namespace station {
@@ -82,6 +83,7 @@ class TechnicianPage {
   Workspace workspace_;
   LastFrame frame_;
   DesignLook look_;
+  ThreadPictures pictures_;
   std::function<void()> changed_;
   mutable std::mutex mutex_;
   std::shared_ptr<Job> job_;

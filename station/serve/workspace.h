@@ -5,6 +5,7 @@
 //   queues/<name>.csv      tables of spools             library/           digitized threads
 //   exports/<name>/        made by export               jobs/              what each job said
 //   designs/<name>/        made by cloth, of threads in the library
+//   pictures/              thread_pictures.h
 //   look/                  made by look, of the cloth that is designed now
 //   rigs/<name>.json       made by rig new              preview.jpg          the camera's live view
 #pragma once
@@ -39,6 +40,10 @@ class Workspace {
   std::filesystem::path thread_in_library(int number) const;
   std::filesystem::path exported(const std::string& name) const { return folder_ / "exports" / name; }
   std::filesystem::path design(const std::string& name) const { return folder_ / "designs" / name; }
+  // Of a thread without a session, by the hash of its file; it need not be there.
+  std::filesystem::path thread_picture(const std::string& sha256) const {
+    return folder_ / "pictures" / (sha256 + ".png");
+  }
   std::filesystem::path rig(const std::string& name) const { return folder_ / "rigs" / (name + ".json"); }
   std::filesystem::path preview() const { return folder_ / "preview.jpg"; }
 

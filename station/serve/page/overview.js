@@ -38,7 +38,7 @@ function waitingLine(line) {
 
 // How a thread of the library looks, where there is a picture of it.
 export function threadPicture(thread) {
-  if (!state.sessions.some(line => line.name === thread.session)) return [];
+  if (!thread.pictured) return [];
   const image = make("img", {src: picture({of: "thread", number: thread.number, added: thread.added_utc}), alt: text("picture_of", {name: thread.name}), loading: "lazy"});
   image.onerror = () => image.remove();
   return [image];

@@ -429,6 +429,45 @@ TEST_F(TechnicianPage, AThreadOfAnotherStationIsImportedWithItsSampleAndGetsALab
   EXPECT_EQ(get("/api/state").at("threads").size(), 1U);
 }
 
+// One has a session to be seen in, the other is woven for it; while a job runs, only what is there is shown.
+TEST_F(TechnicianPage, AThreadThatCameWithoutASessionIsWovenToBeSeen) {
+  copy_session();
+  const std::filesystem::path session = folder_ / "bench/sessions/silk_red";
+  std::filesystem::create_directory(session / "result");
+  std::filesystem::copy(std::string(DATA_DIR) + "/threads/silk_red.json", session / "result/thread.json");
+  station::Library(folder_ / "bench/library", true).add(session, "2026-01-01T00:00:00Z");
+  start_calibration();
+  const std::string thread = text_of(std::filesystem::path(DATA_DIR) / "threads/silk_blue.json");
+  ASSERT_EQ(post("/api/import", {{"client", "me"}, {"name", "thread.json"}, {"thread", thread}}).status, 200);
+  ASSERT_TRUE(job().at("running"));
+  const auto pictured = [&](int line) { return get("/api/state").at("threads").at(line).at("pictured") == true; };
+  EXPECT_TRUE(pictured(0));
+  EXPECT_FALSE(pictured(1));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "bench/pictures"));
+  EXPECT_EQ(asked("/picture", {{"of", "thread"}, {"number", "2"}}).status, 404);
+  EXPECT_EQ(post("/api/stop", {}).status, 200);
+  ASSERT_TRUE(eventually([&] { return pictured(1); }));
+  EXPECT_EQ(asked("/picture", {{"of", "thread"}, {"number", "2"}}).body.substr(1, 3), "PNG");
+  const std::filesystem::directory_iterator kept(folder_ / "bench/pictures");
+  EXPECT_EQ(std::distance(begin(kept), end(kept)), 1) << "nothing but the picture";
+}
+
+// A file that is spoiled is tried once.
+TEST_F(TechnicianPage, AThreadThatCannotBeWovenIsTriedOnce) {
+  station::Library library(folder_ / "bench/library", true);
+  library.add(std::string(DATA_DIR) + "/threads/silk_red.json", "2026-01-01T00:00:00Z");
+  std::ofstream(library.thread_file(1)) << "{";
+  get("/api/state");
+  const auto begun = folder_ / "bench/pictures";
+  ASSERT_TRUE(std::filesystem::exists(begun));
+  ASSERT_TRUE(eventually([&] {
+    get("/api/state");
+    return std::filesystem::is_empty(begun);
+  }));
+  get("/api/state");
+  EXPECT_TRUE(std::filesystem::is_empty(begun));
+}
+
 TEST_F(TechnicianPage, ALotIsSeenBesideItself) {
   EXPECT_EQ(asked("/api/lots", {}).status, 404);
   station::Library library(folder_ / "bench/library", true);
