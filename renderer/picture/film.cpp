@@ -20,6 +20,17 @@ int wanted_samples(int samples, double error, double noise) {
   return std::max(samples + kBatch, kBatch * static_cast<int>(batches));
 }
 
+int batches_of(int samples) {
+  return (samples + kBatch - 1) / kBatch;
+}
+
+// The sum of a batch of n samples has a variance in proportion to n, also that of the last batch, which may be smaller.
+double variance_at(const Film& film, int row, int column) {
+  const int count = film.counts(row, column), batches = batches_of(count);
+  const double sum = cv::norm(film.sums(row, column)), mean = sum / count;
+  return std::max(0.0, film.squares(row, column) - sum * mean) / (batches - 1.0) / count;
+}
+
 }  // namespace
 
 Film empty_film(int width, int height) {
@@ -52,6 +63,18 @@ cv::Mat3f mean_radiance(const Film& film) {
   return image;
 }
 
+cv::Mat1f variance_of_mean(const Film& film) {
+  cv::Mat1f variance(film.counts.size(), 0.0f);
+  for (int row = 0; row < variance.rows; ++row)
+    for (int column = 0; column < variance.cols; ++column) {
+      const int count = film.counts(row, column);
+      if (count == 0) continue;
+      if (batches_of(count) == 1) return {};
+      variance(row, column) = static_cast<float>(variance_at(film, row, column));
+    }
+  return variance;
+}
+
 std::uint64_t samples_in(const Film& film) {
   return static_cast<std::uint64_t>(cv::sum(film.counts)[0]);  // exact below 2^53
 }
@@ -66,14 +89,11 @@ double relative_error(const Film& film, const cv::Rect& pixels, double least_bri
   int seen = 0;
   for (int row = pixels.y; row < pixels.y + pixels.height; ++row) {
     for (int column = pixels.x; column < pixels.x + pixels.width; ++column) {
-      const int count = film.counts(row, column), batches = (count + kBatch - 1) / kBatch;
+      const int count = film.counts(row, column);
       if (count == 0) continue;
-      if (batches == 1) return std::numeric_limits<double>::infinity();
-      const double sum = cv::norm(film.sums(row, column)), mean = sum / count;
-      // The sum of a batch of n samples has a variance in proportion to n, also that of the last batch, which may be
-      // smaller.
-      error2 += std::max(0.0, film.squares(row, column) - sum * mean) / (batches - 1.0) / count;
-      brightness += mean;
+      if (batches_of(count) == 1) return std::numeric_limits<double>::infinity();
+      error2 += variance_at(film, row, column);
+      brightness += cv::norm(film.sums(row, column)) / count;
       ++seen;
     }
   }

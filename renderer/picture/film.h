@@ -32,6 +32,9 @@ int tile_at(const cv::Size& picture, int column, int row);
 
 // The mean radiance, RGB; black where there is no sample.
 cv::Mat3f mean_radiance(const Film& film);
+// The variance of that mean as the batches' spread tells it, of the three colours together; an empty plane where a
+// pixel has a single batch.
+cv::Mat1f variance_of_mean(const Film& film);
 std::uint64_t samples_in(const Film& film);
 std::size_t bytes_of(const Film& film);
 

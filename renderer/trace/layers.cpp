@@ -65,6 +65,20 @@ void add_first_hit(const RayScene& scene, const std::vector<CurveModel>& models,
 
 }  // namespace
 
+std::vector<cv::Mat1f> features_of(const PictureLayers& layers) {
+  std::vector<cv::Mat1f> features(6);
+  cv::split(layers.albedo, features.data());
+  cv::split(layers.normal, features.data() + 3);
+  // Where there is nothing, no depth stands out.
+  cv::Mat1f depth_mm = layers.depth_mm.clone();
+  cv::Mat seen, unseen;
+  cv::compare(layers.cover, 0, seen, cv::CMP_GT);
+  cv::bitwise_not(seen, unseen);
+  depth_mm.setTo(cv::mean(depth_mm, seen), unseen);
+  features.insert(features.end(), {depth_mm, layers.cover});
+  return features;
+}
+
 std::uint32_t packed_yarn(const YarnPlace& yarn) {
   constexpr int kHalf = 1 << 25;
   const auto number = static_cast<std::uint32_t>(yarn.number + kHalf) & (2u * kHalf - 1);

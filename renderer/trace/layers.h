@@ -3,6 +3,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "renderer/picture/camera.h"
 #include "renderer/trace/path_vertex.h"
@@ -19,6 +20,9 @@ struct PictureLayers {
   cv::Mat1i model;  // 1 + number of the scattering model (scattering_models()); bodies that are no curves have none
   cv::Mat1i yarn;   // packed_yarn()
 };
+
+// The layers as features of denoising (picture/denoise.h).
+std::vector<cv::Mat1f> features_of(const PictureLayers& layers);
 
 // The yarn as one number that is never 0: bits 27 to 31 are the group, bit 26 is set for weft, and the bits below hold
 // the yarn's number + 2^25. Groups from 32 on and yarns from 2^25 on are counted from the start again.

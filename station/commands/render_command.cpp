@@ -67,6 +67,8 @@ void add_render_command(CLI::App& app) {
   command->add_flag("--png", request.png, "a PNG beside the EXR");
   command->add_flag("--layers", request.layers,
                     "EXR: albedo, normal, depth, cover, thread and yarn of what each pixel shows, as channels");
+  command->add_flag("--denoise", request.denoise,
+                    "beside it NAME.denoised, smoothed for looking at it; measure in the picture itself");
   command->add_flag("--half", request.half, "EXR: colours in 16 bit");
   command->add_flag("--fresh", request.fresh,
                     "begin again where an interrupted rendering left a checkpoint, or the picture is there");

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "renderer/picture/image_file.h"
+#include "renderer/scene/backdrop.h"
 #include "renderer/scene/mesh_file.h"
 #include "renderer/scene/patch_curves.h"
 #include "station/documents/bundle_file.h"
@@ -98,6 +99,18 @@ renderer::GarmentShape parse_garment(ObjectReader& reader, const std::string& ki
   return s;
 }
 
+renderer::MeshShape parse_backdrop(ObjectReader& reader) {
+  renderer::BackdropShape s;
+  read_length(reader, "radius_mm", kLeastSize, s.radius_mm);
+  read_length(reader, "height_mm", kLeastSize, s.height_mm);
+  read_length(reader, "bend_mm", kLeastSize, s.bend_mm);
+  try {
+    return {.mesh = std::make_shared<renderer::UvMesh>(renderer::backdrop_mesh(s)), .name = "the backdrop"};
+  } catch (const std::runtime_error& problem) {
+    reader.refuse("bend_mm", problem.what());
+  }
+}
+
 SceneShape parse_shape(ObjectReader& reader, std::initializer_list<const char*> kinds,
                        const std::filesystem::path& folder) {
   const std::string kind = reader.choice("kind", kinds);
@@ -109,6 +122,7 @@ SceneShape parse_shape(ObjectReader& reader, std::initializer_list<const char*> 
     const double width_mm = reader.number("width_mm", kLeastSize, kMostSize);
     return renderer::SwatchShape{width_mm, reader.number("height_mm", kLeastSize, kMostSize)};
   }
+  if (kind == "backdrop") return parse_backdrop(reader);
   if (kind != "mesh") {
     const renderer::GarmentShape garment = parse_garment(reader, kind);
     return SceneGarment{garment, turn_rad(reader)};
@@ -231,7 +245,7 @@ Vector3d at_least_zero(ObjectReader& reader, const std::string& key, double most
 
 SceneBody parse_object(ObjectReader reader, const std::filesystem::path& folder) {
   SceneBody body;
-  body.shape = parse_shape(reader, {"plane", "cylinder", "mesh"}, folder);
+  body.shape = parse_shape(reader, {"plane", "cylinder", "mesh", "backdrop"}, folder);
   body.world_from_object = pose(reader, "world_from_object");
   const Vector3d albedo = at_least_zero(reader, "albedo", 1);
   for (int c = 0; c < 3; ++c) body.albedo[c] = static_cast<float>(albedo[c]);
@@ -329,6 +343,13 @@ renderer::Camera parse_scene_camera(ObjectReader reader) {
   return camera;
 }
 
+WhiteCard parse_white_card(ObjectReader reader) {
+  const WhiteCard card{.position_mm = point(reader, "position_mm"), .normal = reader.vector3("normal")};
+  if (!(card.normal.norm() > 0)) reader.refuse("normal", "has no direction; give one that the card faces");
+  reader.finish();
+  return card;
+}
+
 void read_threads(ObjectReader& reader, const std::filesystem::path& folder, SceneFile& scene) {
   const json& names = reader.raw("threads");
   if (!names.is_array()) reader.refuse("threads", "expected a list of thread files");
@@ -373,6 +394,7 @@ SceneFile parse_scene(const json& document, const std::string& source, const std
   scene.camera = parse_scene_camera(reader.object("camera"));
   if (reader.has("samples_per_pixel")) scene.samples_per_pixel = reader.integer("samples_per_pixel", 1, 1 << 20);
   if (reader.has("exposure")) scene.brightness = reader.number("exposure", 1e-12, 1e12);
+  if (reader.has("white_card")) scene.white_card = parse_white_card(reader.object("white_card"));
   reader.finish();
   return scene;
 }

@@ -54,6 +54,11 @@ struct SceneBody {
   cv::Vec3f albedo{0, 0, 0};
 };
 
+// A card that stands nowhere in the picture, and is seen along its normal.
+struct WhiteCard {
+  Eigen::Vector3d position_mm{0, 0, 0}, normal{0, 0, 1};
+};
+
 struct SceneFile {
   std::string source;  // the file, for messages
   std::string name{};
@@ -67,7 +72,8 @@ struct SceneFile {
   std::optional<renderer::EnvironmentLight> surroundings{};  // as a picture
   renderer::Camera camera{};
   int samples_per_pixel = 64;
-  std::optional<double> brightness{};  // radiance times this is shown as white = 1; from the picture when left out
+  std::optional<double> brightness{};     // radiance times this is shown as white = 1; from the picture when left out
+  std::optional<WhiteCard> white_card{};  // or, where that is left out, such that this would be white
 };
 
 SceneFile parse_scene(const nlohmann::json& document, const std::string& source, const std::filesystem::path& folder);

@@ -15,10 +15,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "renderer/picture/denoise.h"
 #include "renderer/picture/image_file.h"
 #include "renderer/trace/path_tracer.h"
-#include "station/cloth/preview/cloth_preview.h"
+#include "station/cloth/preview/cloth_stage.h"
 #include "station/cloth/render/build_scene.h"
+#include "station/cloth/render/white_card.h"
 #include "station/documents/disk/stored_file.h"
 #include "station/documents/scene_file.h"
 #include "station/output/display.h"
@@ -93,8 +95,9 @@ class Studio {
         scale_(request.size_px > 0 ? scale_to(stage, request.size_px) : 1),
         woven_(weave_threads(request.cloth, request.progress_style)) {
     ProgressDisplay progress("look", request.progress_style);
-    cloths_ = build_cloths(scene_of({}), progress);
-    exposure_.white = white_card(stage_, woven_.files, folder_);
+    const SceneFile scene = scene_of({});
+    cloths_ = build_cloths(scene, progress);
+    exposure_.white = radiance_of_white_card(scene, scene.white_card.value());
   }
 
   void turn(const ClothView& view) {
@@ -106,6 +109,7 @@ class Studio {
 
   const renderer::PathTracer& tracer() const { return *tracer_; }
   const renderer::Camera& camera() const { return scene_.camera; }
+  cv::Size size() const { return {scene_.camera.width, scene_.camera.height}; }
   cv::Mat3b shown(const cv::Mat3f& linear) const { return display(linear, exposure_, woven_.linear_srgb_from_camera); }
 
  private:
@@ -141,42 +145,55 @@ class Look {
   void show(const AskedLook& asked) {
     asked_ = asked;
     studio_.turn(asked.view);
-    const renderer::Camera& camera = studio_.camera();
-    cv::Mat3f best;
-    for (const int times : {6, 2}) {
-      constexpr int kFew = 4;
-      const renderer::Camera small = coarse(camera, times);
-      renderer::Film film = renderer::empty_film(small.width, small.height);
-      if (!studio_.tracer().refine(small, {.samples_per_pixel = kFew, .progress = undisturbed()}, film)) return;
-      cv::resize(renderer::mean_radiance(film), best, {camera.width, camera.height}, 0, 0, cv::INTER_LINEAR);
-      put(best, 0);
+    struct Pass {
+      int times, samples;  // coarser than the picture; in all, of each pixel
+    };
+    std::vector<Pass> passes{{6, 4}, {2, 4}};
+    for (int samples = 2; samples < request_.samples_per_pixel; samples *= 2) passes.push_back({1, samples});
+    passes.push_back({1, request_.samples_per_pixel});
+    std::optional<TwoFilms> films;
+    for (const auto& [times, samples] : passes) {
+      if (!films || times != films->times) films.emplace(coarse(studio_.camera(), times), times);
+      if (!draw(samples, *films)) return;
+      cv::Mat3f picture = renderer::denoised(films->picture);
+      if (looks_.wait(0)) return;
+      if (times > 1) cv::resize(cv::Mat3f(picture), picture, studio_.size(), 0, 0, cv::INTER_LINEAR);
+      put(picture, times > 1 ? 0 : samples);
     }
-    // The first passes are short, so that the whole picture gets better alike.
-    renderer::Film film = renderer::empty_film(camera.width, camera.height);
-    for (const int samples : {1, 4, renderer::kBatch, request_.samples_per_pixel})
-      if (!refine(camera, std::min(samples, request_.samples_per_pixel), best, film)) return;
   }
 
  private:
-  // Shows the picture now and then until it has so many samples; false when another view was asked for before.
-  bool refine(const renderer::Camera& camera, int samples, const cv::Mat3f& coarser, renderer::Film& film) {
-    constexpr auto kBetween = std::chrono::milliseconds(700);
-    for (bool done = false; !done;) {
-      const auto until = std::chrono::steady_clock::now() + kBetween;
-      const auto unseen = undisturbed();
-      done = studio_.tracer().refine(
-          camera,
-          {.samples_per_pixel = samples,
-           .progress = [&](double part) { return unseen(part) && std::chrono::steady_clock::now() < until; }},
-          film);
-      if (!done && looks_.wait(0)) return false;
-      cv::Mat3f picture = renderer::mean_radiance(film);
-      coarser.copyTo(picture, film.counts == 0);
-      double least = 0;
-      cv::minMaxLoc(film.counts, &least);
-      put(picture, static_cast<int>(least));
-    }
-    return true;
+  // A picture that is drawn twice, each time with half the samples, so that its noise is known from the beginning.
+  struct TwoFilms {
+    TwoFilms(const renderer::Camera& seen, int coarser)
+        : camera(seen),
+          times(coarser),
+          one(renderer::empty_film(seen.width, seen.height)),
+          other(renderer::empty_film(seen.width, seen.height)) {}
+    renderer::Camera camera;
+    int times;
+    renderer::Film one, other;
+    renderer::NoisyPicture picture{};
+    int samples_of_features = 0;
+  };
+
+  // False when another view was asked for before all samples were there.
+  bool draw(int samples, TwoFilms& films) {
+    constexpr int kOfFeatures = 16;
+    const renderer::PathTracer& tracer = studio_.tracer();
+    const int half = std::max(1, samples / 2), of_features = std::min(samples, kOfFeatures);
+    for (auto [seed, film] : {std::pair{1, &films.one}, {2, &films.other}})
+      if (!tracer.refine(
+              films.camera,
+              {.samples_per_pixel = half, .seed = static_cast<std::uint64_t>(seed), .progress = undisturbed()}, *film))
+        return false;
+    std::vector<cv::Mat1f> features = std::move(films.picture.features);
+    if (films.samples_of_features < of_features)
+      features = renderer::features_of(tracer.layers(films.camera, {.samples_per_pixel = of_features}));
+    films.samples_of_features = of_features;
+    films.picture = renderer::noisy_picture(films.one, films.other);
+    films.picture.features = std::move(features);
+    return !looks_.wait(0);
   }
 
   std::function<bool(double)> undisturbed() {

@@ -4,11 +4,9 @@
 #include <opencv2/core.hpp>
 #include <stdexcept>
 
-#include "renderer/picture/camera.h"
 #include "renderer/picture/image_file.h"
-#include "renderer/trace/path_tracer.h"
-#include "station/cloth/render/build_scene.h"
 #include "station/cloth/render/render_scene.h"
+#include "station/cloth/render/white_card.h"
 #include "station/documents/reader.h"
 #include "station/documents/scene_file.h"
 #include "station/output/display.h"
@@ -36,6 +34,13 @@ double scale_of(const ClothPreviewRequest& request, const ClothStage& stage) {
   return request.quick ? 1.0 / kQuickReduction : 1.0;
 }
 
+// A white card before view and light are turned.
+std::array<double, 3> white_of(const ClothStage& stage, const std::array<std::string, 2>& threads,
+                               const fs::path& folder) {
+  const SceneFile scene = parse_scene(scene_on_stage(stage, threads, {}, 1), stage.scene, folder);
+  return radiance_of_white_card(scene, scene.white_card.value());
+}
+
 // The scene as somebody wishes to see it, written into the cloth's folder.
 fs::path write_scene(const ClothPreviewRequest& request, const ClothStage& stage, const WovenThreads& woven) {
   json scene = scene_on_stage(stage, woven.files, request.view, scale_of(request, stage));
@@ -46,28 +51,6 @@ fs::path write_scene(const ClothPreviewRequest& request, const ClothStage& stage
 }
 
 }  // namespace
-
-std::array<double, 3> white_card(const ClothStage& stage, const std::array<std::string, 2>& threads,
-                                 const fs::path& folder) {
-  SceneFile scene = parse_scene(scene_on_stage(stage, threads, {}, 1), stage.scene, folder);
-  const Eigen::Vector3d& place_mm = stage.front_mm;
-  constexpr int kSide_px = 8, kSamples = 256;
-  constexpr double kCard_mm = 10, kSeen_mm = 4;
-  const Eigen::Vector3d eye = scene.camera.world_from_camera.translation(),
-                        up = -scene.camera.world_from_camera.linear().col(1);
-  scene.cloths.clear();
-  scene.embroideries.clear();
-  scene.objects = {{.shape = renderer::SwatchShape{.width_mm = kCard_mm, .height_mm = kCard_mm},
-                    .world_from_object = renderer::look_at(place_mm, eye, up).world_from_camera,
-                    .albedo = {1, 1, 1}}};
-  renderer::Camera camera = renderer::look_at(eye, place_mm, up);
-  camera.width = camera.height = kSide_px;
-  camera.fx = camera.fy = kSide_px * (eye - place_mm).norm() / kSeen_mm;
-  camera.cx = camera.cy = (kSide_px - 1) / 2.0;
-  const cv::Scalar mean =
-      cv::mean(renderer::PathTracer(build_scene(scene, {})).render(camera, {.samples_per_pixel = kSamples, .seed = 1}));
-  return {mean[0], mean[1], mean[2]};
-}
 
 void weave_thread_of(ThreadsToWeave& wanted, const fs::path& session_or_file, const std::string& model) {
   const bool session = fs::is_directory(session_or_file);
@@ -95,7 +78,7 @@ json preview_cloth(const ClothPreviewRequest& request) {
     picture.replace_extension(".exr");
     render_scene(
         {.scene = scene, .out = picture, .keep_finished = true, .only_this = true, .progress = request.progress_style});
-    const std::array<double, 3> card = white_card(*stage, woven.files, request.cloth.out);
+    const std::array<double, 3> card = white_of(*stage, woven.files, request.cloth.out);
     made_of["white_card"][stage->shape] = card;
     made_of["views"][stage->shape] = to_json(request.view);
     const cv::Mat3f linear = renderer::read_exr(picture);

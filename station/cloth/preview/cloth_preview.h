@@ -28,14 +28,10 @@ struct ClothPreviewRequest {
 void weave_thread_of(ThreadsToWeave& wanted, const std::filesystem::path& session_or_file, const std::string& model);
 
 // Writes what weave_threads writes, made_of.json and, for each picture, its scene.json, .exr and .png, where a white
-// card in the place of the cloth would be white before view and light are turned. What is there already of the same is
-// kept, so that the same again goes on after ctrl-C. Returns the content of made_of.json (session/results.h). Errors:
-// those of the files read and of weave_threads; std::runtime_error, one line, for a size that no picture has.
+// card in the place of the cloth (white_card of the stage's scene) would be white before view and light are turned.
+// What is there already of the same is kept, so that the same again goes on after ctrl-C. Returns the content of
+// made_of.json (session/results.h). Errors: those of the files read and of weave_threads; std::runtime_error, one line,
+// for a size that no picture has.
 nlohmann::json preview_cloth(const ClothPreviewRequest& request);
-
-// The radiance (camera RGB) of a white card in the place of the stage's cloth, in its light as it stands, facing its
-// camera. The threads, in `folder`, only give the scene something to be made of.
-std::array<double, 3> white_card(const ClothStage& stage, const std::array<std::string, 2>& threads,
-                                 const std::filesystem::path& folder);
 
 }  // namespace station

@@ -40,14 +40,18 @@ struct Turning {
   }
 };
 
+bool is_floor(const json& object) {
+  return object["kind"] == "plane" || object["kind"] == "backdrop";
+}
+
 }  // namespace
 
 const std::vector<ClothStage>& cloth_stages() {
-  static const std::vector<ClothStage> stages{{"swatch", "twill_swatch.json", 720, 720, 32, {0, 0, 0}},
-                                              {"cylinder", "satin_cylinder.json", 480, 720, 32, {41, 0, 84}},
-                                              {"skirt", "satin_skirt.json", 617, 720, 64, {190, -60, 280}},
-                                              {"pleats", "twill_pleats.json", 540, 720, 64, {60, -60, 540}},
-                                              {"drape", "satin_drape.json", 720, 540, 64, {200, -100, 320}}};
+  static const std::vector<ClothStage> stages{{"swatch", "twill_swatch.json", 720, 720, 32},
+                                              {"cylinder", "satin_cylinder.json", 480, 720, 32},
+                                              {"skirt", "satin_skirt.json", 617, 720, 64},
+                                              {"pleats", "twill_pleats.json", 540, 720, 64},
+                                              {"drape", "satin_drape.json", 720, 540, 64}};
   return stages;
 }
 
@@ -105,11 +109,9 @@ json scene_on_stage(const ClothStage& stage, const std::array<std::string, 2>& t
     cloth["patch"] = "patch.json";
   }
   json& camera = scene["camera"];
-  const json objects = scene.value("objects", json::array());
-  const Turning turning{
-      .middle = vector_of(camera["target_mm"]),
-      .up = vector_of(camera.value("up", json{0, 0, 1})).normalized(),
-      .above_floor = std::ranges::any_of(objects, [](const json& one) { return one["kind"] == "plane"; })};
+  const Turning turning{.middle = vector_of(camera["target_mm"]),
+                        .up = vector_of(camera.value("up", json{0, 0, 1})).normalized(),
+                        .above_floor = scene.contains("objects") && std::ranges::any_of(scene["objects"], is_floor)};
   camera["eye_mm"] = to_json(turning.turned(vector_of(camera["eye_mm"]), view.turn_deg, view.tilt_deg));
   for (json& light : scene["lights"])
     if (light.contains("position_mm"))

@@ -1,8 +1,7 @@
-// The stages on which cloth is shown: ready scenes (station/data/scenes) in which cloth and threads are replaced, and
-// the camera and the lamps are turned about the middle of the picture.
+// The stages on which cloth is shown: ready scenes (station/data/scenes) with a white card, in which cloth and threads
+// are replaced, and the camera and the lamps are turned about the middle of the picture.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -16,7 +15,6 @@ struct ClothStage {
   std::string scene;                // in station/data/scenes
   int width_px = 0, height_px = 0;  // on a screen
   int samples_per_pixel = 0;
-  Eigen::Vector3d front_mm{0, 0, 0};  // a place of the cloth's face, where a white card would stand
 };
 
 const std::vector<ClothStage>& cloth_stages();

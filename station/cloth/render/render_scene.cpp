@@ -5,11 +5,13 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "renderer/picture/denoise.h"
 #include "renderer/picture/image_file.h"
 #include "renderer/trace/path_tracer.h"
 #include "station/cloth/render/checkpoint.h"
 #include "station/cloth/render/render_channels.h"
 #include "station/cloth/render/render_progress.h"
+#include "station/cloth/render/white_card.h"
 #include "station/documents/disk/reserved_space.h"
 #include "station/documents/number_text.h"
 #include "station/documents/session_file.h"
@@ -30,8 +32,14 @@ void check_destination(const RenderRequest& request) {
                              ": --layers and --half are for EXR files; give --out a name that ends in .exr");
 }
 
-double brightness_of(const RenderRequest& request, const SceneFile& scene, const cv::Mat3f& image) {
-  return request.brightness ? *request.brightness : scene.brightness ? *scene.brightness : display_scale(image);
+// How PNG pictures are exposed; from the picture itself where nobody says.
+Exposure exposure_of(const RenderRequest& request, const SceneFile& scene, const cv::Mat3f& image) {
+  if (!request.brightness && !scene.brightness && scene.white_card)
+    return {.white = radiance_of_white_card(scene, *scene.white_card)};
+  const double brightness = request.brightness ? *request.brightness
+                            : scene.brightness ? *scene.brightness
+                                               : display_scale(image);
+  return {.white = {1 / brightness, 1 / brightness, 1 / brightness}};
 }
 
 constexpr const char* kRenderingAttribute = "threadstation/rendering";
@@ -49,10 +57,20 @@ std::filesystem::path png_beside(const std::filesystem::path& picture) {
   return png.replace_extension(".png");
 }
 
+// What is written with the picture.
+std::vector<std::filesystem::path> pictures_beside(const RenderRequest& request) {
+  std::vector<std::filesystem::path> beside;
+  if (request.png) beside.push_back(png_beside(request.out));
+  if (request.denoise) beside.push_back(denoised_of(request.out));
+  if (request.png && request.denoise) beside.push_back(png_beside(denoised_of(request.out)));
+  return beside;
+}
+
 bool is_finished(const RenderRequest& request, const RenderIdentity& identity) {
   std::error_code ignored;
   if (request.out.extension() != ".exr" || !std::filesystem::exists(request.out, ignored)) return false;
-  if (request.png && !std::filesystem::exists(png_beside(request.out), ignored)) return false;
+  for (const std::filesystem::path& beside : pictures_beside(request))
+    if (!std::filesystem::exists(beside, ignored)) return false;
   try {
     renderer::ImageHeader header;
     renderer::read_exr(request.out, &header);
@@ -69,33 +87,58 @@ struct Rendering {
   const RenderIdentity& identity;
 };
 
-void write_exr(const Rendering& rendering, const renderer::PathTracer& tracer, const cv::Mat3f& image) {
+// The same for the picture and for what is made of it.
+renderer::ImageHeader header_of(const Rendering& rendering) {
+  const RenderIdentity& identity = rendering.identity;
+  return {{"threadstation/scene", rendering.scene.name},
+          {"threadstation/software", identity.software},
+          {"threadstation/samples_per_pixel", std::to_string(identity.samples_per_pixel)},
+          {"threadstation/noise", std::to_string(identity.noise)},
+          {"threadstation/seed", std::to_string(identity.seed)}};
+}
+
+void write_exr(const Rendering& rendering, const renderer::PictureLayers* layers, const cv::Mat3f& image) {
+  const RenderRequest& request = rendering.request;
+  renderer::ImageHeader header = header_of(rendering);
+  header[kRenderingAttribute] = rendering_of(request, rendering.identity);
+  header["threadstation/content"] = "linear camera RGB, radiance; not white-balanced";
+  renderer::write_exr(request.out, render_channels(image, layers, rendering.scene, rendering.cloths, request.half),
+                      header);
+}
+
+void write_denoised(const Rendering& rendering, const renderer::PictureLayers& layers, const renderer::Film& film,
+                    const Exposure& exposure) {
+  const RenderRequest& request = rendering.request;
+  const std::filesystem::path out = denoised_of(request.out);
+  renderer::NoisyPicture noisy = renderer::noisy_picture(film);
+  noisy.features = renderer::features_of(layers);
+  const cv::Mat3f image = renderer::denoised(noisy);
+  if (out.extension() != ".exr" || request.png)
+    renderer::write_png(png_beside(out), display(image, exposure, rendering.scene.linear_srgb_from_camera));
+  if (out.extension() != ".exr") return;
+  renderer::ImageHeader header = header_of(rendering);
+  header["threadstation/content"] = "linear camera RGB, denoised for looking at it; measure in the picture beside it";
+  renderer::write_exr(out, render_channels(image, nullptr, rendering.scene, rendering.cloths, request.half), header);
+}
+
+void write_pictures(const Rendering& rendering, const renderer::PathTracer& tracer, const renderer::Film& film,
+                    RenderReport& report) {
   const auto& [request, scene, cloths, identity] = rendering;
+  const cv::Mat3f image = renderer::mean_radiance(film);
+  const bool is_exr = request.out.extension() == ".exr";
   std::optional<renderer::PictureLayers> layers;
-  if (request.layers)
+  if (request.layers || request.denoise)
     layers = tracer.layers(
         scene.camera,
         {.samples_per_pixel = identity.samples_per_pixel, .seed = identity.seed, .threads = request.threads});
-  renderer::write_exr(request.out, render_channels(image, layers ? &*layers : nullptr, scene, cloths, request.half),
-                      {{kRenderingAttribute, rendering_of(request, identity)},
-                       {"threadstation/content", "linear camera RGB, radiance; not white-balanced"},
-                       {"threadstation/scene", scene.name},
-                       {"threadstation/software", identity.software},
-                       {"threadstation/samples_per_pixel", std::to_string(identity.samples_per_pixel)},
-                       {"threadstation/noise", std::to_string(identity.noise)},
-                       {"threadstation/seed", std::to_string(identity.seed)}});
-}
-
-void write_picture(const Rendering& rendering, const renderer::PathTracer& tracer, const cv::Mat3f& image,
-                   RenderReport& report) {
-  const RenderRequest& request = rendering.request;
-  const bool is_exr = request.out.extension() == ".exr";
+  Exposure exposure;
   if (!is_exr || request.png) {
-    report.brightness = brightness_of(request, rendering.scene, image);
-    renderer::write_png(png_beside(request.out),
-                        display(image, report.brightness, rendering.scene.linear_srgb_from_camera));
+    exposure = exposure_of(request, scene, image);
+    report.brightness = 1 / exposure.white[1];
+    renderer::write_png(png_beside(request.out), display(image, exposure, scene.linear_srgb_from_camera));
   }
-  if (is_exr) write_exr(rendering, tracer, image);
+  if (request.denoise) write_denoised(rendering, *layers, film, exposure);
+  if (is_exr) write_exr(rendering, request.layers ? &*layers : nullptr, image);
 }
 
 // Room on the picture's disk for its checkpoint, held until the end: then the picture, which mostly takes less, is
@@ -122,9 +165,9 @@ void leave_behind(const Rendering& rendering, Room& room, const renderer::Film& 
   try {
     keep(rendering, film);
     const cv::Mat3f image = renderer::mean_radiance(film);
-    const double brightness = brightness_of(rendering.request, rendering.scene, image);
     renderer::write_png(preview_of(rendering.request.out),
-                        display(image, brightness, rendering.scene.linear_srgb_from_camera));
+                        display(image, exposure_of(rendering.request, rendering.scene, image),
+                                rendering.scene.linear_srgb_from_camera));
   } catch (const std::runtime_error& problem) {
     if (!interrupted()) {
       progress.note(std::string(problem.what()) + " (the rendering goes on)");
@@ -141,7 +184,7 @@ void finish(const Rendering& rendering, const renderer::PathTracer& tracer, Room
             RenderReport& report) {
   room.release();
   try {
-    write_picture(rendering, tracer, renderer::mean_radiance(film), report);
+    write_pictures(rendering, tracer, film, report);
   } catch (const std::runtime_error& problem) {
     keep(rendering, film);
     throw std::runtime_error(std::string(problem.what()) +
@@ -239,6 +282,11 @@ std::filesystem::path preview_of(const std::filesystem::path& picture) {
   return preview.replace_extension(".preview.png");
 }
 
+std::filesystem::path denoised_of(const std::filesystem::path& picture) {
+  std::filesystem::path denoised = picture;
+  return denoised.replace_extension(".denoised" + picture.extension().string());
+}
+
 bool is_kept(const RenderRequest& request, const SceneFile& scene) {
   return request.keep_finished && is_finished(request, identity_of(request, scene));
 }
@@ -249,6 +297,10 @@ RenderReport render_scene(const RenderRequest& request, std::vector<BuiltCloth> 
   const Clock::time_point start = Clock::now();
   const SceneFile scene = read_scene(request.scene);
   const RenderIdentity identity = identity_of(request, scene);
+  if (request.denoise && identity.samples_per_pixel <= renderer::kBatch)
+    throw std::runtime_error("cannot denoise " + request.out.string() + " from " +
+                             std::to_string(identity.samples_per_pixel) +
+                             " samples per pixel, whose noise is not known; give --spp 32 or more");
   if (request.keep_finished && is_finished(request, identity)) return {.image = request.out.string(), .kept = true};
   renderer::Film film = film_to_begin_with(request, identity, {scene.camera.width, scene.camera.height});
   Room room(request, film);

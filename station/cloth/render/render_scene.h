@@ -21,6 +21,7 @@ struct RenderRequest {
   int threads = 0;                    // 0 = all cores
   std::optional<double> brightness;   // PNG only; the scene's own when left out, then the picture's 99th percentile
   bool layers = false, half = false;  // EXR only: more channels (render/render_channels.h), colours in 16 bit
+  bool denoise = false;               // also a picture without noise, to look at (denoised_of())
   bool png = false;                   // a display picture beside the EXR, a.exr -> a.png
   bool keep_finished = false;         // nothing is done where `out` is this very rendering already
   bool fresh = false;                 // a checkpoint that is there is thrown away
@@ -58,6 +59,9 @@ bool is_kept(const RenderRequest& request, const SceneFile& scene);
 
 // "1%" or "0.01": a relative error from 0.01 % to 100 %; none for anything else.
 std::optional<double> parse_noise(const std::string& text);
+
+// a.exr -> a.denoised.exr
+std::filesystem::path denoised_of(const std::filesystem::path& picture);
 
 // a.exr -> a.preview.png
 std::filesystem::path preview_of(const std::filesystem::path& picture);

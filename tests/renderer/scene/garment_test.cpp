@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "renderer/scene/backdrop.h"
 #include "renderer/trace/cloth_shell.h"
 
 namespace renderer {
@@ -98,6 +100,31 @@ TEST(GarmentTest, TheWorkTellsHowFarItIsAndStopsWhenAsked) {
 
 TEST(GarmentTest, TheSameShapeGivesTheSameMesh) {
   for (const GarmentShape& shape : kReady) EXPECT_EQ(garment_mesh(shape).vertices, ready_mesh(shape).vertices);
+}
+
+// All of it is seen from where cameras and lamps are, and no step of the bend is more than a degree.
+TEST(BackdropTest, ShowsItsBrightSideInsideWithoutAnEdge) {
+  const BackdropShape shape{.radius_mm = 2000, .height_mm = 1500, .bend_mm = 800};
+  const UvMesh mesh = backdrop_mesh(shape);
+  const TriangleMesh made = body(mesh, 1, Eigen::Isometry3d::Identity(), {1, 1, 1});
+  const Vector3d inside(300, -200, 400);
+  double area = 0;
+  int turned_away = 0, flat = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const Vector3d normal = (b - a).cross(c - a);
+    flat += normal.norm() > 0 ? 0 : 1;
+    turned_away += normal.dot(inside - a) > 0 ? 0 : 1;
+    area += normal.norm() / 2;
+  }
+  EXPECT_EQ(flat, 0);
+  EXPECT_EQ(turned_away, 0);
+  EXPECT_EQ(made.triangles.size(), mesh.triangles.size());
+  // Disc, quarter of a torus from outside of its hole, tube.
+  const double pi = std::numbers::pi, r = 2000 - 800, b = 800;
+  const double bend = 2 * pi * b * (r * pi / 2 + b);
+  EXPECT_NEAR(area / (pi * r * r + bend + 2 * pi * 2000 * (1500 - b)), 1, 1e-3);
+  EXPECT_THROW(backdrop_mesh({.radius_mm = 100, .height_mm = 500, .bend_mm = 200}), std::runtime_error);
 }
 
 }  // namespace

@@ -112,6 +112,25 @@ TEST(SceneFile, WhatItSaysIsWhereItBelongs) {
   EXPECT_EQ(scene.brightness, 2.5);
 }
 
+TEST(SceneFile, AStudioHasABackdropAndIsExposedByAWhiteCard) {
+  json document = plain_scene();
+  document["objects"] = {{{"kind", "backdrop"}, {"radius_mm", 900}, {"bend_mm", 300}, {"albedo", {0.5, 0.5, 0.5}}}};
+  document["white_card"] = {{"position_mm", {1, 2, 3}}, {"normal", {0, 0, 4}}};
+  const SceneFile scene = parse_scene(document, "scene", kScenes);
+  const renderer::UvMesh& backdrop = *std::get<renderer::MeshShape>(scene.objects.at(0).shape).mesh;
+  double most = 0;
+  for (const Eigen::Vector3d& place : backdrop.vertices) most = std::max(most, place.head<2>().norm());
+  EXPECT_NEAR(most, 900, 1e-9);
+  ASSERT_TRUE(scene.white_card);
+  EXPECT_EQ(scene.white_card->position_mm, Eigen::Vector3d(1, 2, 3));
+  EXPECT_FALSE(scene.brightness);
+  document["objects"][0]["bend_mm"] = 1000;
+  EXPECT_NE(refusal([&] { parse_scene(document, "scene", kScenes); }).find("bends by more"), std::string::npos);
+  document["objects"][0]["bend_mm"] = 300;
+  document["white_card"]["normal"] = {0, 0, 0};
+  EXPECT_NE(refusal([&] { parse_scene(document, "scene", kScenes); }).find("no direction"), std::string::npos);
+}
+
 TEST(SceneFile, ARectanglesBrightSideFacesItsTarget) {
   json document = plain_scene();
   document["lights"] = {{{"kind", "rectangle"},

@@ -90,6 +90,34 @@ TEST_F(Render, TheSameSeedGivesTheSamePictureOnAnyNumberOfThreads) {
   EXPECT_GT(cv::norm(a, renderer::read_exr(folder_ / "c.exr"), cv::NORM_INF), 0);
 }
 
+TEST_F(Render, APictureToLookAtStandsBesideTheOneToMeasureIn) {
+  const std::string scene = written("scene.json", small_scene("plain_swatch"));
+  ASSERT_EQ(render(scene, "a.exr", {"--spp", "64"}).status, 0);
+  const ProgramResult smooth = render(scene, "b.exr", {"--spp", "64", "--denoise", "--png"});
+  ASSERT_EQ(smooth.status, 0) << smooth.error;
+  const cv::Mat3f noisy = renderer::read_exr(folder_ / "b.exr");
+  EXPECT_EQ(cv::norm(noisy, renderer::read_exr(folder_ / "a.exr"), cv::NORM_INF), 0) << "what it would be without";
+  renderer::ImageHeader header;
+  const cv::Mat3f denoised = renderer::read_exr(folder_ / "b.denoised.exr", &header);
+  EXPECT_NE(header.at("threadstation/content").find("measure in the picture beside it"), std::string::npos);
+  EXPECT_GT(cv::norm(denoised, noisy), 0);
+  EXPECT_NEAR(cv::mean(denoised)[1] / cv::mean(noisy)[1], 1, 0.05);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "b.denoised.png"));
+  expect_one_line(render(scene, "c.exr", {"--spp", "16", "--denoise"}), "give --spp 32 or more");
+}
+
+// As bright as its exposure says, which is one over the card's radiance.
+TEST_F(Render, AWhiteCardExposesThePicture) {
+  json scene = small_scene("plain_swatch");
+  scene["lights"] = {{{"kind", "environment"}, {"radiance", {0.25, 0.25, 0.25}}, {"visible", false}}};
+  scene["white_card"] = {{"position_mm", {0, 0, 0}}, {"normal", {0, 0, 1}}};
+  const ProgramResult by_card = render(written("card.json", scene), "card.png", {"--json"});
+  ASSERT_EQ(by_card.status, 0) << by_card.error;
+  EXPECT_NEAR(json::parse(by_card.out).at("exposure").get<double>(), 4, 0.01);
+  const ProgramResult by_hand = render(folder_ / "card.json", "hand.png", {"--json", "--exposure", "2"});
+  EXPECT_EQ(json::parse(by_hand.out).at("exposure"), 2);
+}
+
 TEST_F(Render, BadFilesGiveOneClearLine) {
   const json good = small_scene("plain_swatch");
   expect_one_line(render(folder_ / "none.json", "a.exr"), "no such file");

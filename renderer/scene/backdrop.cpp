@@ -1,0 +1,35 @@
+#include "renderer/scene/backdrop.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "renderer/scene/grid_triangles.h"
+
+namespace renderer {
+
+UvMesh backdrop_mesh(const BackdropShape& s) {
+  constexpr int kRound = 720, kBend = 180;  // steps of half a degree each, so that no shading shows them
+  if (!(s.bend_mm <= s.radius_mm && s.bend_mm <= s.height_mm))
+    throw std::runtime_error("the backdrop bends by more than its floor or its wall is long; make bend_mm smaller");
+  std::vector<Eigen::Vector2d> profile{{0, 0}};  // radius and height, from the middle of the floor to the upper edge
+  for (int i = 0; i <= kBend; ++i) {
+    const double angle = std::numbers::pi / 2 * i / kBend;
+    profile.emplace_back(s.radius_mm - s.bend_mm * (1 - std::sin(angle)), s.bend_mm * (1 - std::cos(angle)));
+  }
+  profile.emplace_back(s.radius_mm, s.height_mm);
+  UvMesh mesh{.triangles = grid_triangles(kRound, static_cast<int>(profile.size()) - 1)};
+  for (const Eigen::Vector2d& at : profile)
+    for (int i = 0; i <= kRound; ++i) {
+      const double angle = -2 * std::numbers::pi * (i % kRound) / kRound;  // clockwise: the face is inside
+      mesh.vertices.emplace_back(at.x() * std::cos(angle), at.x() * std::sin(angle), at.y());
+    }
+  std::erase_if(mesh.triangles, [&](const auto& triangle) {  // of those in the middle one side has no length
+    return (mesh.vertices[triangle[1]] - mesh.vertices[triangle[0]])
+        .cross(mesh.vertices[triangle[2]] - mesh.vertices[triangle[0]])
+        .isZero();
+  });
+  return mesh;
+}
+
+}  // namespace renderer
