@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "renderer/picture/denoise.h"
 #include "renderer/trace/path_tracer.h"
 #include "tests/bench/bare_embree.h"
 #include "tests/renderer/trace/curve_scenes.h"
@@ -44,6 +45,24 @@ void path_tracing(benchmark::State& state, const CurveScene& scene, int max_vert
   state.counters["noise"] = noise(tracer, scene.camera, max_vertices);
 }
 
+// Items are pixels; `error` and `smoothed` are those of 8 samples against 256, over the mean brightness.
+void smoothing(benchmark::State& state) {
+  const CurveScene scene = scene_named('b');
+  const Camera& camera = scene.camera;
+  const PathTracer tracer(scene.scene);
+  Film one = empty_film(camera.width, camera.height), other = empty_film(camera.width, camera.height);
+  tracer.refine(camera, {.samples_per_pixel = 4, .seed = 1}, one);
+  tracer.refine(camera, {.samples_per_pixel = 4, .seed = 2}, other);
+  NoisyPicture picture = noisy_picture(one, other);
+  picture.features = features_of(tracer.layers(camera, {.samples_per_pixel = 8}));
+  for (auto _ : state) benchmark::DoNotOptimize(denoised(picture));
+  state.SetItemsProcessed(state.iterations() * camera.width * camera.height);
+  const cv::Mat3f truth = tracer.render(camera, {.samples_per_pixel = 256, .seed = 3});
+  const double mean = cv::norm(cv::mean(truth)) * std::sqrt(static_cast<double>(truth.total()));
+  state.counters["error"] = cv::norm(picture.mean, truth) / mean;
+  state.counters["smoothed"] = cv::norm(denoised(picture), truth) / mean;
+}
+
 void bare_first_hits(benchmark::State& state, char name) {
   const CurveScene scene = scene_named(name);
   BareEmbree bare(scene.scene.curves.front());
@@ -60,6 +79,7 @@ void bare_first_hits(benchmark::State& state, char name) {
   state.SetItemsProcessed(state.iterations() * scene.camera.width * scene.camera.height);
 }
 
+BENCHMARK(smoothing)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 BENCHMARK_CAPTURE(bare_first_hits, scene_a_one_thread, 'a')->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(bare_first_hits, scene_b_one_thread, 'b')->Unit(benchmark::kMillisecond);
 #define PATH_TRACING(name, scene, vertices)              \
