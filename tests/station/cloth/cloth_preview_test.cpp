@@ -41,11 +41,11 @@ class ClothPreview : public ::testing::Test {
 };
 
 TEST_F(ClothPreview, IsWovenOfTheBundleOnRequestAndSaysSo) {
-  const ProgramResult of_thread = cloth({});
+  const ProgramResult of_thread = cloth({"--shape", "swatch"});
   ASSERT_EQ(of_thread.status, 0) << of_thread.error;
   EXPECT_EQ(nlohmann::json::parse(of_thread.out).at("model"), "thread");
   const double thread_mean = swatch_mean();
-  const ProgramResult of_bundle = cloth({"--model", "bundle"});
+  const ProgramResult of_bundle = cloth({"--shape", "swatch", "--model", "bundle"});
   ASSERT_EQ(of_bundle.status, 0) << of_bundle.error;
   EXPECT_EQ(nlohmann::json::parse(of_bundle.out).at("model"), "bundle");
   EXPECT_GT(swatch_mean(), 0);
