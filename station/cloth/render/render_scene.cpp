@@ -1,5 +1,6 @@
 #include "station/cloth/render/render_scene.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <sstream>
@@ -32,14 +33,16 @@ void check_destination(const RenderRequest& request) {
                              ": --layers and --half are for EXR files; give --out a name that ends in .exr");
 }
 
-// How PNG pictures are exposed; from the picture itself where nobody says.
-Exposure exposure_of(const RenderRequest& request, const SceneFile& scene, const cv::Mat3f& image) {
-  if (!request.brightness && !scene.brightness && scene.white_card)
-    return {.white = radiance_of_white_card(scene, *scene.white_card)};
-  const double brightness = request.brightness ? *request.brightness
-                            : scene.brightness ? *scene.brightness
-                                               : display_scale(image);
-  return {.white = {1 / brightness, 1 / brightness, 1 / brightness}};
+// How PNG pictures are exposed where somebody says so. Errors: std::runtime_error, one line, for a card in the dark.
+std::optional<Exposure> given_exposure(const RenderRequest& request, const SceneFile& scene) {
+  if (const auto brightness = request.brightness ? request.brightness : scene.brightness)
+    return Exposure{.white = {1 / *brightness, 1 / *brightness, 1 / *brightness}};
+  if (!scene.white_card) return std::nullopt;
+  const Exposure exposure{.white = radiance_of_white_card(scene, *scene.white_card)};
+  if (!(*std::ranges::min_element(exposure.white) > 0))
+    throw std::runtime_error(scene.source +
+                             ": key \"white_card\": no light reaches its face; turn its normal to a lamp");
+  return exposure;
 }
 
 constexpr const char* kRenderingAttribute = "threadstation/rendering";
@@ -85,6 +88,12 @@ struct Rendering {
   const SceneFile& scene;
   const std::vector<BuiltCloth>& cloths;
   const RenderIdentity& identity;
+  const std::optional<Exposure> given_exposure;
+
+  Exposure exposure(const cv::Mat3f& image) const {
+    const double white = given_exposure ? 0 : 1 / display_scale(image);
+    return given_exposure.value_or(Exposure{.white = {white, white, white}});
+  }
 };
 
 // The same for the picture and for what is made of it.
@@ -123,7 +132,7 @@ void write_denoised(const Rendering& rendering, const renderer::PictureLayers& l
 
 void write_pictures(const Rendering& rendering, const renderer::PathTracer& tracer, const renderer::Film& film,
                     RenderReport& report) {
-  const auto& [request, scene, cloths, identity] = rendering;
+  const auto& [request, scene, cloths, identity, given] = rendering;
   const cv::Mat3f image = renderer::mean_radiance(film);
   const bool is_exr = request.out.extension() == ".exr";
   std::optional<renderer::PictureLayers> layers;
@@ -133,7 +142,7 @@ void write_pictures(const Rendering& rendering, const renderer::PathTracer& trac
         {.samples_per_pixel = identity.samples_per_pixel, .seed = identity.seed, .threads = request.threads});
   Exposure exposure;
   if (!is_exr || request.png) {
-    exposure = exposure_of(request, scene, image);
+    exposure = rendering.exposure(image);
     report.brightness = 1 / exposure.white[1];
     renderer::write_png(png_beside(request.out), display(image, exposure, scene.linear_srgb_from_camera));
   }
@@ -166,8 +175,7 @@ void leave_behind(const Rendering& rendering, Room& room, const renderer::Film& 
     keep(rendering, film);
     const cv::Mat3f image = renderer::mean_radiance(film);
     renderer::write_png(preview_of(rendering.request.out),
-                        display(image, exposure_of(rendering.request, rendering.scene, image),
-                                rendering.scene.linear_srgb_from_camera));
+                        display(image, rendering.exposure(image), rendering.scene.linear_srgb_from_camera));
   } catch (const std::runtime_error& problem) {
     if (!interrupted()) {
       progress.note(std::string(problem.what()) + " (the rendering goes on)");
@@ -302,6 +310,7 @@ RenderReport render_scene(const RenderRequest& request, std::vector<BuiltCloth> 
                              std::to_string(identity.samples_per_pixel) +
                              " samples per pixel, whose noise is not known; give --spp 32 or more");
   if (request.keep_finished && is_finished(request, identity)) return {.image = request.out.string(), .kept = true};
+  const std::optional<Exposure> exposure = given_exposure(request, scene);
   renderer::Film film = film_to_begin_with(request, identity, {scene.camera.width, scene.camera.height});
   Room room(request, film);
   RenderProgress progress(request.task, request.progress);
@@ -313,7 +322,7 @@ RenderReport render_scene(const RenderRequest& request, std::vector<BuiltCloth> 
                       .samples_per_pixel = identity.samples_per_pixel,
                       .build_s = seconds_since(start),
                       .samples_before = renderer::samples_in(film)};
-  const Rendering rendering{request, scene, cloths, identity};
+  const Rendering rendering{request, scene, cloths, identity, exposure};
   const Clock::time_point render_start = Clock::now();
   const renderer::RenderStatistics statistics = gather(rendering, tracer, room, progress, film);
   report.render_s = seconds_since(render_start);

@@ -116,6 +116,9 @@ TEST_F(Render, AWhiteCardExposesThePicture) {
   EXPECT_NEAR(json::parse(by_card.out).at("exposure").get<double>(), 4, 0.01);
   const ProgramResult by_hand = render(folder_ / "card.json", "hand.png", {"--json", "--exposure", "2"});
   EXPECT_EQ(json::parse(by_hand.out).at("exposure"), 2);
+  scene["lights"] = {
+      {{"kind", "sphere"}, {"position_mm", {0, 0, -90}}, {"radius_mm", 5}, {"intensity_mm2", {9e4, 9e4, 9e4}}}};
+  expect_one_line(render(written("dark.json", scene), "dark.png"), "no light reaches its face");
 }
 
 TEST_F(Render, BadFilesGiveOneClearLine) {
