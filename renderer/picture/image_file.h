@@ -1,4 +1,6 @@
-// Pictures on disk: EXR (linear, float or half), PNG (8 bit) and TIFF, through OpenImageIO, which is met only here.
+// Pictures on disk: EXR (linear, float or half) by OpenEXR, PNG (8 bit) by libpng; JPEG and TIFF are read.
+//
+// Not through OpenImageIO: Debian's loads 261 libraries, half a second of a processor at every start of a program.
 //
 // In memory a colour picture is cv::Mat3f, rows x columns x RGB (not BGR), linear.
 #pragma once
@@ -33,6 +35,8 @@ std::vector<ExrChannel> read_exr_channels(const std::filesystem::path& file);
 // EXR (linear already), of at most kMostPicturePixels. Grey pictures get three equal channels.
 inline constexpr double kMostPicturePixels = 1e8;
 cv::Mat3f read_linear_srgb(const std::filesystem::path& file);
+// The same for a photograph, which may also be a TIFF file; as stored: neither turned nor mirrored.
+cv::Mat3f read_photograph(const std::filesystem::path& file);
 
 // Writes an 8-bit PNG: a mask (grey), display colours (RGB, already encoded), or display colours with an opacity by
 // which they are not multiplied.
@@ -42,6 +46,8 @@ void write_png(const std::filesystem::path& file, const cv::Mat4b& rgba);
 cv::Mat1b read_png_grey(const std::filesystem::path& file);
 // The bytes of a PNG file, for embedding in a page.
 std::string encode_png(const cv::Mat3b& rgb);
+// The colours of one. Errors: std::runtime_error.
+cv::Mat3b decode_png(const std::string& bytes);
 
 // The picture for display: linear * scale, through a 3 x 3 matrix, clipped and sRGB-encoded.
 cv::Mat3b encode_srgb(const cv::Mat3f& linear, double scale,

@@ -34,7 +34,7 @@ void add_look_command(CLI::App& app) {
   arguments->output.add_to(*command);
   command->callback([arguments] {
     ClothLookRequest& asked = arguments->request;
-    constexpr int kPolitely = 10;  // others wait for the bench
+    constexpr int kPolitely = 4;  // the bench goes first, but somebody looks at this
     [[maybe_unused]] const int politeness = nice(kPolitely);
     asked.input = STDIN_FILENO;
     asked.progress_style = arguments->output.progress_style();

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <list>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "calibration/develop/linear_grey.h"
 #include "calibration/geometry/tags.h"
 #include "calibration/sensor/sensor_file.h"
+#include "renderer/picture/jpeg.h"
+#include "renderer/picture/picture_bytes.h"
 #include "station/bench/camera_adapter.h"
 #include "station/bench/exposure.h"
 #include "station/bench/picture_measures.h"
@@ -99,11 +100,11 @@ json lamp_of(const fs::path& session) {
 }
 
 cv::Mat3b decoded(const fs::path& jpeg) {
-  cv::Mat3b rgb;
-  const cv::Mat bgr = cv::imread(jpeg.string(), cv::IMREAD_COLOR);
-  if (bgr.empty()) throw Refused(404, "the live view's last frame cannot be read");
-  cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
-  return rgb;
+  try {
+    return renderer::decode_jpeg(renderer::bytes_of_picture(jpeg), renderer::JpegDamage::shown);
+  } catch (const std::runtime_error&) {
+    throw Refused(404, "the live view's last frame cannot be read");
+  }
 }
 
 }  // namespace

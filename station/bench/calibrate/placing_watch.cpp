@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <span>
 #include <stdexcept>
@@ -12,6 +11,7 @@
 
 #include "calibration/geometry/pose.h"
 #include "calibration/geometry/target_stand.h"
+#include "renderer/picture/jpeg.h"
 #include "station/bench/calibrate/lamps.h"
 #include "station/bench/calibrate/standing_target.h"
 #include "station/bench/picture_measures.h"
@@ -35,7 +35,7 @@ constexpr double kLeastStill_px = 0.7;         // live view is coarse
 constexpr double kFewestTags = 0.5;            // of the target's
 constexpr double kMostLean_rad = 9 * kDegree;  // of the plate against what is wanted; stands differ by 20 degrees
 constexpr double kMostOff_mm = 45, kMostTurn_rad = 25 * kDegree;
-const cv::Scalar kWanted(0, 200, 255), kRight(80, 220, 80);  // BGR
+const cv::Scalar kWanted(255, 200, 0), kRight(80, 220, 80);  // RGB
 
 std::vector<cv::Point> outline_in(const RigFile& rig, const rig::Arrangement& wanted, double angle_rad,
                                   cv::Size frame) {
@@ -50,6 +50,16 @@ std::vector<cv::Point> outline_in(const RigFile& rig, const rig::Arrangement& wa
                          cvRound(lens.fy_px * seen.y() / seen.z() + lens.cy_px));
   }
   return outline;
+}
+
+cv::Mat3b frame_of(const std::vector<std::byte>& jpeg) {
+  try {
+    return renderer::decode_jpeg({reinterpret_cast<const char*>(jpeg.data()), jpeg.size()},
+                                 renderer::JpegDamage::shown);
+  } catch (const std::runtime_error& problem) {
+    throw std::runtime_error(std::string("the camera's live view sent a frame that is no JPEG (") + problem.what() +
+                             "); switch it off and on");
+  }
 }
 
 cv::Mat1f in_small(const cv::Mat1f& grey) {
@@ -110,13 +120,10 @@ std::string PlacingWatch::fault(const calibration::TagObservation& seen, const c
 
 PlacingWatch::Look PlacingWatch::look() {
   const std::vector<std::byte> jpeg = camera_.preview();
-  const cv::Mat encoded(1, static_cast<int>(jpeg.size()), CV_8U, const_cast<std::byte*>(jpeg.data()));
-  cv::Mat3b frame = cv::imdecode(encoded, cv::IMREAD_COLOR);
-  if (frame.empty())
-    throw std::runtime_error("the camera's live view sent a frame that is no JPEG; switch it off and on");
+  cv::Mat3b frame = frame_of(jpeg);
   cv::Mat1f grey;
   cv::Mat1b bytes;
-  cv::cvtColor(frame, bytes, cv::COLOR_BGR2GRAY);
+  cv::cvtColor(frame, bytes, cv::COLOR_RGB2GRAY);
   bytes.convertTo(grey, CV_32F, 1.0 / 255);
   const calibration::TagObservation seen = calibration::detect_tags(grey);
   Look found{.remark = fault(seen, grey)};
@@ -149,8 +156,7 @@ PlacingWatch::Look PlacingWatch::look() {
   const std::vector<cv::Point> outline = outline_in(rig_, *wanted_, angle_rad_, frame.size());
   if (!outline.empty())
     cv::polylines(frame, outline, true, right ? kRight : kWanted, std::max(1, frame.cols / 300), cv::LINE_AA);
-  std::vector<unsigned char> shown;
-  cv::imencode(".jpg", frame, shown);
+  const std::string shown = renderer::encode_jpeg(frame);
   FileSystem disk;
   store_file(disk, live_, std::as_bytes(std::span(shown)));
   return found;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "renderer/picture/image_file.h"
 #include "station/output/compare/compare_pictures.h"
 #include "station/output/display.h"
 #include "station/output/plot.h"
@@ -140,9 +140,7 @@ cv::Mat3b curves(const ClothSample& cloth, const PbrMaps& maps, const GltfShader
                             .lines = {original, exported}});
   }
   const std::string png = draw(sheet, PlotFormat::png);
-  cv::Mat3b picture = cv::imdecode(std::vector<unsigned char>(png.begin(), png.end()), cv::IMREAD_COLOR);
-  cv::cvtColor(picture, picture, cv::COLOR_BGR2RGB);
-  return picture;
+  return renderer::decode_png(png);
 }
 
 }  // namespace

@@ -197,6 +197,39 @@ TEST_F(ImageFileTest, PicturesForPeopleAreLinearSrgbOverWhite) {
   is("transparent.png", 0.2F * linear + cv::Vec3f(0.8F, 0.8F, 0.8F), 2e-3);
 }
 
+// TIFF files are for photographs alone; those of OpenCV stand for what other programs write.
+TEST_F(ImageFileTest, PhotographsAreAlsoTiffFilesOfEightAndSixteenBitsAndFloats) {
+  const cv::Vec3f linear(0.5029F, 0.0513F, 0);
+  cv::imwrite(folder_ / "a.tif", cv::Mat3b(16, 16, cv::Vec3b(0, 64, 188)));
+  cv::imwrite(folder_ / "deep.tif", cv::Mat_<cv::Vec3w>(16, 16, cv::Vec3w(0, 64 * 257, 188 * 257)));
+  cv::imwrite(folder_ / "grey.tif", cv::Mat1w(16, 16, ushort{188 * 257}));
+  cv::imwrite(folder_ / "float.tif", cv::Mat3f(16, 16, cv::Vec3f(linear[2], linear[1], linear[0])),
+              {cv::IMWRITE_TIFF_COMPRESSION, 1});
+  cv::Mat1b corner(16, 16, uchar{0});
+  corner(2, 13) = 255;
+  cv::imwrite(folder_ / "corner.tif", corner);
+  write_png(folder_ / "a.png", cv::Mat3b(16, 16, cv::Vec3b(188, 64, 0)));
+  for (const char* name : {"a.tif", "deep.tif", "float.tif", "a.png"})
+    EXPECT_LT(cv::norm(read_photograph(folder_ / name), cv::Mat3f(16, 16, linear), cv::NORM_INF), 1e-4) << name;
+  EXPECT_NEAR(read_photograph(folder_ / "grey.tif")(3, 4)[2], 0.5029F, 1e-4);
+  EXPECT_EQ(read_photograph(folder_ / "corner.tif")(2, 13), cv::Vec3f(1, 1, 1));
+  EXPECT_EQ(read_photograph(folder_ / "corner.tif")(13, 13), cv::Vec3f(0, 0, 0));
+  cut_in_half(folder_ / "deep.tif");
+  EXPECT_THAT(error_of([&] { read_photograph(folder_ / "deep.tif"); }),
+              AllOf(HasSubstr("deep.tif"), HasSubstr("make it again"), Not(HasSubstr("\n"))));
+  EXPECT_THAT(error_of([&] { read_linear_srgb(folder_ / "a.tif"); }), HasSubstr("none of PNG, JPEG and EXR"));
+}
+
+TEST_F(ImageFileTest, PicturesForPeopleOfExrMayBeGreyOrTransparent) {
+  const cv::Mat half(4, 4, CV_32F, cv::Scalar(0.5)), quarter(4, 4, CV_32F, cv::Scalar(0.25));
+  write_exr(folder_ / "grey.exr", std::vector<ExrChannel>{{"Y", half}});
+  EXPECT_EQ(read_linear_srgb(folder_ / "grey.exr")(1, 2), cv::Vec3f(0.5F, 0.5F, 0.5F));
+  write_exr(folder_ / "over.exr", {{"R", quarter}, {"G", half}, {"B", half}, {"A", half}});
+  EXPECT_EQ(read_linear_srgb(folder_ / "over.exr")(1, 2), cv::Vec3f(0.75F, 1, 1)) << "its colours are multiplied";
+  write_exr(folder_ / "depth.exr", std::vector<ExrChannel>{{"Z", half}});
+  EXPECT_THAT(error_of([&] { read_linear_srgb(folder_ / "depth.exr"); }), HasSubstr("no channel R"));
+}
+
 TEST_F(ImageFileTest, PicturesForPeopleThatAreNoneAreOneLine) {
   const auto refused = [&](const fs::path& file, const char* why) {
     EXPECT_THAT(error_of([&] { read_linear_srgb(file); }),

@@ -127,15 +127,17 @@ TEST_F(TagPictures, ThatAreThereFourTimesCountOnceAndAreNamed) {
 
 TEST_F(TagPictures, OfTwoCamerasOrTwoFocalLengthsAreNamed) {
   fs::copy(*folder / "pictures", *folder / "cameras");
-  const auto take_with = [&](const std::string& name, const std::string& attributes) {
-    const std::string file = *folder / ("cameras/" + name);
-    ASSERT_EQ(std::system(("oiiotool '" + file + "' " + attributes + " -o '" + file + ".jpg'").c_str()), 0);
+  const auto take_with = [&](const std::string& name, const std::string& model, int focal_length_mm) {
+    const std::string file = *folder / ("cameras/" + name), jpeg = file + ".jpg";
+    cv::imwrite(jpeg, cv::imread(file, cv::IMREAD_GRAYSCALE));
+    const std::string command = "exiv2 -M 'set Exif.Image.Make SONY' -M 'set Exif.Image.Model " + model +
+                                "' -M 'set Exif.Photo.FocalLength " + std::to_string(focal_length_mm) + "/1' '" + jpeg +
+                                "'";
+    ASSERT_EQ(std::system(command.c_str()), 0);
     fs::remove(file);
   };
   for (int picture = 10; picture < 20; ++picture)
-    take_with(std::to_string(picture) + ".png", "--attrib Make SONY --attrib Model ILCE-" +
-                                                    std::string(picture < 17 ? "6700" : "7M4") +
-                                                    " --attrib:type=float Exif:FocalLength 90");
+    take_with(std::to_string(picture) + ".png", picture < 17 ? "ILCE-6700" : "ILCE-7M4", 90);
   expect_refused(calibrate(*folder / "cameras", board("apriltag_3x4"), *folder / "x.json", {"--quiet"}),
                  "17.png.jpg was taken by SONY ILCE-7M4, the first by SONY ILCE-6700 (10.png.jpg)");
   for (int picture = 17; picture < 20; ++picture)
@@ -143,7 +145,7 @@ TEST_F(TagPictures, OfTwoCamerasOrTwoFocalLengthsAreNamed) {
   EXPECT_EQ(calibrate(*folder / "cameras", board("apriltag_3x4"), *folder / "x.json", {"--quiet"}).error.find("taken"),
             std::string::npos);
   fs::copy(*folder / "pictures/17.png", *folder / "cameras/17.png");
-  take_with("17.png", "--attrib Make SONY --attrib Model ILCE-6700 --attrib:type=float Exif:FocalLength 70");
+  take_with("17.png", "ILCE-6700", 70);
   expect_refused(calibrate(*folder / "cameras", board("apriltag_3x4"), *folder / "x.json", {"--quiet"}),
                  "17.png.jpg was taken at 70.0 mm focal length, the first at 90.0 mm");
 }

@@ -5,9 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "renderer/picture/jpeg.h"
+#include "renderer/picture/picture_bytes.h"
 #include "rig/devices/clock.h"
 #include "rig/simulated/simulated_bench.h"
 #include "station/bench/bench_picture.h"
@@ -74,11 +75,9 @@ TEST_F(Placing, AHandBesideABoardThatStandsHoldsThePlatform) {
     explicit WithAHand(rig::Camera& of) : camera(of) {}
     std::vector<std::byte> preview() override {
       const std::vector<std::byte> jpeg = camera.preview();
-      cv::Mat frame = cv::imdecode(
-          cv::Mat(1, static_cast<int>(jpeg.size()), CV_8U, const_cast<std::byte*>(jpeg.data())), cv::IMREAD_COLOR);
-      if (hand_px >= 0) cv::rectangle(frame, {hand_px, 0, 60, 70}, {120, 150, 220}, cv::FILLED);
-      std::vector<unsigned char> encoded;
-      cv::imencode(".jpg", frame, encoded);
+      cv::Mat3b frame = renderer::decode_jpeg({reinterpret_cast<const char*>(jpeg.data()), jpeg.size()});
+      if (hand_px >= 0) cv::rectangle(frame, {hand_px, 0, 60, 70}, {220, 150, 120}, cv::FILLED);
+      const std::string encoded = renderer::encode_jpeg(frame);
       const auto* bytes = reinterpret_cast<const std::byte*>(encoded.data());
       return {bytes, bytes + encoded.size()};
     }
@@ -127,10 +126,10 @@ TEST_F(Placing, WhereTheBoardIsMissingTheOutlineShowsWhereItIsWanted) {
   const PlacingWatch::Look empty = after(0);
   EXPECT_FALSE(empty.stands);
   EXPECT_THAT(empty.remark, HasSubstr("Not enough of the printed target is seen"));
-  const cv::Mat3b frame = cv::imread(folder / "live.jpg", cv::IMREAD_COLOR);
+  const cv::Mat3b frame = renderer::decode_jpeg(renderer::bytes_of_picture(folder / "live.jpg"));
   ASSERT_EQ(frame.size(), cv::Size(600, 400));
   cv::Mat1b yellow;
-  cv::inRange(frame, cv::Scalar(0, 140, 200), cv::Scalar(90, 255, 255), yellow);
+  cv::inRange(frame, cv::Scalar(200, 140, 0), cv::Scalar(255, 255, 90), yellow);
   EXPECT_GT(cv::countNonZero(yellow), 300) << "the outline";
 }
 

@@ -331,7 +331,7 @@ async function seenAtOnce(station) {
   await station.page.focus('#look-sliders [name="light_turn_deg"]');
   await station.page.keyboard.press("ArrowRight");
   await another(before);
-  await station.until("a finer picture", () => !/Coarse/.test(document.getElementById("look-state").textContent), 60);
+  await station.until("a finer picture", () => !/Coarse/.test(document.getElementById("look-state").textContent), 240);
 }
 
 // Of a thread of the library, in a folder that is downloaded as one.
