@@ -62,10 +62,11 @@ cv::Mat1w halves_of(const cv::Mat& plane) {
   return halves;
 }
 
-std::string encoded(const std::vector<ExrChannel>& channels, const ImageHeader& attributes) {
+std::string encoded(const std::vector<ExrChannel>& channels, const ImageHeader& attributes,
+                    ExrCompression compression) {
   const cv::Size size = channels.front().plane.size();
   Imf::Header header(size.width, size.height);
-  header.compression() = Imf::ZIP_COMPRESSION;
+  header.compression() = compression == ExrCompression::zip ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
   for (const auto& [name, text] : attributes) header.insert(name, Imf::StringAttribute(text));
   Imf::FrameBuffer pixels;
   std::vector<cv::Mat1w> halves;  // outlive the frame buffer
@@ -120,19 +121,20 @@ void read_into(Imf::InputFile& input, const Imf::FrameBuffer& pixels) {
 
 }  // namespace
 
-void write_exr(const fs::path& file, const cv::Mat3f& linear, const ImageHeader& header) {
+void write_exr(const fs::path& file, const cv::Mat3f& linear, const ImageHeader& header, ExrCompression compression) {
   cv::Mat planes[3];
   cv::split(linear, planes);
-  write_exr(file, std::vector<ExrChannel>{{"R", planes[0]}, {"G", planes[1]}, {"B", planes[2]}}, header);
+  write_exr(file, std::vector<ExrChannel>{{"R", planes[0]}, {"G", planes[1]}, {"B", planes[2]}}, header, compression);
 }
 
-void write_exr(const fs::path& file, const std::vector<ExrChannel>& channels, const ImageHeader& header) {
+void write_exr(const fs::path& file, const std::vector<ExrChannel>& channels, const ImageHeader& header,
+               ExrCompression compression) {
   const std::string asked = "writing picture " + file.string();
   if (channels.empty()) refuse_picture(asked, "there is no channel", "give one");
   for (const ExrChannel& channel : channels)
     if (channel.plane.size() != channels.front().plane.size() || channel.plane.channels() != 1)
       refuse_picture(asked, "channel " + channel.name + " has another size", "make them equal");
-  store_picture(file, encoded(channels, header));
+  store_picture(file, encoded(channels, header, compression));
 }
 
 std::vector<ExrChannel> read_exr_channels(const fs::path& file) {

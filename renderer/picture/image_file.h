@@ -17,8 +17,11 @@ using ImageHeader = std::map<std::string, std::string>;  // text attributes stor
 
 // Errors of all functions: std::runtime_error naming the file, what was found and what to do.
 
+enum class ExrCompression { zip, none };
+
 // Writes or reads a linear EXR, 3 x float. It is written to a temporary name, flushed and renamed.
-void write_exr(const std::filesystem::path& file, const cv::Mat3f& linear, const ImageHeader& header = {});
+void write_exr(const std::filesystem::path& file, const cv::Mat3f& linear, const ImageHeader& header = {},
+               ExrCompression compression = ExrCompression::zip);
 cv::Mat3f read_exr(const std::filesystem::path& file, ImageHeader* header = nullptr);
 
 // A named channel of an EXR file, "R" or "layer.R"; all of one file have the same size.
@@ -28,7 +31,7 @@ struct ExrChannel {
   bool half = false;  // stored as 16-bit floats, clipped at the largest of these
 };
 void write_exr(const std::filesystem::path& file, const std::vector<ExrChannel>& channels,
-               const ImageHeader& header = {});
+               const ImageHeader& header = {}, ExrCompression compression = ExrCompression::zip);
 std::vector<ExrChannel> read_exr_channels(const std::filesystem::path& file);
 
 // Reads a picture made to be looked at as linear sRGB: PNG and JPEG (sRGB-encoded; transparent parts become white) or

@@ -141,15 +141,14 @@ void note_lamp_changes(const std::vector<ChipView>& chips, std::vector<Developed
 }
 
 void write_view(const std::filesystem::path& session, const DevelopedView& developed) {
-  renderer::write_exr(
-      session / developed.image_file, developed.view.image,
-      {{"threadstation/content",
-        "linear camera RGB, radiance unit (full scale per second); dark subtracted, "
-        "exposures merged and divided by their times, flat-fielded, distortion removed; to be divided by "
-        "the view's lamp_strength in views.json"},
-       {"threadstation/view", developed.view.id},
-       // Zip would make noisy pictures only 6 % smaller and take seconds for each of 24 MP.
-       {"compression", "none"}});
+  const renderer::ImageHeader header{
+      {"threadstation/content",
+       "linear camera RGB, radiance unit (full scale per second); dark subtracted, "
+       "exposures merged and divided by their times, flat-fielded, distortion removed; to be divided by "
+       "the view's lamp_strength in views.json"},
+      {"threadstation/view", developed.view.id}};
+  // Zip would make noisy pictures only 6 % smaller and take seconds for each of 24 MP.
+  renderer::write_exr(session / developed.image_file, developed.view.image, header, renderer::ExrCompression::none);
   renderer::write_png(session / developed.mask_file, developed.view.mask);
 }
 

@@ -67,6 +67,14 @@ TEST_F(ImageFileTest, ExrKeepsRowsThatAreNotContiguous) {
   EXPECT_EQ(cv::norm(read_exr(folder_ / "a.exr"), part, cv::NORM_INF), 0);
 }
 
+TEST_F(ImageFileTest, ExrIsWrittenWithoutCompressionWhereThatIsAskedFor) {
+  write_exr(folder_ / "zip.exr", ramp());
+  write_exr(folder_ / "none.exr", ramp(), {{"a", "b"}}, ExrCompression::none);
+  EXPECT_EQ(cv::norm(read_exr(folder_ / "none.exr"), ramp(), cv::NORM_INF), 0);
+  EXPECT_GT(fs::file_size(folder_ / "none.exr"), 20 * 30 * 3 * sizeof(float));
+  EXPECT_LT(fs::file_size(folder_ / "zip.exr"), fs::file_size(folder_ / "none.exr") / 2);
+}
+
 TEST_F(ImageFileTest, ExrKeepsItsHeader) {
   const ImageHeader written{{"threadstation:unit", "radiance per second"}, {"threadstation:view", "r03"}};
   write_exr(folder_ / "a.exr", ramp(), written);
