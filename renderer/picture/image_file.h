@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "renderer/picture/picture_bytes.h"
+
 namespace renderer {
 
 using ImageHeader = std::map<std::string, std::string>;  // text attributes stored in the file
@@ -36,7 +38,6 @@ std::vector<ExrChannel> read_exr_channels(const std::filesystem::path& file);
 
 // Reads a picture made to be looked at as linear sRGB: PNG and JPEG (sRGB-encoded; transparent parts become white) or
 // EXR (linear already), of at most kMostPicturePixels. Grey pictures get three equal channels.
-inline constexpr double kMostPicturePixels = 1e8;
 cv::Mat3f read_linear_srgb(const std::filesystem::path& file);
 // The same for a photograph, which may also be a TIFF file; as stored: neither turned nor mirrored.
 cv::Mat3f read_photograph(const std::filesystem::path& file);

@@ -5,7 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "renderer/picture/image_file.h"
+#include "renderer/picture/picture_bytes.h"
 
 namespace renderer {
 namespace {

@@ -7,6 +7,8 @@
 
 namespace renderer {
 
+inline constexpr double kMostPicturePixels = 1e8;  // of a picture that is read
+
 // Throws std::runtime_error with one line, whatever a library's own words contain.
 [[noreturn]] void refuse_picture(const std::string& asked, const std::string& found, const std::string& remedy);
 // Of a file that is damaged: "reading picture FILE: `found`; it is damaged ...".

@@ -56,9 +56,8 @@ cv::Mat3b frame_of(const std::vector<std::byte>& jpeg) {
   try {
     return renderer::decode_jpeg({reinterpret_cast<const char*>(jpeg.data()), jpeg.size()},
                                  renderer::JpegDamage::shown);
-  } catch (const std::runtime_error& problem) {
-    throw std::runtime_error(std::string("the camera's live view sent a frame that is no JPEG (") + problem.what() +
-                             "); switch it off and on");
+  } catch (const std::runtime_error&) {
+    throw std::runtime_error("the camera's live view sent a frame that is no JPEG; switch it off and on");
   }
 }
 
