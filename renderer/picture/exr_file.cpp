@@ -11,6 +11,7 @@
 #include <cstring>
 #include <exception>
 #include <stdexcept>
+#include <utility>
 
 #include "renderer/picture/image_file.h"
 #include "renderer/picture/picture_bytes.h"
@@ -34,7 +35,7 @@ class MemoryOutput final : public Imf::OStream {
   }
   std::uint64_t tellp() override { return at_; }
   void seekp(std::uint64_t at) override { at_ = at; }
-  const std::string& bytes() const { return bytes_; }
+  std::string taken() { return std::move(bytes_); }
 
  private:
   std::string bytes_;
@@ -86,7 +87,7 @@ std::string encoded(const std::vector<ExrChannel>& channels, const ImageHeader& 
     file.setFrameBuffer(pixels);
     file.writePixels(size.height);
   }  // which writes where the rows lie
-  return memory.bytes();
+  return memory.taken();
 }
 
 // Opens `file` and calls `read(Imf::InputFile&)`; whatever OpenEXR says of it becomes one line.

@@ -75,6 +75,14 @@ bool is_tiff(std::string_view bytes) {
   return bytes.starts_with("II*\0"sv) || bytes.starts_with("MM\0*"sv);
 }
 
+// None of the libraries is let near a file that does not begin as its own do.
+cv::Mat3f linear_of(const std::string& bytes, const fs::path& file) {
+  if (bytes.starts_with("\x89PNG")) return linear_of_png(bytes, file);
+  if (bytes.starts_with("\xff\xd8\xff")) return linear_of_jpeg(bytes, file);
+  if (bytes.starts_with("\x76\x2f\x31\x01")) return linear_of_exr(file);
+  refuse_picture("reading picture " + file.string(), "it is none of PNG, JPEG and EXR", "give one of these");
+}
+
 }  // namespace
 
 void check_size(const fs::path& file, double width, double height) {
@@ -92,17 +100,13 @@ cv::Mat3f linear_over_white(const cv::Mat4w& rgba) {
   return over_white(rgba);
 }
 
-// None of the libraries is let near a file that does not begin as its own do.
 cv::Mat3f read_linear_srgb(const fs::path& file) {
-  const std::string bytes = bytes_of_picture(file);
-  if (bytes.starts_with("\x89PNG")) return linear_of_png(bytes, file);
-  if (bytes.starts_with("\xff\xd8\xff")) return linear_of_jpeg(bytes, file);
-  if (bytes.starts_with("\x76\x2f\x31\x01")) return linear_of_exr(file);
-  refuse_picture("reading picture " + file.string(), "it is none of PNG, JPEG and EXR", "give one of these");
+  return linear_of(bytes_of_picture(file), file);
 }
 
 cv::Mat3f read_photograph(const fs::path& file) {
-  return is_tiff(bytes_of_picture(file)) ? linear_of_tiff(file) : read_linear_srgb(file);
+  const std::string bytes = bytes_of_picture(file);
+  return is_tiff(bytes) ? linear_of_tiff(file) : linear_of(bytes, file);
 }
 
 cv::Mat3b encode_srgb(const cv::Mat3f& linear, double scale, const cv::Matx33f& linear_srgb_from_camera) {

@@ -4,7 +4,6 @@
 #include <csetjmp>
 #include <cstring>
 #include <opencv2/imgproc.hpp>
-#include <vector>
 
 #include "renderer/picture/decoded_picture.h"
 #include "renderer/picture/image_file.h"
@@ -59,7 +58,11 @@ void read_on(png_struct* png, unsigned char* to, std::size_t size) {
   unread->next += size, unread->size -= size;
 }
 
-void keep_quiet(png_struct* /*png*/, const char* /*warning*/) {}
+// Both would go to standard error.
+[[noreturn]] void give_up(png_struct* png, const char* /*error*/) {
+  png_longjmp(png, 1);
+}
+void go_on(png_struct* /*png*/, const char* /*warning*/) {}
 
 // 16-bit RGBA as stored: what libpng makes of 16 bits in one call follows a curve that is not quite that of sRGB.
 // libpng leaves this function by a jump, over which nothing with a destructor may lie.
@@ -82,7 +85,7 @@ bool read_deep(png_struct* png, png_info* info, Unread* unread, cv::Mat4w* pixel
 cv::Mat4w deep_pixels(const std::string& bytes, const cv::Size& size, const fs::path& file) {
   cv::Mat4w pixels(size, cv::Vec4w::all(0));
   Unread unread{bytes.data(), bytes.size()};
-  png_struct* png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, keep_quiet);
+  png_struct* png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, give_up, go_on);
   png_info* info = png ? png_create_info_struct(png) : nullptr;
   const bool whole = info && read_deep(png, info, &unread, &pixels);
   png_destroy_read_struct(&png, &info, nullptr);

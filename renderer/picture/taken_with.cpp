@@ -1,5 +1,6 @@
 #include "renderer/picture/taken_with.h"
 
+#include <exception>
 #include <exiv2/exiv2.hpp>
 
 namespace renderer {
@@ -30,7 +31,7 @@ TakenWith taken_with(const std::filesystem::path& file) {
     const auto picture = Exiv2::ImageFactory::open(file.string());
     picture->readMetadata();
     return taken_with(picture->exifData());
-  } catch (const Exiv2::Error&) {
+  } catch (const std::exception&) {
     return {};
   }
 }

@@ -30,7 +30,7 @@ std::optional<cv::Mat3f> deep_pixels(TIFF* tiff, const fs::path& file, const cv:
              colours = field<std::uint16_t>(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
   const bool words = bits == 16 && kind == SAMPLEFORMAT_UINT, floats = bits == 32 && kind == SAMPLEFORMAT_IEEEFP;
   if (!words && !floats) return std::nullopt;
-  const bool grey = colours == PHOTOMETRIC_MINISBLACK && channels <= 2;
+  const bool grey = colours == PHOTOMETRIC_MINISBLACK && (channels == 1 || channels == 2);
   const bool rows = !TIFFIsTiled(tiff) && field<std::uint16_t>(tiff, TIFFTAG_PLANARCONFIG, 1) == PLANARCONFIG_CONTIG;
   if (!rows || !(grey || (colours == PHOTOMETRIC_RGB && channels >= 3)))
     refuse_picture("reading picture " + file.string(), "it is a deep TIFF in tiles, planes or other colours",

@@ -5,7 +5,6 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-#include "calibration/develop/develop.h"
 #include "calibration/develop/linear_grey.h"
 #include "calibration/sensor/sensor_file.h"
 #include "renderer/picture/image_file.h"

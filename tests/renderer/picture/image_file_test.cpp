@@ -252,6 +252,13 @@ TEST_F(ImageFileTest, PicturesForPeopleThatAreNoneAreOneLine) {
   write_png(folder_ / "cut.png", cv::Mat3b(64, 64, cv::Vec3b(1, 2, 3)));
   cut_in_half(folder_ / "cut.png");
   refused(folder_ / "cut.png", "not a complete PNG");
+  cv::Mat_<cv::Vec3w> noise(64, 64);
+  cv::randu(noise, 0, 65535);
+  cv::imwrite(folder_ / "deep.png", noise);
+  cut_in_half(folder_ / "deep.png");
+  testing::internal::CaptureStderr();
+  refused(folder_ / "deep.png", "not a complete PNG");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "the library's own words";
   cv::Mat3f values(4, 4, cv::Vec3f(1, 1, 1));
   values(2, 2)[1] = std::numeric_limits<float>::quiet_NaN();
   write_exr(folder_ / "nan.exr", values);
