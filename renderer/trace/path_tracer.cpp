@@ -23,6 +23,17 @@ using Eigen::Vector3f;
 // Diffuse surfaces are never faint in this sense: a black one would come out grainy.
 constexpr float kFaintScattering = 0.02f;
 
+// Surfaces darker than the inverse of this send less than every path on, from the first vertex: what a black table
+// reflects of its surroundings costs as much as what a white one does, and is hardly seen. The weight of what goes on is
+// at most this inverse, so that no pixel of the table is brighter than one of paper.
+constexpr float kDarkSurfaces = 4;
+
+// The chance with which a path goes on from its vertex of this number, counted from 1.
+float survival_at(const PathVertex& vertex, int number, float throughput) {
+  if (number >= kFirstRouletteVertex) return std::min(kMostSurvival, throughput);
+  return vertex.is_curve() ? 1.0f : std::min(1.0f, kDarkSurfaces * throughput);
+}
+
 // Weight of a direction drawn with density `pdf` when `other` could have drawn it too (power heuristic).
 float mis_weight(float pdf, float other) {
   const float ratio = other / pdf;
@@ -84,8 +95,8 @@ Array3f PathTracer::Impl::radiance(CameraRay camera_ray, Sampler& sampler, int m
     const bool last = vertices == max_vertices;
     const std::optional<LightHit> light = lights.intersect(origin, direction, vertices == 0);
     if ((last && !light) || (vertices == 0 && !may_hit && !light)) break;
-    std::optional<SurfaceHit> hit;
-    if (vertices > 0 || may_hit) hit = walk.next(ray, sampler);
+    const std::optional<SurfaceHit> hit =
+        vertices > 0 || may_hit ? walk.next(ray, sampler) : std::optional<SurfaceHit>();
     if (light && (!hit || light->distance < static_cast<double>(hit->distance - lead))) {
       const float weight =
           vertices == 0 ? 1.0f : mis_weight(scattering_pdf, static_cast<float>(lights.pdf(origin, direction)));
@@ -102,8 +113,7 @@ Array3f PathTracer::Impl::radiance(CameraRay camera_ray, Sampler& sampler, int m
     throughput *= scattering.f_cos / scattering.pdf;
     if (!(throughput.maxCoeff() > 0)) break;  // black surfaces
     scattering_pdf = scattering.pdf;
-    if (vertices + 1 >= kFirstRouletteVertex) {
-      const float survival = std::min(kMostSurvival, throughput.maxCoeff());
+    if (const float survival = survival_at(vertex, vertices + 1, throughput.maxCoeff()); survival < 1) {
       if (!(sampler.next_1d() < survival)) break;
       throughput /= survival;
     }
@@ -225,6 +235,7 @@ cv::Mat1b PathTracer::curve_coverage(const Camera& camera, int samples_per_pixel
       const Eigen::Vector2f u = (Eigen::Array2f(static_cast<float>(s % side), static_cast<float>(s / side)) + 0.5f) /
                                 static_cast<float>(side);
       CameraRay ray = rays.at(column, row, u);
+      if (CameraRay of_curves = ray; !advance_to(impl_->rays.curve_bounds(), of_curves)) continue;
       if (!advance_to(impl_->rays.bounds(), ray)) continue;
       if (impl_->rays.meets_curve_first({ray.origin.cast<float>(), ray.direction.cast<float>()}))
         coverage(row, column) = 255;

@@ -49,6 +49,16 @@ std::vector<std::uint32_t> first_segments(const CurveSet& curves) {
   return first;
 }
 
+// Splines lie among their control points.
+Eigen::AlignedBox3d bounds_of(const CurveSet& curves) {
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector4f& point : curves.control_points) {
+    const Vector3f radius = Vector3f::Constant(point.w());
+    box.extend(point.head<3>() - radius), box.extend(point.head<3>() + radius);
+  }
+  return box.isEmpty() ? Eigen::AlignedBox3d() : box.transformed(curves.placed).cast<double>();
+}
+
 // The number of the geometry that was hit; for curves that are placed elsewhere it is the instance's.
 std::uint32_t geometry_of(const RTCHit& hit) {
   return hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? hit.geomID : hit.instID[0];
@@ -91,6 +101,8 @@ RayScene::RayScene(Scene scene)
   rtcGetSceneBounds(embree_.get(), &b);
   if (b.lower_x <= b.upper_x)
     bounds_ = {Eigen::Vector3d(b.lower_x, b.lower_y, b.lower_z), Eigen::Vector3d(b.upper_x, b.upper_y, b.upper_z)};
+  for (const CurveSet& curves : scene_.curves) curve_bounds_.extend(bounds_of(curves));
+  if (!cloths_.empty()) curve_bounds_ = bounds_;
 }
 
 void RayScene::add_mesh(const TriangleMesh& mesh) {

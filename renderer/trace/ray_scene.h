@@ -54,6 +54,8 @@ class RayScene {
   SceneMemory memory() const;
 
   const Eigen::AlignedBox3d& bounds() const { return bounds_; }
+  // A box that holds all curves, those of cloths too. A ray that misses it meets none.
+  const Eigen::AlignedBox3d& curve_bounds() const { return curve_bounds_; }
   const Scene& scene() const { return scene_; }
 
  private:
@@ -67,7 +69,8 @@ class RayScene {
   std::vector<std::shared_ptr<const ClothGeometry>> cloths_;  // outlive the scene, which calls them
   std::shared_ptr<RTCSceneTy> embree_;
   bool yarns_overlap_ = false;
-  Eigen::AlignedBox3d bounds_;  // empty for a scene without surfaces
+  Eigen::AlignedBox3d bounds_;        // empty for a scene without surfaces
+  Eigen::AlignedBox3d curve_bounds_;  // empty for a scene without curves
 };
 
 }  // namespace renderer

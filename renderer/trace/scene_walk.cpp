@@ -5,10 +5,10 @@
 
 namespace renderer {
 
-SceneWalk::SceneWalk(const RayScene& scene, const std::vector<CurveModel>& models)
-    : scene_(&scene), models_(&models), has_bundles_(std::ranges::any_of(models, [](const CurveModel& model) {
-        return std::holds_alternative<BundleModel>(model);
-      })) {}
+SceneWalk::SceneWalk(const RayScene& scene, const std::vector<CurveModel>& models) : scene_(&scene), models_(&models) {
+  if (std::ranges::any_of(models, [](const auto& model) { return std::holds_alternative<BundleModel>(model); }))
+    inside_ = std::make_unique<Bundles>();
+}
 
 const BundleModel* SceneWalk::bundle_of(const SurfaceHit& hit) const {
   const auto* curve = std::get_if<CurvePoint>(&hit.point);
@@ -66,15 +66,19 @@ std::optional<SurfaceHit> SceneWalk::next(const Ray& ray, float distance, Bundle
 }
 
 std::optional<SurfaceHit> SceneWalk::next(const Ray& ray, Sampler& sampler) {
-  return next(ray, std::numeric_limits<float>::infinity(), inside_, sampler);
+  if (!inside_) {
+    ++traced_;
+    return scene_->intersect(ray);
+  }
+  return next(ray, std::numeric_limits<float>::infinity(), *inside_, sampler);
 }
 
 bool SceneWalk::occluded(const Ray& ray, float distance, Sampler& sampler) const {
-  if (!has_bundles_) {
+  if (!inside_) {
     ++traced_;
     return scene_->occluded(ray, distance);
   }
-  Bundles inside = inside_;
+  Bundles inside = *inside_;
   return next(ray, distance, inside, sampler).has_value();
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -38,8 +39,7 @@ class SceneWalk {
 
   const RayScene* scene_;
   const std::vector<CurveModel>* models_;
-  bool has_bundles_;
-  Bundles inside_;
+  std::unique_ptr<Bundles> inside_;  // none where no curve is a bundle: setting it up costs as much as a ray
   mutable std::uint64_t traced_ = 0;
 };
 

@@ -20,16 +20,6 @@ double solid_angle(const SphereLight& light, const Vector3d& point) {
   return 2 * std::numbers::pi * one_minus_cos_cone(light, point);
 }
 
-std::optional<double> distance_to(const SphereLight& light, const Vector3d& origin, const Vector3d& direction) {
-  const Vector3d to_center = light.center - origin;
-  const double along = to_center.dot(direction), radius2 = light.radius_mm * light.radius_mm;
-  const double half2 = radius2 - (to_center - along * direction).squaredNorm();
-  if (half2 < 0) return std::nullopt;
-  if (to_center.squaredNorm() <= radius2) return along + std::sqrt(half2);
-  if (along < 0) return std::nullopt;
-  return along - std::sqrt(half2);
-}
-
 Vector3d direction_to(const SphereLight& light, const Vector3d& origin, const Eigen::Vector2f& u) {
   const Vector3d axis = (light.center - origin).normalized(), side = axis.unitOrthogonal();
   const double one_minus_cos = static_cast<double>(u.x()) * one_minus_cos_cone(light, origin);

@@ -156,9 +156,13 @@ class SimulatedCamera final : public Camera {
 
   std::vector<std::byte> preview() override {
     const BenchState now = bench_.state();
-    const std::string jpeg = live_view_jpeg(focused(bench_.draw_roughly(), now.lens));
-    const auto* bytes = reinterpret_cast<const std::byte*>(jpeg.data());
-    return {bytes, bytes + jpeg.size()};
+    if (!shown_state_ || !same_state(*shown_state_, now)) {
+      shown_state_.reset();  // as in capture()
+      shown_ = live_view_jpeg(focused(bench_.draw_roughly(), now.lens));
+      shown_state_ = now;
+    }
+    const auto* bytes = reinterpret_cast<const std::byte*>(shown_.data());
+    return {bytes, bytes + shown_.size()};
   }
 
  private:
@@ -209,6 +213,8 @@ class SimulatedCamera final : public Camera {
   std::uint64_t pictures_taken_ = 0;
   std::optional<BenchState> drawn_state_;  // the state that the drawings show
   cv::Mat3f by_lamp_, without_lamp_;       // the drawings; one of them may be empty
+  std::optional<BenchState> shown_state_;  // the state that the frame of the live view shows
+  std::string shown_;                      // that frame, JPEG
   DefectMaps defects_;
 };
 

@@ -19,8 +19,11 @@ namespace {
 using nlohmann::json;
 using station::CalibrationRole;
 
+// Drawn with a quarter of the documented samples: whatever is found in such pictures is found in better ones.
 json documented_rig() {
-  return station::read_json_file(std::string(DATA_DIR) + "/rigs/simulated.json");
+  json rig = station::read_json_file(std::string(DATA_DIR) + "/rigs/simulated.json");
+  rig["simulation"]["target_samples_per_pixel"] = 4;
+  return rig;
 }
 
 // Everything that calibration has to find is another; what is known by tape and by the lens's engraving stays.
