@@ -24,8 +24,8 @@ using Eigen::Vector3f;
 constexpr float kFaintScattering = 0.02f;
 
 // Surfaces darker than the inverse of this send less than every path on, from the first vertex: what a black table
-// reflects of its surroundings costs as much as what a white one does, and is hardly seen. The weight of what goes on is
-// at most this inverse, so that no pixel of the table is brighter than one of paper.
+// reflects of its surroundings costs as much as what a white one does, and is hardly seen. What goes on has at most
+// this inverse as its weight, so that no pixel of the table gets brighter than one of grey paper.
 constexpr float kDarkSurfaces = 4;
 
 // The chance with which a path goes on from its vertex of this number, counted from 1.

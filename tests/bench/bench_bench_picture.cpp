@@ -1,6 +1,6 @@
 // Drawings of the simulated bench, of which calibrations and captures on it consist: camera rays per second of
-// processor time. `mean` and `noise` (root mean square of the difference between two drawings, over the mean and sqrt 2) are of
-// red, green and blue together.
+// processor time. `mean` and `noise` (root mean square of the difference between two drawings, over the mean and
+// sqrt 2) are of red, green and blue together.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
