@@ -23,15 +23,15 @@ using Eigen::Vector3f;
 // Diffuse surfaces are never faint in this sense: a black one would come out grainy.
 constexpr float kFaintScattering = 0.02f;
 
-// Surfaces darker than the inverse of this send less than every path on, from the first vertex: what a black table
-// reflects of its surroundings costs as much as what a white one does, and is hardly seen. What goes on has at most
-// this inverse as its weight, so that no pixel of the table gets brighter than one of grey paper.
+// Surfaces that the camera sees and that are darker than the inverse of this send less than every path on: what a black
+// table reflects of its surroundings costs as much as what a white one does, and is hardly seen. What goes on has at
+// most this inverse as its weight, so that no pixel of the table gets brighter than one of grey paper.
 constexpr float kDarkSurfaces = 4;
 
 // The chance with which a path goes on from its vertex of this number, counted from 1.
 float survival_at(const PathVertex& vertex, int number, float throughput) {
   if (number >= kFirstRouletteVertex) return std::min(kMostSurvival, throughput);
-  return vertex.is_curve() ? 1.0f : std::min(1.0f, kDarkSurfaces * throughput);
+  return number == 1 && !vertex.is_curve() ? std::min(1.0f, kDarkSurfaces * throughput) : 1.0f;
 }
 
 // Weight of a direction drawn with density `pdf` when `other` could have drawn it too (power heuristic).
