@@ -235,7 +235,7 @@ cv::Mat1b PathTracer::curve_coverage(const Camera& camera, int samples_per_pixel
       const Eigen::Vector2f u = (Eigen::Array2f(static_cast<float>(s % side), static_cast<float>(s / side)) + 0.5f) /
                                 static_cast<float>(side);
       CameraRay ray = rays.at(column, row, u);
-      if (CameraRay of_curves = ray; !advance_to(impl_->rays.curve_bounds(), of_curves)) continue;
+      if (CameraRay toward_curves = ray; !advance_to(impl_->rays.curve_bounds(), toward_curves)) continue;
       if (!advance_to(impl_->rays.bounds(), ray)) continue;
       if (impl_->rays.meets_curve_first({ray.origin.cast<float>(), ray.direction.cast<float>()}))
         coverage(row, column) = 255;

@@ -131,10 +131,11 @@ class SimulatedBench {
 };
 
 // Simulated devices that share one bench and one clock (both must outlive them).
-// The camera draws only when the bench has changed since its last picture; the noise is fresh each time, and the lamp
-// has the strength of the seconds on the clock during which the shutter is open. The camera offers thirds of stops; the
-// light gathered goes with (8 / f)^2. Its files are described in rig/simulated/raw_writer.h. The turntable's position
-// is unknown until it is homed; its angles are within +-360 deg, on the truth's steps.
+// The camera draws only when the bench has changed since its last picture, or for live view since its last frame; the
+// noise of pictures is fresh each time, and the lamp has the strength of the seconds on the clock during which the
+// shutter is open. The camera offers thirds of stops; the light gathered goes with (8 / f)^2. Its files are described
+// in rig/simulated/raw_writer.h. The turntable's position is unknown until it is homed; its angles are within +-360
+// deg, on the truth's steps.
 std::unique_ptr<Camera> make_simulated_camera(SimulatedBench& bench, Clock& clock, CameraMake make = CameraMake::sony);
 std::unique_ptr<Turntable> make_simulated_turntable(SimulatedBench& bench, Clock& clock);
 std::unique_ptr<Operator> make_simulated_operator(SimulatedBench& bench);

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "renderer/scattering/degree.h"
+#include "renderer/trace/ray_scene.h"
 
 namespace renderer {
 namespace {
@@ -268,6 +269,34 @@ TEST(PathTracerTest, MeshesInFrontAreNotCoverage) {
   set.add_clamped_curve({{-30, 0, -1, 0.05f}, {30, 0, -1, 0.05f}});
   const PathTracer tracer({.curves = {set}, .meshes = {white_floor(0.5f)}});
   EXPECT_EQ(cv::countNonZero(tracer.curve_coverage(small_camera({0, 0, 600}, 0.3), 1)), 0);
+}
+
+TEST(PathTracerTest, CurvesThatArePlacedElsewhereAreCovered) {
+  CurveSet set;
+  set.add_clamped_curve({{-0.5f, 0, 0, 0.2f}, {0.5f, 0, 0, 0.2f}});
+  set.placed = Eigen::Translation3f(0.6f, 0.3f, 0) * Eigen::AngleAxisf(1.2f, Vector3d::UnitZ().cast<float>()) *
+               Eigen::Scaling(1.0f, 2.0f, 1.0f);
+  const Camera camera = small_camera({0, 0, 600}, 4, 80, 60);
+  const Scene scene{.curves = {set}, .meshes = {white_floor(0.5f)}};
+  const cv::Mat1b coverage = PathTracer(scene).curve_coverage(camera, 1);
+  const RayScene rays(scene);
+  cv::Mat1b met(coverage.size());
+  for (int row = 0; row < met.rows; ++row)
+    for (int column = 0; column < met.cols; ++column) {
+      const CameraRay ray = ray_through(camera, column, row);
+      met(row, column) = rays.meets_curve_first({ray.origin.cast<float>(), ray.direction.cast<float>()}) ? 255 : 0;
+    }
+  EXPECT_GT(cv::countNonZero(met), 200);
+  EXPECT_EQ(cv::countNonZero(coverage != met), 0);
+}
+
+// Light comes by both strategies, so that half of it passes the lot by which a dark surface sends paths on.
+TEST(PathTracerTest, ADarkFloorInAUniformEnvironmentIsAsBrightAsItsAlbedo) {
+  for (const float albedo : {0.03f, 0.2f}) {
+    const PathTracer tracer({.meshes = {white_floor(albedo)}, .lights = {{.radius_mm = 500}}});
+    const cv::Mat3f image = tracer.render(look_at_floor(20), {.samples_per_pixel = 256});
+    EXPECT_NEAR(mean(image) / static_cast<double>(albedo), 1, 5e-3) << albedo;
+  }
 }
 
 TEST(PathTracerTest, ProgressIsReportedFromTheCallingThreadAndCanStop) {

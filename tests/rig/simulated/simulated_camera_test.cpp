@@ -199,6 +199,26 @@ TEST(SimulatedCamera, DrawsAgainOnlyWhenTheBenchHasChanged) {
   EXPECT_EQ(rig.drawings, 5);
 }
 
+TEST(SimulatedCamera, LiveViewIsDrawnWhenTheBenchHasChanged) {
+  std::vector<float> drawn_roughly;
+  rig::SimulatedBench bench({}, [&](const rig::BenchState& state) {
+    const auto angle = static_cast<float>(state.platform_angle_rad);
+    if (state.roughly) drawn_roughly.push_back(angle);
+    return cv::Mat3f(state.lens.height_px, state.lens.width_px, cv::Vec3f::all(0.1f + angle));
+  });
+  rig::SimulatedClock clock(0);
+  const auto camera = rig::make_simulated_camera(bench, clock);
+  const auto before = camera->preview();
+  EXPECT_EQ(camera->preview(), before);
+  camera->capture();
+  EXPECT_EQ(camera->preview(), before);
+  bench.turn_platform(0.5);
+  camera->preview();
+  bench.turn_platform(0);
+  EXPECT_EQ(camera->preview(), before);
+  EXPECT_EQ(drawn_roughly, (std::vector<float>{0, 0.5f, 0}));
+}
+
 TEST(SimulatedCamera, WhatTheDrawingThrowsReachesTheCallerAndTheNextPictureDrawsAgain) {
   int drawings = 0;
   rig::SimulatedBench bench({}, [&](const rig::BenchState& state) -> cv::Mat3f {

@@ -33,6 +33,9 @@ json small_scene(const std::string& name) {
   return scene;
 }
 
+// Reads progress until it says more than that it begins: at its first line nothing may have been drawn yet.
+const std::string kUntilItGoesOn = "while read said; do case $said in *' 0/100 %') ;; *) break ;; esac; done";
+
 class Render : public ::testing::Test {
  protected:
   std::string written(const std::string& name, const json& scene) {
@@ -49,14 +52,14 @@ class Render : public ::testing::Test {
     EXPECT_EQ(result.error_lines(), 1) << result.error;
     EXPECT_NE(result.error.find(must_name), std::string::npos) << result.error;
   }
-  // Interrupted as soon as the first line of progress is there; `out` then is what it said from then on.
+  // Interrupted as soon as progress is said, after that it begins; `out` then is what it said from then on.
   ProgramResult interrupted_render(const std::string& scene, const std::string& out, const std::string& more = {}) {
     const std::string pipe = folder_ / "pipe";
     const std::string command =
         std::string(THREADSTATION_PROGRAM) + " render " + scene + " --out " + (folder_ / out).string() + more;
-    return run_shell("mkfifo " + pipe + "; " + command + " 2> " + pipe +
-                     " & program=$!; { read first; kill -INT $program; cat; } < " + pipe +
-                     "; wait $program; status=$?; rm " + pipe + "; exit $status");
+    return run_shell("mkfifo " + pipe + "; " + command + " 2> " + pipe + " & program=$!; { " + kUntilItGoesOn +
+                     "; kill -INT $program; cat; } < " + pipe + "; wait $program; status=$?; rm " + pipe +
+                     "; exit $status");
   }
   TemporaryFolder folder_;
 };
@@ -247,8 +250,8 @@ class FullDisk : public Render {
            << "\nrender() { " << THREADSTATION_PROGRAM << " render " << scene_ << " --out $disk/a.exr $*; }\n"
            << "mount -t tmpfs -o size=" << kilobytes << "k tmpfs $disk && mkfifo $pipe\n"
            << THREADSTATION_PROGRAM << " render " << scene_ << " --out $disk/a.exr 2> $pipe & program=$!\n"
-           << "{ read first; kill -STOP $program; cat /dev/zero > $disk/fill 2> /dev/null\n"
-           << begun << "\nkill -CONT $program; echo \"$first\"; cat; } < $pipe\n"
+           << "{ " << kUntilItGoesOn << "; kill -STOP $program; cat /dev/zero > $disk/fill 2> /dev/null\n"
+           << begun << "\nkill -CONT $program; echo \"$said\"; cat; } < $pipe\n"
            << "wait $program; status=$?\n"
            << then << "\nexit $status\n";
     script.close();
