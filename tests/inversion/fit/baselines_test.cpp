@@ -40,7 +40,8 @@ TEST(BaselinesTest, AYarnIsRecoveredWithItsNumberOfFibers) {
 TEST(BaselinesTest, LevenbergMarquardtsFirstRoundGetsAtLeastAsFarAsAHundredStepsOfAdam) {
   const WrappedSpool spool;
   const std::vector<View> views = photographs(spool, known_thread(), kWidth_px, kSamples);
-  const ViewFit whole = fit_views(spool, views, {}), first = fit_views(spool, views, first_rounds({}, 1)),
+  const ViewFit whole = fit_views(spool, views, {.other_starts = {}}),
+                first = fit_views(spool, views, first_rounds({}, 1)),
                 adam = fit_views(spool, views, {.solver = Solver::adam, .adam_paths = 256});
   EXPECT_EQ(first.rounds.size(), 1U);
   EXPECT_EQ(adam.rounds.front().losses.size(), 101U);

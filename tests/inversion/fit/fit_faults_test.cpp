@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr int kWidth_px = 144, kSamples = 64;
-const FitOptions kQuick{.paths_per_block = {256, 512}};
+const FitOptions kQuick{.other_starts = {}, .paths_per_block = {256, 512}};
 
 struct DoubtedFit {
   ViewFit fit;
@@ -76,8 +76,8 @@ TEST(FitFaultsTest, ANearlyBlackSpoolSaysSo) {
 TEST(FitFaultsTest, AWhiteSpoolIsFittedWithAbsorptionNearNoneAndItsUncertainty) {
   // All rounds and quiet photographs: with kQuick two or three of six sessions that differ in their noise are 0.05 ...
   // 0.08 off.
-  const DoubtedFit found =
-      fit_and_doubt(photographs(WrappedSpool{}, white_thread(), kWidth_px, 4 * kSamples), FitOptions{});
+  const DoubtedFit found = fit_and_doubt(photographs(WrappedSpool{}, white_thread(), kWidth_px, 4 * kSamples),
+                                         FitOptions{.other_starts = {}});
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.fit.thread().sigma_a[c], white_thread().sigma_a[c], 0.05) << c;
 }
 
@@ -140,7 +140,7 @@ TEST(FitFaultsTest, OneBadViewIsNamedAndHardlyMovesTheThread) {
         Standpoint{"through--20", -20, 0, 175, 20}})
     views.push_back(photographed(unlit_view({}, at, kWidth_px), {}, known_thread(), kSamples, 41 + views.size()));
   // A bad view stands out as the others are explained, which takes more than kQuick.
-  const FitOptions whole{.paths_per_block = {256, 256, 1024}};
+  const FitOptions whole{.other_starts = {}, .paths_per_block = {256, 256, 1024}};
   const ViewFit good = fit_views({}, views, whole);
   views[1].image *= 1.7;  // the lamp was knocked
   const DoubtedFit found = fit_and_doubt(views, whole);

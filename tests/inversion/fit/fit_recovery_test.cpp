@@ -74,8 +74,7 @@ TEST(FitRecoveryTest, AKnownThreadIsRecoveredFromItsPictures) {
 TEST(FitRecoveryTest, HoldingAnyGroupAtItsStartMakesTheMisfitClearlyWorse) {
   const WrappedSpool spool;
   const std::vector<View> views = photographs(spool, known_thread(), kWidth_px, kSamples);
-  FitOptions options;
-  options.paths_per_block = {128, 512};
+  FitOptions options{.other_starts = {}, .paths_per_block = {128, 512}};
   const auto misfit = [&] { return independent_loss(spool, views, fit_views(spool, views, options), 2048, 2, 77); };
   const IndependentLoss free = misfit();
   const double least = std::max(free.without_noise, free.standard_error);
@@ -92,7 +91,7 @@ TEST(FitRecoveryTest, TheTintOfAMetallicThreadsHighlightIsFound) {
   renderer::ThreadParameters metal = known_thread();
   metal.sigma_a = {0.3, 0.7, 2.5};
   metal.lambda0_rgb = {1, 0.76, 0.34};
-  FitOptions options{.paths_per_block = {256, 256, 1024}};
+  FitOptions options{.other_starts = {}, .paths_per_block = {256, 256, 1024}};
   options.tinted = true;
   const ViewFit fit = fit_views(spool, photographs(spool, metal, kWidth_px, kSamples), options);
   const renderer::Vec3<double> found = fit.thread().lambda0_rgb;
@@ -104,7 +103,7 @@ TEST(FitRecoveryTest, TheTintOfAMetallicThreadsHighlightIsFound) {
 
 TEST(FitRecoveryTest, AWhiteThreadThatKeepsNearlyAllLightIsFittedWithoutEnergyBeyondOne) {
   const WrappedSpool spool;
-  const ViewFit fit = fit_views(spool, photographs(spool, white_thread(), kWidth_px, kSamples), {});
+  const ViewFit fit = fit_views(spool, photographs(spool, white_thread(), kWidth_px, kSamples), {.other_starts = {}});
   double most = 0;
   for (int k = 0; k <= 10000; ++k) {
     const auto lambda = energies_at(fit.thread(), k / 10000.0);

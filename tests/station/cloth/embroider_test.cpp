@@ -35,7 +35,7 @@ class Embroider : public ::testing::Test {
                                        "--thread",    std::string(DATA_DIR) + "/threads/silk_blue.json",
                                        "--out",       folder_ / "motif.exr",
                                        "--px-per-mm", pixels_per_mm,
-                                       "--spp",       "32",
+                                       "--spp",       "8",
                                        "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_threadstation(arguments);

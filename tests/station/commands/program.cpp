@@ -70,7 +70,10 @@ std::vector<std::string> with_program(const std::vector<std::string>& arguments)
 }  // namespace
 
 int ProgramResult::error_lines() const {
-  return static_cast<int>(std::count(error.begin(), error.end(), '\n'));
+  int lines = 0;
+  std::istringstream text(error);
+  for (std::string line; std::getline(text, line);) lines += !line.starts_with("{\"done\":");
+  return lines;
 }
 
 ProgramResult run_threadstation(const std::vector<std::string>& arguments) {

@@ -13,6 +13,7 @@ namespace station_test {
 struct ProgramResult {
   int status = 0;          // exit status; 128 + signal when it was killed
   std::string out, error;  // standard output and standard error
+  // Of `error`, without the progress of --json, of which a busy computer says more.
   int error_lines() const;
 };
 

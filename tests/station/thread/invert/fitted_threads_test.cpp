@@ -38,7 +38,7 @@ class FittedThreads : public Workflow {
 TEST_F(FittedThreads, ViewsOfThreeSpoolsAgreeWithinFifteenPercentAndWorseWithAnyGroupHeld) {
   for (const std::string spool : {"cotton_white", "polyester_dark", "silk_blue"}) {
     const std::string session = developed_session(spool, 12);
-    const double free = invert(session, {"--spp", "8"}).at("relative_rmse");
+    const double free = invert(session, {"--paths", "256", "256", "1024", "--spp", "8"}).at("relative_rmse");
     RecordProperty(spool, std::to_string(free));
     std::printf("%s: relative RMSE %.1f %%\n", spool.c_str(), 100 * free);
     EXPECT_LT(free, 0.15) << spool;
