@@ -45,7 +45,9 @@ void add_line(CurveSet& set, const Eigen::Vector2d& at, double radius_mm, double
   constexpr int kPointsPerWave = 32;
   constexpr double kHalf_mm = 30;
   const auto y = static_cast<float>(at.x()), radius = static_cast<float>(radius_mm);
-  const double step = crimp_mm > 0 ? kWave_mm / kPointsPerWave : kHalf_mm, k = 2 * std::numbers::pi / kWave_mm;
+  // Straight lines in short pieces, which are met in less time.
+  const double straight = kHalf_mm / std::ceil(kHalf_mm / (25 * radius_mm)),
+               step = crimp_mm > 0 ? kWave_mm / kPointsPerWave : straight, k = 2 * std::numbers::pi / kWave_mm;
   std::vector<Eigen::Vector4f> points;
   for (double x = -kHalf_mm; x < kHalf_mm + step / 2; x += step) {
     const Eigen::Vector2d along = Eigen::Vector2d(1, -crimp_mm / 2 * k * std::sin(k * x)).normalized(),

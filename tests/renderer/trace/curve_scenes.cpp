@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "renderer/scene/cloth_shape.h"
 
@@ -43,7 +44,9 @@ CurveScene parallel_threads_scene() {
   CurveSet threads{.scattering = material()};
   for (int i = 0; i < 50; ++i) {
     const float y = static_cast<float>((i - 24.5) * 0.3);
-    threads.add_clamped_curve({{-30, y, 0, 0.15f}, {30, y, 0, 0.15f}});
+    std::vector<Eigen::Vector4f> points;  // short pieces are met in less time
+    for (int x = -30; x <= 30; x += 4) points.emplace_back(static_cast<float>(x), y, 0, 0.15f);
+    threads.add_clamped_curve(points);
   }
   return {{.curves = {threads}, .lights = {light()}}, camera_with_frame_width(20)};
 }
