@@ -34,8 +34,7 @@ renderer::Rgb<double> albedo(const renderer::ThreadParameters& thread, double c)
 TEST(FitRecoveryTest, AKnownThreadIsRecoveredFromItsPictures) {
   const WrappedSpool spool;
   const std::vector<View> views = photographs(spool, known_thread(), kWidth_px, kSamples);
-  FitOptions options;
-  options.paths_per_block = {256, 1024, 4096};
+  const FitOptions options{.other_starts = {}, .paths_per_block = {256, 1024, 4096}};
   const ViewFit fit = fit_views(spool, views, options);
 
   // Pictures: measured 0.7 % overall, of which the noise of both renderings makes 0.6 %.

@@ -29,8 +29,10 @@ class ClothPreview : public ::testing::Test {
     fs::copy_file(fs::path(DATA_DIR) / "bundles/silk_red.json", result() / "bundle/bundle.json");
   }
   ProgramResult cloth(const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{
-        "cloth", folder_ / "session", "--draft", std::string(DATA_DIR) + "/drafts/plain.json", "--quick", "--json"};
+    std::vector<std::string> arguments{"cloth",   folder_ / "session",
+                                       "--draft", std::string(DATA_DIR) + "/drafts/plain.json",
+                                       "--quick", "--size",
+                                       "240",     "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_threadstation(arguments);
   }
@@ -83,8 +85,8 @@ TEST_F(ClothPreview, OfTwoThreadFilesIsADesignOfItsOwn) {
   const auto thread = [&](const std::string& name) { return std::string(DATA_DIR) + "/threads/" + name + ".json"; };
   const auto design = [&](const std::string& weft) {
     return run_threadstation({"cloth", thread("silk_red"), "--weft", weft, "--draft",
-                              std::string(DATA_DIR) + "/drafts/plain.json", "--quick", "--json", "--out",
-                              folder_ / "design"});
+                              std::string(DATA_DIR) + "/drafts/plain.json", "--quick", "--size", "240", "--json",
+                              "--out", folder_ / "design"});
   };
   const auto blueness = [&] {
     const cv::Scalar mean = cv::mean(renderer::read_exr(folder_ / "design/swatch.exr"));

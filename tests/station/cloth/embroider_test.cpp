@@ -89,7 +89,7 @@ TEST_F(Embroider, OnASceneItIsSewnWhereAskedAndTheSceneIsWritten) {
     std::vector<std::string> arguments{"embroider", three_blocks(),
                                        "--thread",  std::string(DATA_DIR) + "/threads/silk_blue.json",
                                        "--out",     out,
-                                       "--spp",     "2",
+                                       "--spp",     "1",
                                        "--scene",   hoop,
                                        "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
