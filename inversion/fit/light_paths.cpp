@@ -27,7 +27,6 @@ class PathRecorder {
       : rays_(rays),
         traced_with_(traced_with),
         models_(renderer::prepare_curve_models({traced_with})),
-        lamp_(view.light.position),
         lights_({.lights = {unit_lamp(view.light)}}) {}
 
   void record(renderer::CameraRay camera_ray, renderer::Sampler& sampler, std::vector<PathEvent>& events) const {
@@ -109,8 +108,7 @@ class PathRecorder {
                      const Eigen::Matrix3f& frame, const CurveLobes<float>& lobes, renderer::Sampler& sampler,
                      PathDirection& direction) const {
     const Eigen::Vector2f u = sampler.next_2d();
-    const Vector3f about = (lamp_ - position.cast<double>()).normalized().cast<float>();
-    const renderer::LightExit exit = exits.near(about, sampler);
+    const renderer::LightExit exit = exits.near(lights_.sample(position.cast<double>(), 0, u)->cast<float>(), sampler);
     const Vector3d origin = exit.place.cast<double>();
     const std::optional<Vector3d> wi = lights_.sample(origin, 0, u);
     const std::optional<renderer::LightHit> light = lights_.intersect(origin, *wi, false);
@@ -125,7 +123,6 @@ class PathRecorder {
   const renderer::RayScene& rays_;
   renderer::ScatteringModel traced_with_;
   std::vector<renderer::CurveModel> models_;  // the one
-  Vector3d lamp_;                             // its centre
   renderer::Lights lights_;
 };
 

@@ -24,9 +24,8 @@ Vector3d direction_to(const SphereLight& light, const Vector3d& origin, const Ei
   const Vector3d axis = (light.center - origin).normalized(), side = axis.unitOrthogonal();
   const double one_minus_cos = static_cast<double>(u.x()) * one_minus_cos_cone(light, origin);
   const double sine = std::sqrt(one_minus_cos * (2 - one_minus_cos));
-  const float phi = 2 * std::numbers::pi_v<float> * u.y();
-  const auto along_side = static_cast<double>(std::cos(phi)), across = static_cast<double>(std::sin(phi));
-  return axis * (1 - one_minus_cos) + sine * (along_side * side + across * axis.cross(side));
+  const double phi = 2 * std::numbers::pi * static_cast<double>(u.y());
+  return axis * (1 - one_minus_cos) + sine * (std::cos(phi) * side + std::sin(phi) * axis.cross(side));
 }
 
 Vector3d radiance_at(const SphereLight& light, const Vector3d& point) {

@@ -85,7 +85,7 @@ TEST(RandomThreads, AreFoundWithinFourOfTheirDeviations) {
     file["parameters"] = parameters_json(random_thread(random));
     write_json_file(folder / "thread.json", file);
     RecoverRequest request = request_of(folder / "thread.json");
-    request.samples_per_pixel = 128;
+    request.samples_per_pixel = 256;
     request.fit.seed = static_cast<std::uint64_t>(i);
     expect_all_within(recover_thread(request), 4);
   }
