@@ -140,7 +140,7 @@ TEST(FitFaultsTest, OneBadViewIsNamedAndHardlyMovesTheThread) {
         Standpoint{"through--20", -20, 0, 175, 20}})
     views.push_back(photographed(unlit_view({}, at, kWidth_px), {}, known_thread(), kSamples, 41 + views.size()));
   // A bad view stands out as the others are explained, which takes more than kQuick.
-  const FitOptions whole{.other_starts = {}, .paths_per_block = {256, 256, 1024}};
+  const FitOptions whole{.paths_per_block = {256, 256, 1024}};
   const ViewFit good = fit_views({}, views, whole);
   views[1].image *= 1.7;  // the lamp was knocked
   const DoubtedFit found = fit_and_doubt(views, whole);
