@@ -106,9 +106,7 @@ class LevenbergFit {
     Ended end = without_bias(std::move(best), "without bias");
     work_.finish(work_of_steps());
     if (!exchanged_) return end;
-    trace_at(exchanged_->unknowns);
-    Ended other = without_bias(*std::move(exchanged_), "R and TRT exchanged");
-    work_.finish(work_of_steps());
+    Ended other = at_other_end(*std::move(exchanged_));
     MisfitComparison comparison(objective_, *search_.options, kComparedEnds);
     for (const Ended* one : {&end, &other})
       comparison.add(one->attempt.unknowns, [&] {
@@ -123,8 +121,9 @@ class LevenbergFit {
   double last_paths() const { return search_.options->paths_per_block.back(); }
   bool chooses() const { return without_bias_ && starts_.size() > 1; }
   bool exchanges() const { return chooses() && std::holds_alternative<ThreadFamily>(*search_.family); }
-  double work_of_exchange() const { return work_of_steps() + 2 * kComparedEnds * MisfitComparison::kPaths; }
-  double work_of_steps() const { return last_paths() * (search_.effort.approach_steps + search_.effort.joint_steps); }
+  double work_of_exchange() const { return 2 * (work_of_steps() + kComparedEnds * MisfitComparison::kPaths); }
+  double work_of_steps() const { return last_paths() * steps(); }
+  int steps() const { return search_.effort.approach_steps + search_.effort.joint_steps; }
 
   double whole_work() const {
     const std::vector<int>& paths = search_.options->paths_per_block;
@@ -146,9 +145,22 @@ class LevenbergFit {
                      [&](int, int) { work_.show("without bias", 0); });
   }
 
-  Ended without_bias(Attempt attempt, const std::string& name) {
+  // Only the widths have changed places when this search begins. Its energies follow, and the joint sets of the first
+  // pass, which count them alike all the way, leave them behind: one end is compared with the other after a second.
+  Ended at_other_end(Attempt exchanged) {
+    trace_at(exchanged.unknowns);
+    Ended end = without_bias(std::move(exchanged), "R and TRT exchanged");
+    work_.finish(work_of_steps());
+    end.attempt.covariance = end.certainty.noise_covariance;
+    end = without_bias(std::move(end.attempt), "R and TRT exchanged, again", steps());
+    work_.finish(work_of_steps());
+    return end;
+  }
+
+  // Traces no paths of the first `traced` steps without bias.
+  Ended without_bias(Attempt attempt, const std::string& name, int traced = 0) {
     UnbiasedEnd end = remove_bias(
-        objective_, search_, rounds(),
+        objective_, search_, rounds() + traced,
         [&](int step) { work_.show(name + ", step " + std::to_string(step + 1), step * last_paths()); }, attempt);
     Certainty certainty = certainty_at(objective_, search_, attempt.prior_scale, attempt.unknowns, std::move(end));
     return {std::move(attempt), std::move(certainty)};
