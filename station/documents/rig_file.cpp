@@ -1,5 +1,6 @@
 #include "station/documents/rig_file.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "calibration/geometry/targets.h"
@@ -255,6 +256,7 @@ TurntableWire parse_turntable(ObjectReader reader, const std::string& driver) {
   wire.stepper.limit_rad = reader.number("limit_deg", 90, 360) * kDegree;
   wire.stepper.backlash_rad = reader.number("backlash_deg", 0, 20) * kDegree;
   wire.controller.reply_timeout_s = reader.number("reply_timeout_s", 0.1, 30);
+  wire.controller.banner_timeout_s = std::max(wire.controller.banner_timeout_s, wire.controller.reply_timeout_s);
   wire.stepper.move_timeout_s = reader.number("move_timeout_s", 1, 3600);
   if (driver == "zaber") {
     wire.controller.zaber_device = reader.integer("device", 1, 99);

@@ -193,7 +193,15 @@ class Lab {
 
   // The program in the background, with a person who agrees to everything, or nobody; and until its end.
   pid_t start(const std::vector<std::string>& arguments, bool attended = true) const {
-    return start_threadstation(arguments, attended ? in("answers") : "/dev/null", environment());
+    return start_threadstation(arguments, attended ? in("answers") : "/dev/null", environment(), in("errors"));
+  }
+  // What the program that was started last said last.
+  std::string last_error() const {
+    std::ifstream errors(in("errors"));
+    std::string last;
+    for (std::string line; std::getline(errors, line);)
+      if (!line.empty()) last = line;
+    return last;
   }
   int run(const std::vector<std::string>& arguments) const { return wait_for(start(arguments)); }
 

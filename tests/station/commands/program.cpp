@@ -84,7 +84,7 @@ ProgramResult run_shell(const std::string& command_line) {
 }
 
 pid_t start_threadstation(const std::vector<std::string>& arguments, const fs::path& input,
-                          const std::map<std::string, std::string>& environment) {
+                          const std::map<std::string, std::string>& environment, const fs::path& errors) {
   const std::vector<std::string> command = with_program(arguments);
   const std::string state = state_folder();
   const pid_t child = ::fork();
@@ -93,7 +93,7 @@ pid_t start_threadstation(const std::vector<std::string>& arguments, const fs::p
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
   ::setenv("XDG_STATE_HOME", state.c_str(), 1);
   for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
-  execute(command, "/dev/null", "/dev/null", input.c_str());
+  execute(command, "/dev/null", errors.c_str(), input.c_str());
 }
 
 int wait_for(pid_t process) {

@@ -22,10 +22,11 @@ ProgramResult run_threadstation(const std::vector<std::string>& arguments);
 // Runs any command line through the shell.
 ProgramResult run_shell(const std::string& command_line);
 
-// Starts the program in the background, its output thrown away. `environment` is added to the test's own; ctrl-C and
-// the like mean what they mean to a program in a terminal.
+// Starts the program in the background, its output thrown away and its errors written to a file. `environment` is added
+// to the test's own; ctrl-C and the like mean what they mean to a program in a terminal.
 pid_t start_threadstation(const std::vector<std::string>& arguments, const std::filesystem::path& input = "/dev/null",
-                          const std::map<std::string, std::string>& environment = {});
+                          const std::map<std::string, std::string>& environment = {},
+                          const std::filesystem::path& errors = "/dev/null");
 int wait_for(pid_t process);  // exit status; 128 + signal when it was killed
 
 // A new empty folder for one test, below the system's folder for temporary files; removed with the object.

@@ -196,6 +196,7 @@ Stopped stop(const Way& way, Board board, Ending ending, int times, double delay
   if (result.way_deg > most_deg + late_deg)
     result.problem = "it went on for " + std::to_string(result.way_deg) + " deg";
   if (result.problem.empty()) result.problem = problem_afterwards(lab, board, ending, stood_deg);
+  if (!result.problem.empty()) result.problem += "; its last words: " + lab.last_error();
   return result;
 }
 
