@@ -1,10 +1,20 @@
 #include "inversion/view/wrapped_spool.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace inversion {
 namespace {
 
-// Long segments cost Embree precision and tight boxes; ten segments a thread measured no slower than one.
-constexpr int kPiecesPerThread = 10;
+// Long segments cost Embree precision and tight boxes; ten segments a thread measured no slower than one. Pieces of at
+// most 28 radii are met as cylinders (renderer/trace/curve_geometry.cpp), in less than half the time.
+constexpr int kLeastPieces = 10;
+constexpr double kLongestPiece = 28;
+
+int pieces_per_thread(const WrappedSpool& spool) {
+  const double radii = spool.frame_width_mm / (spool.thread_diameter_mm / 2);
+  return std::max(kLeastPieces, static_cast<int>(std::ceil(radii / kLongestPiece)));
+}
 
 void add_box(renderer::TriangleMesh& mesh, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -55,7 +65,7 @@ renderer::CurveSet aligned_threads(const WrappedSpool& spool, const renderer::Sc
   renderer::CurveSet curves;
   curves.scattering = scattering;
   for (const Segment3& line : thread_lines(spool))
-    add_straight_curve(curves, line, spool.thread_diameter_mm / 2, kPiecesPerThread);
+    add_straight_curve(curves, line, spool.thread_diameter_mm / 2, pieces_per_thread(spool));
   return curves;
 }
 

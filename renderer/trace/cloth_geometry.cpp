@@ -160,8 +160,7 @@ CurvePoint ClothGeometry::point_at(const ClothHit& hit) const {
   Eigen::Matrix3f section = to_world.leftCols<3>().cast<float>();
   section.leftCols<2>().colwise().normalize();
   place_section(section, point);
-  point.axis =
-      CurveAxis(yarns.curves, hit.segment, hit.u, to_world.leftCols<3>().cast<float>() * yarns.curves.placed.linear());
+  point.axis = point.axis.placed(to_world.leftCols<3>().cast<float>() * yarns.curves.placed.linear());
   if (absorption_) {
     const Eigen::Vector2i texel = absorption_->texel_at(patch.head<2>());
     point.absorption = &absorption_->sigma_a(texel.y(), texel.x());

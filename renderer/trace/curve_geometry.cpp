@@ -65,6 +65,15 @@ bool is_in_place(const CurveSet& curves) {
   return curves.placed.matrix() == Eigen::Matrix4f::Identity();
 }
 
+// Fills in normal and section; the tangent is there already.
+void set_section(CurvePoint& point, const Vector3f& from_center, const Vector3f& direction, const Vector3f& hit_normal,
+                 float radius) {
+  const auto exact = cylinder_normal(from_center, direction, point.tangent, radius);
+  point.normal = exact ? *exact : across(hit_normal, point.tangent).normalized();
+  point.out = radius * (1 - kStartDepth) * point.normal;
+  point.side = point.out.cross(point.tangent);
+}
+
 // Whether every segment is a short cylinder: it then runs from its second control point to its third. Embree's hits of
 // long ones are too rough: thin threads of one segment had a third less light on one side.
 bool are_short_cylinders(const CurveSet& curves) {
@@ -141,6 +150,15 @@ CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u
   const Eigen::Vector4f center = center_of(curves, segment, u);
   const Vector3f derivative = derivative_of(curves, segment, u);
   const bool in_place = is_in_place(curves);
+  CurvePoint point;
+  point.axis = CurveAxis(curves, segment, u, center.head<3>(), curves.placed.linear());
+  if (in_place && spread.is_none()) {
+    point.tangent = derivative.normalized();
+    set_section(point, (ray.origin - center.head<3>()) + distance * ray.direction, ray.direction, hit_normal,
+                center.w());
+    point.position = center.head<3>() + point.out;
+    return point;
+  }
   const Ray local = in_place ? ray : unplaced(curves.placed, ray);
   // From the patch to the world round the axis, as yarn_grid_kernel.cpp has it.
   const auto wider = [&](float z) {
@@ -155,15 +173,10 @@ CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u
                  direction = local.direction.cwiseProduct(here);
   Vector3f from_center = (local.origin - center.head<3>()).cwiseProduct(here) + distance * direction;
   from_center.z() -= fall(from_center);
-  CurvePoint point;
   point.tangent = derivative.cwiseProduct(wider(center.z())).normalized();
-  point.normal = across(hit_normal, point.tangent).normalized();
-  if (const auto exact = cylinder_normal(from_center, direction, point.tangent, center.w())) point.normal = *exact;
-  point.out = center.w() * (1 - kStartDepth) * point.normal;
-  point.side = point.out.cross(point.tangent);
+  set_section(point, from_center, direction, hit_normal, center.w());
   point.position = center.head<3>() + point.out.cwiseQuotient(here);
   point.position.z() += fall(point.out);
-  point.axis = CurveAxis(curves, segment, u, curves.placed.linear());
   if (in_place) return point;
   const Eigen::Matrix3f linear = curves.placed.linear();
   point.position = curves.placed * point.position;
@@ -173,8 +186,9 @@ CurvePoint point_on_curve(const CurveSet& curves, std::uint32_t segment, float u
   return point;
 }
 
-CurveAxis::CurveAxis(const CurveSet& curves, std::uint32_t segment, float u, const Eigen::Matrix3f& linear)
-    : curves_(&curves), segment_(segment), u_(u), met_(center_of(curves, segment, u).head<3>()), linear_(linear) {}
+CurveAxis::CurveAxis(const CurveSet& curves, std::uint32_t segment, float u, const Vector3f& met,
+                     const Eigen::Matrix3f& linear)
+    : curves_(&curves), segment_(segment), u_(u), met_(met), linear_(linear) {}
 
 CurveAxis::Place CurveAxis::at(float t) const {
   const std::vector<std::uint32_t>& all = curves_->segments;  // those that go on share control points

@@ -43,6 +43,10 @@ std::optional<LightHit> Lights::intersect(const Vector3d& origin, const Vector3d
 }
 
 std::optional<Vector3d> Lights::sample(const Vector3d& origin, float u_light, const Eigen::Vector2f& u) const {
+  if (const SphereLight* lone = lone_sphere()) {
+    if (!(lone->radiance.sum() > 0)) return std::nullopt;
+    return direction_to(*lone, origin, u);
+  }
   double left = size() > 1 ? static_cast<double>(u_light) * power(origin) : 0;
   const Light* chosen = nullptr;
   for (const Light& light : lights_) {
@@ -64,6 +68,8 @@ double Lights::power(const Vector3d& origin) const {
 }
 
 double Lights::pdf(const Vector3d& origin, const Vector3d& direction) const {
+  if (const SphereLight* lone = lone_sphere())
+    return lone->radiance.sum() > 0 && distance_to(*lone, origin, direction) ? 1 / solid_angle(*lone, origin) : 0;
   double sum = surroundings_ ? surroundings_->power() * surroundings_->pdf(direction) : 0;
   for (const Light& light : lights_)
     if (is_met(light, origin, direction)) sum += luminance(light);

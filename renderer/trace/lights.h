@@ -40,6 +40,11 @@ class Lights {
   static constexpr double kSurroundings_mm = 1e9;
 
  private:
+  // The only light, where it is a sphere: a bench's lamp. Nothing is chosen then.
+  const SphereLight* lone_sphere() const {
+    return lights_.size() == 1 && !surroundings_ ? std::get_if<SphereLight>(&lights_.front()) : nullptr;
+  }
+
   std::vector<std::variant<SphereLight, RectangleLight>> lights_;
   std::optional<EnvironmentMap> surroundings_;
 };

@@ -23,8 +23,16 @@ struct Ray {
 class CurveAxis {
  public:
   CurveAxis() = default;  // of no curve
-  // Met at parameter u of the segment; the curves must outlive it. `linear`: from their frame to the world, there.
-  CurveAxis(const CurveSet& curves, std::uint32_t segment, float u, const Eigen::Matrix3f& linear);
+  // Met at parameter u of the segment, where the axis is at `met` in the curves' frame; the curves must outlive it.
+  // `linear`: from their frame to the world, there.
+  CurveAxis(const CurveSet& curves, std::uint32_t segment, float u, const Eigen::Vector3f& met,
+            const Eigen::Matrix3f& linear);
+  // The same with another way from the curves' frame to the world.
+  CurveAxis placed(const Eigen::Matrix3f& linear) const {
+    CurveAxis axis = *this;
+    axis.linear_ = linear;
+    return axis;
+  }
 
   struct Place {
     Eigen::Vector3f offset;      // mm, from the axis where the curve was met
