@@ -29,8 +29,9 @@ void add_cloth_command(CLI::App& app) {
   command->add_option("--model", arguments->model, "the session's fitted model that it is woven of: thread or bundle")
       ->check(CLI::IsMember({"thread", "bundle"}))
       ->capture_default_str();
-  command->add_option("--warp-colour", arguments->warp_colour,
-                      "like #c01830: only the thread's absorption changes; its own without it");
+  command->add_option(
+      "--warp-colour", arguments->warp_colour,
+      "like #c01830, crimson or \"lab(40 60 30)\": only the thread's absorption changes; its own without it");
   command->add_option("--weft-colour", arguments->weft_colour, "likewise");
   command->add_option("--shape", request.shapes, "what the cloth is made into, one or several")
       ->check(CLI::IsMember(cloth_shapes()))

@@ -22,9 +22,11 @@ void add_embroider_command(CLI::App& app) {
   command->add_option("motif", request.motif, "Tajima .dst, Brother .pes or line art as .svg")->required();
   command->add_option("--thread", request.thread, "thread file; each colour changes its absorption alone")->required();
   command->add_option("--out", request.out, "picture: .exr (linear) or .png (display)")->required();
-  command->add_option("--colour", arguments->colours,
-                      "colours of the motif's threads in the order of sewing, like #c01830; without it the file's");
-  command->add_option("--ground", arguments->ground, "colour of the cloth, like #ece8e4");
+  command->add_option(
+      "--colour", arguments->colours,
+      "colours of the motif's threads in the order of sewing, like #c01830, crimson or \"lab(40 60 30)\"; "
+      "without it the file's");
+  command->add_option("--ground", arguments->ground, "colour of the cloth, likewise");
   command->add_option("--diameter", request.diameter_mm, "of the thread as it is sewn, mm")
       ->check(CLI::Range(0.02, 5.0))
       ->capture_default_str();

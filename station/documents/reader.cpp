@@ -86,6 +86,10 @@ bool ObjectReader::has(const std::string& key) const {
   return object_->contains(key);
 }
 
+bool ObjectReader::is_number(const std::string& key) const {
+  return has(key) && object_->at(key).is_number();
+}
+
 const json& ObjectReader::value(const std::string& key) {
   asked_.push_back(key);
   if (!object_->contains(key)) refuse(key, "is missing; add it");

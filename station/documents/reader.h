@@ -44,6 +44,7 @@ class ObjectReader {
   ObjectReader(const nlohmann::json& document, const std::string& source, const std::string& kind);
 
   bool has(const std::string& key) const;
+  bool is_number(const std::string& key) const;  // false too where there is none
   ObjectReader object(const std::string& key);
   std::vector<ObjectReader> objects(const std::string& key);  // an array of objects
 

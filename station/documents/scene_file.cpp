@@ -255,12 +255,18 @@ SceneBody parse_object(ObjectReader reader, const std::filesystem::path& folder)
 
 constexpr double kMostRadiance = 1e12;
 
+// A plain number is a white light's.
+Vector3d white_or_rgb(ObjectReader& reader, const std::string& key) {
+  return reader.is_number(key) ? Vector3d::Constant(reader.number(key, 0, kMostRadiance))
+                               : at_least_zero(reader, key, kMostRadiance);
+}
+
 // Given as such, or as the intensity of a light that is seen head-on with that area.
 Vector3d parse_radiance(ObjectReader& reader, double area_mm2) {
   if (reader.has("radiance") == reader.has("intensity_mm2"))
     reader.refuse("radiance", "give either radiance or intensity_mm2, not both and not none");
-  if (reader.has("radiance")) return at_least_zero(reader, "radiance", kMostRadiance);
-  return at_least_zero(reader, "intensity_mm2", kMostRadiance) / area_mm2;
+  if (reader.has("radiance")) return white_or_rgb(reader, "radiance");
+  return white_or_rgb(reader, "intensity_mm2") / area_mm2;
 }
 
 renderer::SphereLight parse_sphere(ObjectReader& reader) {
@@ -297,7 +303,7 @@ void parse_light(ObjectReader reader, SceneFile& scene) {
   } else {
     scene.lights.push_back(kind == "sphere" ? parse_sphere(reader)
                                             : renderer::SphereLight{.radius_mm = kSurroundings_mm});
-    if (kind == "environment") scene.lights.back().radiance = at_least_zero(reader, "radiance", kMostRadiance);
+    if (kind == "environment") scene.lights.back().radiance = white_or_rgb(reader, "radiance");
     scene.lights.back().visible = visible;
   }
   reader.finish();

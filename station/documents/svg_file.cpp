@@ -192,13 +192,7 @@ class SvgReader {
     std::string text = found == style.end() ? (key == "fill" ? "black" : "none") : found->second;
     if (text == "currentColor") text = style.contains("color") ? style.at("color") : "black";
     if (text == "none" || text == "transparent") return std::nullopt;
-    static const std::map<std::string, Srgb8> names{
-        {"black", {0, 0, 0}},       {"silver", {192, 192, 192}}, {"gray", {128, 128, 128}}, {"grey", {128, 128, 128}},
-        {"white", {255, 255, 255}}, {"maroon", {128, 0, 0}},     {"red", {255, 0, 0}},      {"purple", {128, 0, 128}},
-        {"fuchsia", {255, 0, 255}}, {"green", {0, 128, 0}},      {"lime", {0, 255, 0}},     {"olive", {128, 128, 0}},
-        {"yellow", {255, 255, 0}},  {"navy", {0, 0, 128}},       {"blue", {0, 0, 255}},     {"teal", {0, 128, 128}},
-        {"aqua", {0, 255, 255}},    {"orange", {255, 165, 0}}};
-    if (const auto name = names.find(text); name != names.end()) return name->second;
+    if (const auto named = named_colour(text)) return named;
     const bool is_short = text.size() == 4 && text[0] == '#';
     if (const auto colour =
             hex_colour(is_short ? std::string{'#', text[1], text[1], text[2], text[2], text[3], text[3]} : text))

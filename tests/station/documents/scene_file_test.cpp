@@ -112,6 +112,17 @@ TEST(SceneFile, WhatItSaysIsWhereItBelongs) {
   EXPECT_EQ(scene.brightness, 2.5);
 }
 
+TEST(SceneFile, ANumberIsTheRadianceOfAWhiteLight) {
+  json document = plain_scene();
+  document["lights"][0].erase("intensity_mm2");
+  document["lights"][0]["radiance"] = 7.5;
+  EXPECT_EQ(parse_scene(document, "scene", kScenes).lights.at(0).radiance, Eigen::Vector3d(7.5, 7.5, 7.5));
+  document["lights"][0].erase("radiance");
+  document["lights"][0]["intensity_mm2"] = 3;
+  const renderer::SphereLight light = parse_scene(document, "scene", kScenes).lights.at(0);
+  EXPECT_DOUBLE_EQ(light.radiance.z() * std::numbers::pi * light.radius_mm * light.radius_mm, 3);
+}
+
 TEST(SceneFile, AStudioHasABackdropAndIsExposedByAWhiteCard) {
   json document = plain_scene();
   document["objects"] = {{{"kind", "backdrop"}, {"radius_mm", 900}, {"bend_mm", 300}, {"albedo", {0.5, 0.5, 0.5}}}};
@@ -210,6 +221,7 @@ TEST(SceneFile, EachMistakeIsRefusedInOneLineThatNamesIt) {
       {"/lights", json::array(), "lights"},
       {"/lights/0/radiance", {1, 1, 1}, "either radiance or intensity_mm2"},
       {"/lights/0/intensity_mm2", {1, -1, 1}, "from 0 to"},
+      {"/lights/0/intensity_mm2", -1, "lights[0].intensity_mm2"},
       {"/lights/0", {{"kind", "environment"}, {"file", "none.exr"}}, "none.exr"},
       {"/lights/0", {{"kind", "sphere"}, {"file", "none.exr"}}, "lights[0].kind"},
       {"/lights/0/radius_mm", -1, "lights[0].radius_mm"},

@@ -116,6 +116,7 @@ TEST(SvgFile, WhatCannotBeSewnIsOneLine) {
       {R"svg(<path id="p1" d="M 0 0 Q nonsense" stroke="red"/>)svg", "p1"},
       {R"svg(<path d="M 0 0 L 9 9" stroke="url(#gradient)"/>)svg", "#c01830"},
       {R"svg(<path d="M 0 0 L 9 9" stroke="mauvelous"/>)svg", "#c01830"},
+      {R"svg(<path d="M 0 0 L 9 9" stroke="lab(40 60 30)"/>)svg", "#c01830"},
       {R"svg(<g><path d="M 0 0 L 9 9" fill="none"/></g>)svg", "no line to sew"},
       {R"svg(<line x1="0" y1="0" x2="9e9" y2="0" stroke="red"/>)svg", "check the drawing's size"},
       {R"svg(<line x1="a" y1="0" x2="9" y2="0" stroke="red"/>)svg", "x1"},
