@@ -62,8 +62,9 @@ std::vector<PredictedView> predict_fabric(const PredictRequest& request) {
                        .beside = folder / (view.id + ".png"),
                        .block_px = comparable_block_px(patch, view.camera),
                        .comparison = {}};
-    const CompareOptions options{
-        .fit_scale = true, .block_px = next.block_px, .linear_srgb_from_camera = developed.linear_srgb_from_camera};
+    const CompareOptions options{.fit_scale = request.fit_scale,
+                                 .block_px = next.block_px,
+                                 .linear_srgb_from_camera = developed.linear_srgb_from_camera};
     next.comparison = compare_pictures(view.image, picture, view.mask, options);
     renderer::write_exr(next.prediction, picture,
                         {{"threadstation/content", "linear camera RGB, radiance unit (full scale per second)"},

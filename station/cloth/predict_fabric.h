@@ -18,6 +18,7 @@ struct PredictRequest {
   std::filesystem::path fabric{};  // fabric file of the weave; empty: the session's own
   int samples_per_pixel = 64;
   std::uint64_t seed = 1;
+  bool fit_scale = false;  // compare after a scale that makes it as bright as its photograph
   ProgressStyle progress_style = ProgressStyle::automatic;
 };
 

@@ -5,19 +5,23 @@
 #include "station/cloth/predict_fabric.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/documents/number_text.h"
 
 namespace station {
 namespace {
 
 void print(const PredictedView& view) {
   const Comparison& found = view.comparison;
+  const std::string scaled =
+      found.scale == 1 ? "" : ", compared " + number_text(found.scale, 3) + " times as bright as that";
   std::printf(
       "%s: colour difference (CIEDE2000) mean %.2f, 95 %% below %.2f, over %d blocks of %d px; relative RMSE %.1f "
-      "%%; "
-      "photograph %.3f times as bright as predicted; highlight photographed at column %.0f, predicted at %.0f\n"
+      "%%; predicted %.3f %.3f %.3f times as bright as photographed (red, green, blue)%s; highlight photographed at "
+      "column %.0f, predicted at %.0f\n"
       "  %s\n",
       view.view.c_str(), found.mean_delta_e, found.delta_e_95, found.blocks, view.block_px, 100 * found.relative_rmse,
-      found.scale, found.photograph.peak_px, found.rendering.peak_px, view.beside.c_str());
+      found.brightness[0], found.brightness[1], found.brightness[2], scaled.c_str(), found.photograph.peak_px,
+      found.rendering.peak_px, view.beside.c_str());
 }
 
 }  // namespace
@@ -37,6 +41,8 @@ void add_predict_command(CLI::App& app) {
       ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str();
   command->add_option("--seed", request.seed, "of the paths")->capture_default_str();
+  command->add_flag("--fit-scale", request.fit_scale,
+                    "compare colours after a scale that makes the prediction as bright as its photograph");
   arguments->output.add_to(*command);
   command->callback([=] {
     arguments->request.progress_style = arguments->output.progress_style();
