@@ -148,7 +148,7 @@ TEST(TextureShading, DescentHasTheSlopesOfTheLoss) {
 TEST(TextureFit, AbsorptionThatIsKnownIsSeenAgain) {
   const TexturedCloth cloth = twill();
   // 3,072 samples: with 1,024 the noise of dark texels is as large as their distance from the darkest there is.
-  const cv::Mat3f target = rendered(cloth, texture_of(cloth, colours(48, 48)), 3072, 3);
+  const cv::Mat3f target = rendered(cloth, texture_of(cloth, colours(32, 32)), 3072, 3);
   const TextureFit fit = fit_texture(cloth, target, {});
   const double by_curves = mean_delta_e(rendered(cloth, fit.curve, 512, 11), target),
                refined = mean_delta_e(rendered(cloth, fit.refined, 512, 11), target);

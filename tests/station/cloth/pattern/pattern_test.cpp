@@ -83,7 +83,7 @@ double mean_error(const cv::Mat3f& a, const cv::Mat3f& b) {
 
 TEST_F(PatternCommand, PhotographsAreRenderedWithinThree) {
   for (const char* name : {"fruits.jpg", "butterfly.jpg"}) {
-    const ProgramResult result = woven(kPhotographs + name, 100);
+    const ProgramResult result = woven(kPhotographs + name, 70);
     ASSERT_EQ(result.status, 0) << result.error;
     const json report = json::parse(result.out);
     const double by_curves = report["delta_e_2000"]["by_curves"]["mean"],
