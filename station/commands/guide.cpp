@@ -71,7 +71,7 @@ constexpr Guide kGuides[] = {
     {"export", "Use them in other programs", ""},
     {"export thread", kParts, "export thread DATA/threads/silk_red.json --out silk_red --only mitsuba,csv"},
     {"export cloth", kParts,
-     "export cloth DATA/scenes/plain_swatch.json --out plain --size 64 --spp 8 --only textures"},
+     "export cloth DATA/scenes/plain_swatch.json --out plain --size 64 --spp 4 --only textures"},
 
     {"scatter", "Study the models", ""},
     {"scatter simulate", kParts, "scatter simulate --theta 30 --absorption 0.2 --configurations 10 --out theta_30.csv"},
