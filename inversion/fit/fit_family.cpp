@@ -152,16 +152,17 @@ class LevenbergFit {
     Ended end = without_bias(std::move(exchanged), "R and TRT exchanged");
     work_.finish(work_of_steps());
     end.attempt.covariance = end.certainty.noise_covariance;
-    end = without_bias(std::move(end.attempt), "R and TRT exchanged, again", steps());
+    end = without_bias(std::move(end.attempt), "R and TRT exchanged", steps());
     work_.finish(work_of_steps());
     return end;
   }
 
-  // Traces no paths of the first `traced` steps without bias.
-  Ended without_bias(Attempt attempt, const std::string& name, int traced = 0) {
+  // Behind so many steps of the same search, whose paths it does not trace again.
+  Ended without_bias(Attempt attempt, const std::string& name, int behind = 0) {
     UnbiasedEnd end = remove_bias(
-        objective_, search_, rounds() + traced,
-        [&](int step) { work_.show(name + ", step " + std::to_string(step + 1), step * last_paths()); }, attempt);
+        objective_, search_, rounds() + behind,
+        [&](int step) { work_.show(name + ", step " + std::to_string(behind + step + 1), step * last_paths()); },
+        attempt);
     Certainty certainty = certainty_at(objective_, search_, attempt.prior_scale, attempt.unknowns, std::move(end));
     return {std::move(attempt), std::move(certainty)};
   }

@@ -18,24 +18,16 @@ namespace {
 std::optional<Eigen::Vector3d> lab_colour(const std::string& text) {
   static const std::string number = R"(([-+]?\d+\.?\d*))", comma = R"((?:\s*,\s*|\s+))";
   static const std::regex written(R"(lab\(\s*)" + number + comma + number + comma + number + R"(\s*\))");
+  constexpr std::size_t kMostText = 60;  // so that each number is one
   std::smatch found;
-  if (!std::regex_match(text, found, written)) return std::nullopt;
+  if (text.size() > kMostText || !std::regex_match(text, found, written)) return std::nullopt;
   return Eigen::Vector3d(std::stod(found[1]), std::stod(found[2]), std::stod(found[3]));
-}
-
-std::string hex_text(const Srgb8& colour) {
-  std::array<char, 8> text{};
-  std::snprintf(text.data(), text.size(), "#%02x%02x%02x", colour[0], colour[1], colour[2]);
-  return text.data();
 }
 
 Srgb8 srgb_of_lab(const std::string& text, const Eigen::Vector3d& lab) {
   constexpr double kRounding = 0.004;  // of linear light: that of Lab's last digits
   const Eigen::Vector3d linear = calibration::linear_srgb_of_lab(lab);
-  Srgb8 nearest{};
-  for (int c = 0; c < 3; ++c)
-    nearest.at(static_cast<std::size_t>(c)) = static_cast<unsigned char>(
-        std::lround(255 * renderer::srgb_encoded(static_cast<float>(std::clamp(linear[c], 0.0, 1.0)))));
+  const Srgb8 nearest = srgb_of_linear(linear);
   if (linear.minCoeff() < -kRounding || linear.maxCoeff() > 1 + kRounding)
     throw std::runtime_error("found the colour \"" + text + "\", which sRGB does not hold; near it is " +
                              hex_text(nearest));
@@ -43,6 +35,21 @@ Srgb8 srgb_of_lab(const std::string& text, const Eigen::Vector3d& lab) {
 }
 
 }  // namespace
+
+Srgb8 srgb_of_linear(const Eigen::Vector3d& linear) {
+  Srgb8 colour{};
+  for (std::size_t c = 0; c < colour.size(); ++c) {
+    const auto clipped = static_cast<float>(std::clamp(linear[static_cast<Eigen::Index>(c)], 0.0, 1.0));
+    colour.at(c) = static_cast<unsigned char>(std::lround(255 * renderer::srgb_encoded(clipped)));
+  }
+  return colour;
+}
+
+std::string hex_text(const Srgb8& colour) {
+  std::array<char, 8> text{};
+  std::snprintf(text.data(), text.size(), "#%02x%02x%02x", colour[0], colour[1], colour[2]);
+  return text.data();
+}
 
 std::optional<Srgb8> hex_colour(const std::string& text) {
   const char* end = text.data() + text.size();

@@ -1,6 +1,7 @@
 // A colour as people write it: sRGB with eight bits a channel.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <optional>
 #include <string>
@@ -8,6 +9,9 @@
 namespace station {
 
 using Srgb8 = std::array<unsigned char, 3>;
+// The nearest of linear sRGB, each channel clipped to 0 ... 1; and "#rrggbb".
+Srgb8 srgb_of_linear(const Eigen::Vector3d& linear);
+std::string hex_text(const Srgb8& colour);
 // The colour that "#rrggbb" writes, or nothing for any other text.
 std::optional<Srgb8> hex_colour(const std::string& text);
 // The colour that CSS and SVG call so ("indigo"), or nothing for any other text.

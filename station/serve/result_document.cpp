@@ -10,7 +10,7 @@
 #include "station/documents/matrix_rows.h"
 #include "station/documents/number_text.h"
 #include "station/documents/reader.h"
-#include "station/output/display.h"
+#include "station/documents/srgb.h"
 #include "station/session/results.h"
 #include "station/thread/invert/invert_session.h"
 
@@ -49,10 +49,8 @@ Eigen::Vector3d mean_albedo(const std::vector<inversion::EnergyBand>& bands) {
 
 json colour_of_linear_srgb(const Eigen::Vector3d& linear) {
   constexpr double kSeen = 0.002;  // less than a step of a screen's eight bits
-  const cv::Mat3b shown =
-      display(cv::Mat3f(1, 1, cv::Vec3f(cv::Vec3d(linear[0], linear[1], linear[2]))), 1, {1, 0, 0, 0, 1, 0, 0, 0, 1});
   const Eigen::Vector3d lab = calibration::lab_of_linear_srgb(linear);
-  return {{"srgb", formatted("#%02x%02x%02x", shown(0, 0)[0], shown(0, 0)[1], shown(0, 0)[2])},
+  return {{"srgb", hex_text(srgb_of_linear(linear))},
           {"lab", {lab[0], lab[1], lab[2]}},
           {"clipped", linear.minCoeff() < -kSeen || linear.maxCoeff() > 1 + kSeen}};
 }

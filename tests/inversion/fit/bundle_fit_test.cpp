@@ -17,7 +17,7 @@ namespace inversion {
 namespace {
 
 constexpr int kWidth_px = 96, kSamples = 192;
-constexpr int kSeed = 20261125, kBundles = 1;
+constexpr int kSeed = 20261125, kBundles = 2;
 
 renderer::BundleParameters random_bundle(std::mt19937& random) {
   const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };

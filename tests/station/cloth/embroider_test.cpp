@@ -130,7 +130,7 @@ TEST_F(Embroider, WhatCannotBeEmbroideredIsOneLine) {
   };
   refused(embroider(folder_ / "none.dst"), "no such file");
   refused(embroider(folder_ / "rose.jef"), ".dst");
-  refused(embroider(three_blocks(), {"--colour", "red"}), "#c01830");
+  refused(embroider(three_blocks(), {"--colour", "mauvelous"}), "#c01830");
   refused(embroider(three_blocks(), {}, "1000"), "million pixels");
 }
 

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "renderer/picture/image_file.h"
 #include "station/cloth/predict_fabric.h"
 #include "station/documents/reader.h"
@@ -67,8 +69,11 @@ TEST_F(FabricSession, TwoPredictionsDifferByLittle) {
   read_view_pictures(session(), developed);
   std::vector<cv::Mat3f> first;
   for (const PredictedView& view : predicted) first.push_back(renderer::read_exr(view.prediction));
-  const std::vector<PredictedView> again = predict_fabric(
-      {.session = session(), .samples_per_pixel = 64, .seed = 77, .progress_style = ProgressStyle::quiet});
+  const std::vector<PredictedView> again = predict_fabric({.session = session(),
+                                                           .samples_per_pixel = 64,
+                                                           .seed = 77,
+                                                           .fit_scale = true,
+                                                           .progress_style = ProgressStyle::quiet});
   for (std::size_t i = 0; i < again.size(); ++i) {
     const CompareOptions options{
         .fit_scale = true, .block_px = again[i].block_px, .linear_srgb_from_camera = developed.linear_srgb_from_camera};
@@ -76,6 +81,9 @@ TEST_F(FabricSession, TwoPredictionsDifferByLittle) {
         compare_pictures(first[i], renderer::read_exr(again[i].prediction), developed.views[i].view.mask, options);
     EXPECT_LT(noise.mean_delta_e, 1) << again[i].view;
     EXPECT_NEAR(noise.scale, 1, 0.02) << again[i].view;
+    const auto [darkest, brightest] = std::ranges::minmax(again[i].comparison.brightness);
+    EXPECT_GT(again[i].comparison.scale * brightest, 1) << "asked for: as bright as its photograph";
+    EXPECT_LT(again[i].comparison.scale * darkest, 1);
   }
 }
 

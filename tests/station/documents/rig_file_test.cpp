@@ -54,6 +54,14 @@ TEST(RigFileDevices, AreReadWithTheirUnits) {
   EXPECT_EQ(rig.camera_wire->setup.width_px, 6024);
 }
 
+// A link that is slow to reply is slow to greet as well.
+TEST(RigFileDevices, AGreetingIsAwaitedAsLongAsAReplyAndFiveSecondsAtLeast) {
+  json slow = rig_document("grbl_sony_usb");
+  EXPECT_EQ(parse_rig(slow, "rig.json").turntable_wire->controller.banner_timeout_s, 5);
+  slow["turntable_setup"]["reply_timeout_s"] = 20;
+  EXPECT_EQ(parse_rig(slow, "rig.json").turntable_wire->controller.banner_timeout_s, 20);
+}
+
 TEST(RigFileDevices, MayHaveFirmwareThatWasBuiltToHomeOneAxis) {
   json grbl = rig_document("grbl_sony_usb");
   EXPECT_FALSE(parse_rig(grbl, "rig.json").turntable_wire->controller.homes_x_alone);

@@ -33,12 +33,15 @@ TEST(Srgb, LabIsThatOfColourCards) {
     for (std::size_t c = 0; c < 3; ++c) EXPECT_LE(std::abs(found[c] - expected[c]), 1) << text << " " << c;
   }
   EXPECT_EQ(parse_colour("lab(100 0 0)"), (Srgb8{255, 255, 255}));
+  EXPECT_EQ(hex_text(parse_colour("lab(37.986 13.555 14.059)")), "#735143");
 }
 
 TEST(Srgb, WhatIsNoColourIsOneLineThatSaysHowToWriteOne) {
   for (const char* text :
        {"", "#c0183", "#c0183g", "mauvelous", "lab(40 60)", "lab(40 60 30", "lab(a b c)", "lab(1e3 0 0)"})
     EXPECT_NE(refusal([&] { parse_colour(text); }).find("a name like crimson"), std::string::npos) << text;
+  const std::string digits(400, '9');
+  EXPECT_NE(refusal([&] { parse_colour("lab(" + digits + " 0 0)"); }).find("a name like crimson"), std::string::npos);
   const std::string outside = refusal([] { parse_colour("lab(50 -90 60)"); });
   EXPECT_NE(outside.find("sRGB does not hold; near it is #00"), std::string::npos) << outside;
 }
