@@ -52,7 +52,9 @@ class PtyLine final : public ByteLine {
   // The lock is needed because a terminal refuses a non-blocking write while another thread is writing.
   void write(std::string_view bytes) override {
     const std::lock_guard one_at_a_time(writing_);
-    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    ssize_t written = -1;
+    do written = ::write(descriptor_, bytes.data(), bytes.size());
+    while (written < 0 && errno == EINTR);  // a signal, before anything was written
     if (written < 0 && errno != EAGAIN) throw Unplugged(unplugged());
     if (written != static_cast<ssize_t>(bytes.size())) {
       throw std::runtime_error("the turntable on the pseudo-terminal " + path_ +

@@ -109,7 +109,8 @@ class SerialLine final : public ByteLine {
       const double left_s = std::chrono::duration<double>(deadline - std::chrono::steady_clock::now()).count();
       if (const std::string bytes = waiting_bytes(); !bytes.empty() || left_s <= 0) return bytes;
       const auto began = std::chrono::steady_clock::now();
-      if (sp_wait(events_, static_cast<unsigned>(std::ceil(left_s * 1e3))) != SP_OK)
+      // After a signal libserialport waits for what is left in whole milliseconds: of one that would be none at all.
+      if (sp_wait(events_, static_cast<unsigned>(std::ceil(left_s * 1e3)) + 1) != SP_OK)
         throw Unplugged(unplugged_words(name_));
       const auto waited = std::chrono::steady_clock::now() - began;
       early = waited < std::chrono::microseconds(100) && waiting() == 0 ? early + 1 : 0;
@@ -121,7 +122,9 @@ class SerialLine final : public ByteLine {
   // non-blocking write while another thread (one that stops, for example) is writing.
   void write(std::string_view bytes) override {
     const std::lock_guard one_at_a_time(writing_);
-    const int written = sp_nonblocking_write(port_, bytes.data(), bytes.size());
+    int written = -1;
+    do written = sp_nonblocking_write(port_, bytes.data(), bytes.size());
+    while (written < 0 && errno == EINTR);  // a signal, before anything was written
     if (written < 0) throw Unplugged(unplugged_words(name_));
     if (static_cast<std::size_t>(written) != bytes.size()) {
       throw std::runtime_error("the turntable on " + name_ +
@@ -154,6 +157,7 @@ class SerialLine final : public ByteLine {
     std::string bytes(static_cast<std::size_t>(count), '\0');
     if (count > 0) {
       const int got = sp_nonblocking_read(port_, bytes.data(), bytes.size());
+      if (got < 0 && errno == EINTR) return {};
       if (got < 0) throw Unplugged(unplugged_words(name_));
       bytes.resize(static_cast<std::size_t>(got));
     }

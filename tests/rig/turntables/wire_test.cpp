@@ -2,7 +2,11 @@
 // The firmware answers in real time, the platform turns in the injected clock's time.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <signal.h>
 
+#include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <future>
 #include <mutex>
@@ -42,6 +46,36 @@ class FolderOfLinks {
 
  private:
   std::filesystem::path folder_;
+};
+
+// Sends a thread one signal after another, which end the system calls that they meet (no SA_RESTART).
+class SignalsTo {
+ public:
+  explicit SignalsTo(pthread_t receiver) {
+    struct sigaction action {};
+    action.sa_handler = [](int) {};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGUSR1, &action, &before_);
+    sender_ = std::jthread([this, receiver](const std::stop_token& ending) {
+      for (; !ending.stop_requested(); ++sent_) {
+        pthread_kill(receiver, SIGUSR1);
+        std::this_thread::sleep_for(std::chrono::microseconds(20));
+      }
+    });
+  }
+  ~SignalsTo() {
+    sender_.request_stop();
+    sender_.join();
+    sigaction(SIGUSR1, &before_, nullptr);
+  }
+  SignalsTo(const SignalsTo&) = delete;
+  SignalsTo& operator=(const SignalsTo&) = delete;
+  int sent() const { return sent_; }
+
+ private:
+  struct sigaction before_ {};
+  std::atomic<int> sent_ = 0;
+  std::jthread sender_;
 };
 
 // A port that does as the one behind it does.
@@ -189,6 +223,21 @@ TEST_P(Wire, SilenceIsAnEmptyRead) {
   while (!open->read(0.05).empty()) {
   }
   EXPECT_EQ(open->read(0), "");
+}
+
+// A program that is asked to stop gets its signal at any moment, in the middle of a system call of the line too.
+TEST_P(Wire, ASignalIsNotTakenForAPulledPlug) {
+  const auto open = open_line(line(), server->path());
+  const SignalsTo signals(pthread_self());
+  const auto use_for_a_while = [&] {
+    for (const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(2);
+         std::chrono::steady_clock::now() < until;) {
+      open->write("?");
+      open->read(0.001);
+    }
+  };
+  EXPECT_NO_THROW(use_for_a_while());
+  EXPECT_GT(signals.sent(), 1000);
 }
 
 TEST_P(Wire, ItIsTakenForOneProgramAlone) {
