@@ -24,6 +24,12 @@ bool is_thread(const Search& search) {
   return std::holds_alternative<ThreadFamily>(*search.family);
 }
 
+// A tint makes up for much at first: after ten steps in the right place a search may still be farther from the views
+// than one that has come to rest in a wrong place.
+int times_of(const Search& search) {
+  return search.options->tinted ? 2 : 1;
+}
+
 int stride_of(std::size_t blocks) {
   return std::clamp(static_cast<int>(blocks / kFewestBlocks), 1, kMostStride);
 }
@@ -46,18 +52,22 @@ class StartChoice {
     brief_.effort.robust = false;  // weights that differ between searches would compare what each cannot explain
   }
 
-  void go_on(Attempt& attempt, const std::string& name) {
+  // So many times kSteps, each with paths of its own.
+  void go_on(Attempt& attempt, const std::string& name, int times) {
     const double work_of_step = work_of_path_ * options_.paths_per_block.back();
-    const auto show = [&](int step) {
-      work_.show(name + ", step " + std::to_string(step + 1) + " of " + std::to_string(kSteps), step * work_of_step);
-    };
-    lighten_blackest(brief_, attempt.unknowns);
-    objective_.trace(attempt.unknowns, options_.paths_per_block.back(), seed_of_trace(options_, kFirstTrace - 1),
-                     [&](int, int) { show(0); });
-    UnbiasedEnd end = remove_bias(objective_, brief_, kFirstTrace, show, attempt);
-    attempt.covariance =
-        certainty_at(objective_, brief_, end.prior_scale, attempt.unknowns, std::move(end)).noise_covariance;
-    work_.finish(kSteps * work_of_step);
+    for (int behind = 0; behind < times * kSteps; behind += kSteps) {
+      const auto show = [&](int step) {
+        work_.show(name + ", step " + std::to_string(behind + step + 1) + " of " + std::to_string(times * kSteps),
+                   step * work_of_step);
+      };
+      lighten_blackest(brief_, attempt.unknowns);
+      objective_.trace(attempt.unknowns, options_.paths_per_block.back(),
+                       seed_of_trace(options_, kFirstTrace + behind - 1), [&](int, int) { show(0); });
+      UnbiasedEnd end = remove_bias(objective_, brief_, kFirstTrace + behind, show, attempt);
+      attempt.covariance =
+          certainty_at(objective_, brief_, end.prior_scale, attempt.unknowns, std::move(end)).noise_covariance;
+      work_.finish(kSteps * work_of_step);
+    }
   }
 
   std::size_t nearest(const std::vector<Attempt>& attempts) {
@@ -93,12 +103,13 @@ NearestSearch nearest_search(const WrappedSpool& spool, const std::vector<View>&
                              const Search& search, std::vector<Attempt> attempts, Work& work) {
   StartChoice choice(spool, views, search, stride_of(blocks), work);
   if (is_thread(search))
-    for (Attempt& attempt : attempts) choice.go_on(attempt, "start " + std::to_string(attempt.start + 1));
+    for (Attempt& attempt : attempts)
+      choice.go_on(attempt, "start " + std::to_string(attempt.start + 1), times_of(search));
   NearestSearch found{.nearest = std::move(attempts[choice.nearest(attempts)])};
   if (!is_thread(search)) return found;
   Attempt exchanged = found.nearest;
   std::swap(exchanged.unknowns[kAlpha], exchanged.unknowns[kAlpha + 2]);
-  choice.go_on(exchanged, "R and TRT exchanged");
+  choice.go_on(exchanged, "R and TRT exchanged", 1);
   if (keeps_exchanged(exchanged.unknowns, found.nearest.unknowns)) found.exchanged = std::move(exchanged);
   return found;
 }
@@ -106,7 +117,8 @@ NearestSearch nearest_search(const WrappedSpool& spool, const std::vector<View>&
 double work_of_choice(const Search& search, std::size_t blocks, std::size_t attempts) {
   const double compared = kComparedSets * MisfitComparison::kPaths, steps = kSteps * paths_of_step(*search.options);
   const auto searches = static_cast<double>(attempts);
-  return (searches * compared + (is_thread(search) ? (searches + 1) * steps : 0)) / stride_of(blocks);
+  const double all_steps = is_thread(search) ? (searches * times_of(search) + 1) * steps : 0;
+  return (searches * compared + all_steps) / stride_of(blocks);
 }
 
 }  // namespace inversion
