@@ -113,7 +113,7 @@ class LevenbergFit {
         work_.finish(MisfitComparison::kPaths);
         work_.show("comparing ends", 0);
       });
-    return comparison.nearest() == 0 ? end : other;
+    return comparison.from_nearest().front() == 0 ? end : other;
   }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "inversion/fit/noise_weights.h"
 
@@ -31,15 +32,18 @@ void MisfitComparison::add(const VectorXd& unknowns, const std::function<void()>
        .product_variances = kColours * (2 * noise.cwiseAbs2() + 4 * products.cwiseMax(0).cwiseProduct(noise))});
 }
 
-std::size_t MisfitComparison::nearest() const {
+std::vector<std::size_t> MisfitComparison::from_nearest() const {
   NoiseWeights weights(views_and_colours(objective_));
   for (const Seen& one : seen_) weights.add(one.variances, one.products);
   const VectorXd squares = weights.factors().cwiseAbs2();
-  const auto misfit = [&](const Seen& one) {
+  const auto misfit = [&](std::size_t number) {
+    const Seen& one = seen_[number];
     return one.products.dot(squares) + std::sqrt(one.product_variances.dot(squares.cwiseAbs2()));
   };
-  const auto nearest = std::ranges::min_element(seen_, {}, misfit);
-  return static_cast<std::size_t>(nearest - seen_.begin());
+  std::vector<std::size_t> numbers(seen_.size());
+  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+  std::ranges::sort(numbers, {}, misfit);
+  return numbers;
 }
 
 }  // namespace inversion

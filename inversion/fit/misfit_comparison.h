@@ -22,10 +22,10 @@ class MisfitComparison {
       : objective_(objective), options_(options), sets_(sets) {}
   // Traces the paths of one more search; calls step() after each set, and passes on what it throws.
   void add(const Eigen::VectorXd& unknowns, const std::function<void()>& step);
-  // The number of the search, in the order of their adding, whose misfit is least. Each is taken as large as its noise
-  // lets it be by one deviation: a search whose paths say little, in narrow lobes, would be taken for the nearest by
-  // chance.
-  std::size_t nearest() const;
+  // The searches, by their numbers in the order of adding, that of the least misfit first. Each misfit is taken as
+  // large as its noise lets it be by one deviation: otherwise a search whose paths say little, in narrow lobes, would
+  // be taken for the nearest by chance.
+  std::vector<std::size_t> from_nearest() const;
 
  private:
   struct Seen {

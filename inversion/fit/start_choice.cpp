@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "inversion/fit/misfit_comparison.h"
 #include "inversion/fit/thread_unknowns.h"
@@ -70,7 +71,10 @@ class StartChoice {
     }
   }
 
-  std::size_t nearest(const std::vector<Attempt>& attempts) {
+  void need_no_exchange() { work_.drop(kSteps * work_of_path_ * options_.paths_per_block.back()); }
+
+  // Their numbers (MisfitComparison).
+  std::vector<std::size_t> from_nearest(const std::vector<Attempt>& attempts) {
     MisfitComparison comparison(objective_, options_, kComparedSets);
     const auto show = [&] { work_.show("comparing starts", 0); };
     show();
@@ -79,7 +83,7 @@ class StartChoice {
         work_.finish(MisfitComparison::kPaths * work_of_path_);
         show();
       });
-    return comparison.nearest();
+    return comparison.from_nearest();
   }
 
  private:
@@ -105,8 +109,18 @@ NearestSearch nearest_search(const WrappedSpool& spool, const std::vector<View>&
   if (is_thread(search))
     for (Attempt& attempt : attempts)
       choice.go_on(attempt, "start " + std::to_string(attempt.start + 1), times_of(search));
-  NearestSearch found{.nearest = std::move(attempts[choice.nearest(attempts)])};
+  const std::vector<std::size_t> order = choice.from_nearest(attempts);
+  NearestSearch found{.nearest = attempts[order.front()]};
   if (!is_thread(search)) return found;
+  // Under a tint a search that another start has led there is nearer than one that begins there.
+  const auto lies_there = [&](std::size_t number) {
+    return search.options->tinted && keeps_exchanged(attempts[number].unknowns, found.nearest.unknowns);
+  };
+  if (const auto other = std::ranges::find_if(order, lies_there); other != order.end()) {
+    found.exchanged = attempts[*other];
+    choice.need_no_exchange();
+    return found;
+  }
   Attempt exchanged = found.nearest;
   std::swap(exchanged.unknowns[kAlpha], exchanged.unknowns[kAlpha + 2]);
   choice.go_on(exchanged, "R and TRT exchanged", 1);

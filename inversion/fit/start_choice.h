@@ -15,8 +15,8 @@ namespace inversion {
 struct NearestSearch {
   Attempt nearest;  // its rounds, and how far it has got
   // Of a thread: R and TRT both send light back, and may each have taken the other's place, from where no small step
-  // leads back. This is the nearest search gone on with from where both are exchanged, if it stays there: only the ends
-  // of both tell which is right.
+  // leads back. This is the nearest search gone on with from where both are exchanged, if it stays there; under a tint
+  // it is that of another start which lies there, if one does. Only the ends of both tell which is right.
   std::optional<Attempt> exchanged;
 };
 

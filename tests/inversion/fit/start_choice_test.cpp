@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "inversion/fit/thread_unknowns.h"
 #include "inversion/fit/view_objective.h"
 #include "tests/inversion/fit/synthetic_spool.h"
 
@@ -27,20 +28,23 @@ class StartChoiceTest : public testing::Test {
     options_.robust = false;
   }
 
-  NearestSearch nearest(const std::vector<VectorXd>& starts) {
+  NearestSearch nearest(const std::vector<VectorXd>& starts) { return nearest(starts, *views_); }
+  NearestSearch nearest(const std::vector<VectorXd>& starts, const std::vector<View>& views) {
     std::vector<Attempt> attempts;
     for (const VectorXd& start : starts)
       attempts.push_back({.start = static_cast<int>(attempts.size()), .unknowns = start});
-    const Search search{.family = &family_, .options = &options_, .effort = {}, .unknowns = unknowns_of(family_)};
-    const ViewObjective objective(kSpool, *views_, family_);
+    const Search search{
+        .family = &family_, .options = &options_, .effort = {}, .unknowns = unknowns_of(family_), .held = held_};
+    const ViewObjective objective(kSpool, views, family_);
     Work work(options_, work_of_choice(search, objective.block_count(), starts.size()));
-    return nearest_search(kSpool, *views_, objective.block_count(), search, std::move(attempts), work);
+    return nearest_search(kSpool, views, objective.block_count(), search, std::move(attempts), work);
   }
 
   inline static const WrappedSpool kSpool{};
   inline static std::vector<View>* views_ = nullptr;
-  const ScatteringFamily family_ = ThreadFamily{};
+  ScatteringFamily family_ = ThreadFamily{};
   FitOptions options_;
+  std::vector<int> held_;
 };
 
 TEST_F(StartChoiceTest, TheSearchThatIsNearestIsTakenWithHowUncertainItIs) {
@@ -69,6 +73,24 @@ TEST_F(StartChoiceTest, ItTriesTheNearestOnceMoreWithRAndTRTExchangedAndItsProgr
 
 TEST_F(StartChoiceTest, AnExchangeOfRAndTRTThatGoesBackIsNotPursued) {
   EXPECT_FALSE(nearest({unknowns_of(known_thread())}).exchanged);
+}
+
+// Widths are held, so that each search stays in its place.
+TEST_F(StartChoiceTest, UnderATintASearchThatLiesWhereRAndTRTAreExchangedIsGoneOnWithToo) {
+  renderer::ThreadParameters metal = known_thread();
+  metal.sigma_a = {0.3, 0.7, 2.5};
+  metal.alpha = {0.12, 0.2, 0.22};
+  metal.lambda0_rgb = {1, 0.76, 0.34};
+  options_.tinted = true;
+  family_ = ThreadFamily{options_.start.exit, options_.start.transmittance_powers, true};
+  const VectorXd truth = tinted_unknowns_of(metal);
+  VectorXd exchanged = truth;
+  exchanged[kAlpha] = truth[kAlpha + 2], exchanged[kAlpha + 2] = truth[kAlpha];
+  held_ = {kAlpha, kAlpha + 1, kAlpha + 2};
+  const NearestSearch found = nearest({exchanged, truth}, photographs(kSpool, metal, 48, 64));
+  EXPECT_EQ(found.nearest.start, 1);
+  ASSERT_TRUE(found.exchanged);
+  EXPECT_EQ(found.exchanged->start, 0);
 }
 
 TEST_F(StartChoiceTest, ItIsStoppedOnRequest) {
