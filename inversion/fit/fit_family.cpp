@@ -15,6 +15,7 @@
 #include "inversion/fit/pixel_loss.h"
 #include "inversion/fit/search.h"
 #include "inversion/fit/start_choice.h"
+#include "inversion/fit/thread_unknowns.h"
 #include "inversion/fit/unbiased_steps.h"
 #include "inversion/fit/view_objective.h"
 #include "inversion/solve/adam.h"
@@ -105,15 +106,10 @@ class LevenbergFit {
     }
     Ended end = without_bias(std::move(best), "without bias");
     work_.finish(work_of_steps());
+    if (exchanges()) end = widened(std::move(end));
     if (!exchanged_) return end;
-    Ended other = at_other_end(*std::move(exchanged_));
-    MisfitComparison comparison(objective_, *search_.options, kComparedEnds);
-    for (const Ended* one : {&end, &other})
-      comparison.add(one->attempt.unknowns, [&] {
-        work_.finish(MisfitComparison::kPaths);
-        work_.show("comparing ends", 0);
-      });
-    return comparison.from_nearest().front() == 0 ? end : other;
+    Ended other = widened(at_other_end(*std::move(exchanged_), "R and TRT exchanged"));
+    return nearer(std::move(end), std::move(other));
   }
 
  private:
@@ -121,14 +117,15 @@ class LevenbergFit {
   double last_paths() const { return search_.options->paths_per_block.back(); }
   bool chooses() const { return without_bias_ && starts_.size() > 1; }
   bool exchanges() const { return chooses() && std::holds_alternative<ThreadFamily>(*search_.family); }
-  double work_of_exchange() const { return 2 * (work_of_steps() + kComparedEnds * MisfitComparison::kPaths); }
+  static constexpr double kWorkOfComparison = 2.0 * kComparedEnds * MisfitComparison::kPaths;
+  double work_of_other_end() const { return 2 * work_of_steps() + kWorkOfComparison; }
   double work_of_steps() const { return last_paths() * steps(); }
   int steps() const { return search_.effort.approach_steps + search_.effort.joint_steps; }
 
   double whole_work() const {
     const std::vector<int>& paths = search_.options->paths_per_block;
     double work = without_bias_ ? work_of_steps() : 0;
-    if (exchanges()) work += work_of_exchange();
+    if (exchanges()) work += work_of_other_end();
     if (!search_.effort.rounds && without_bias_) return work;
     work += last_paths() + static_cast<double>(starts_.size()) * std::accumulate(paths.begin(), paths.end() - 1, 0.0);
     return chooses() ? work + work_of_choice(search_, objective_.block_count(), starts_.size()) : work;
@@ -145,16 +142,40 @@ class LevenbergFit {
                      [&](int, int) { work_.show("without bias", 0); });
   }
 
-  // Only the widths have changed places when this search begins. Its energies follow, and the joint sets of the first
-  // pass, which count them alike all the way, leave them behind: one end is compared with the other after a second.
-  Ended at_other_end(Attempt exchanged) {
-    trace_at(exchanged.unknowns);
-    Ended end = without_bias(std::move(exchanged), "R and TRT exchanged");
+  // Of a search that begins with other widths: its energies follow, and the joint sets of the first pass, which count
+  // them alike all the way, leave them behind. So one end is compared with another after a second pass.
+  Ended at_other_end(Attempt attempt, const std::string& name, int behind = 0) {
+    trace_at(attempt.unknowns);
+    Ended end = without_bias(std::move(attempt), name, behind);
     work_.finish(work_of_steps());
     end.attempt.covariance = end.certainty.noise_covariance;
-    end = without_bias(std::move(end.attempt), "R and TRT exchanged", steps());
+    end = without_bias(std::move(end.attempt), name, behind + steps());
     work_.finish(work_of_steps());
     return end;
+  }
+
+  // Of a lobe that is as narrow as lobes may be few paths tell that it is too narrow, and a search that noise has led
+  // there does not come back. It goes on once more from where that lobe is as wide as at the first start.
+  Ended widened(Ended end) {
+    constexpr double kNarrow = 3;  // in least widths
+    Attempt wider = end.attempt;
+    for (int k = kBeta; k < kBeta + 3; ++k)
+      if (wider.unknowns[k] < kNarrow * search_.unknowns.lower[k]) wider.unknowns[k] = starts_.front()[k];
+    if (wider.unknowns == end.attempt.unknowns) return end;
+    work_.add(work_of_other_end());
+    wider.covariance = end.certainty.noise_covariance;
+    Ended other = at_other_end(std::move(wider), "narrow lobes widened", 2 * steps());
+    return nearer(std::move(end), std::move(other));
+  }
+
+  Ended nearer(Ended end, Ended other) {
+    MisfitComparison comparison(objective_, *search_.options, kComparedEnds);
+    for (const Ended* one : {&end, &other})
+      comparison.add(one->attempt.unknowns, [&] {
+        work_.finish(MisfitComparison::kPaths);
+        work_.show("comparing ends", 0);
+      });
+    return comparison.from_nearest().front() == 0 ? end : other;
   }
 
   // Behind so many steps of the same search, whose paths it does not trace again.
@@ -195,7 +216,7 @@ class LevenbergFit {
     if (exchanged_)
       exchanged_->rounds = best.rounds, exchanged_->view_weights = best.view_weights;
     else if (exchanges())
-      work_.drop(work_of_exchange());
+      work_.drop(work_of_other_end());
     return std::move(best);
   }
 

@@ -13,7 +13,8 @@ void lighten_blackest(const Search& search, Eigen::VectorXd& unknowns) {
 }
 
 bool Work::goes_on(const std::string& what, double part) const {
-  return !options_.progress || options_.progress(what, std::min(1.0, (done_ + part) / whole_));
+  said_ = std::clamp((done_ + part) / whole_, said_, 1.0);
+  return !options_.progress || options_.progress(what, said_);
 }
 
 void Work::show(const std::string& what, double part) const {

@@ -51,10 +51,12 @@ class Work {
   void show(const std::string& what, double part) const;
   void finish(double piece) { done_ += piece; }
   void drop(double piece) { whole_ -= piece; }  // that needs not be done
+  void add(double piece) { whole_ += piece; }   // that nobody expected; what is said to be done waits for it
 
  private:
   const FitOptions& options_;
   double whole_, done_ = 0;
+  mutable double said_ = 0;  // the greatest share
 };
 
 [[noreturn]] void throw_stopped();

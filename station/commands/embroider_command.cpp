@@ -5,6 +5,7 @@
 #include "station/cloth/render/render_scene.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/commands/ready_name.h"
 
 namespace station {
 
@@ -20,7 +21,10 @@ void add_embroider_command(CLI::App& app) {
   EmbroiderRequest& request = arguments->request;
   CLI::App* command = app.add_subcommand("embroider", "a machine embroidery motif in a digitized thread");
   command->add_option("motif", request.motif, "Tajima .dst, Brother .pes or line art as .svg")->required();
-  command->add_option("--thread", request.thread, "thread file; each colour changes its absorption alone")->required();
+  or_ready("threads",
+           command->add_option("--thread", request.thread,
+                               "thread file or a ready one's name; each colour changes its absorption alone"))
+      ->required();
   command->add_option("--out", request.out, "picture: .exr (linear) or .png (display)")->required();
   command->add_option(
       "--colour", arguments->colours,
@@ -33,11 +37,12 @@ void add_embroider_command(CLI::App& app) {
   CLI::Option* pixels = command->add_option("--px-per-mm", request.pixels_per_mm, "pixels per millimetre")
                             ->check(CLI::Range(0.1, 1000.0))
                             ->capture_default_str();
-  CLI::Option* scene = command
-                           ->add_option("--scene", request.scene,
-                                        "sewn on a cloth of this scene and rendered as it says; the scene with the "
-                                        "embroidery is written beside the picture")
-                           ->excludes(pixels);
+  CLI::Option* scene =
+      or_ready("scenes",
+               command->add_option("--scene", request.scene,
+                                   "sewn on a cloth of this scene, a file or a ready one's name, and rendered "
+                                   "as it says; the scene with the embroidery is written beside the picture"))
+          ->excludes(pixels);
   command->add_option("--cloth", request.cloth, "which of the scene's cloths, from 0")
       ->check(CLI::Range(0, 1 << 20))
       ->needs(scene)

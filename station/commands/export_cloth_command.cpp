@@ -3,6 +3,7 @@
 #include "station/cloth/export/export_cloth.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/commands/ready_name.h"
 
 namespace station {
 
@@ -15,10 +16,15 @@ void add_export_cloth_command(CLI::App& export_app) {
   auto arguments = std::make_shared<ExportClothArguments>();
   ExportClothRequest& request = arguments->request;
   CLI::App* command = export_app.add_subcommand("cloth", "a cloth as tileable textures, glTF and U3M");
-  CLI::Option* scene = command->add_option("scene", request.scene, "scene file with one flat cloth");
-  CLI::Option* draft = command->add_option("--draft", request.draft, "instead of a scene: a draft")->excludes(scene);
-  CLI::Option* warp = command->add_option("--warp", request.warp, "with --draft: thread file of the warp");
-  CLI::Option* weft = command->add_option("--weft", request.weft, "with --draft: thread file of the weft");
+  CLI::Option* scene = or_ready(
+      "scenes", command->add_option("scene", request.scene, "scene file with one flat cloth, or a ready one's name"));
+  CLI::Option* draft = or_ready("drafts", command->add_option("--draft", request.draft,
+                                                              "instead of a scene: a draft, or a ready one's name"))
+                           ->excludes(scene);
+  CLI::Option* warp = or_ready(
+      "threads",
+      command->add_option("--warp", request.warp, "with --draft: thread file of the warp, or a ready one's name"));
+  CLI::Option* weft = or_ready("threads", command->add_option("--weft", request.weft, "likewise, of the weft"));
   draft->needs(warp)->needs(weft);
   warp->needs(draft);
   weft->needs(draft);

@@ -3,6 +3,7 @@
 #include "station/cloth/export/export_thread.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/commands/ready_name.h"
 
 namespace station {
 
@@ -17,13 +18,15 @@ void add_export_thread_command(CLI::App& exports) {
   ExportThreadRequest& request = arguments->request;
   CLI::App* command = exports.add_subcommand(
       "thread", "the nearest single fiber for Mitsuba and Blender, tables of the scattering, the BRDF of its cloth");
-  command->add_option("thread", request.thread, "thread file")->required();
+  or_ready("threads", command->add_option("thread", request.thread, "thread file or a ready one's name"))->required();
   command->add_option("--out", request.out, "new folder")->required();
   command->add_option("--only", arguments->only, "some of mitsuba, blender, csv, numpy, merl")
       ->delimiter(',')
       ->check(CLI::IsMember(std::vector<std::string>(kThreadExports.begin(), kThreadExports.end())));
-  CLI::Option* draft = command->add_option("--draft", arguments->cloth.draft,
-                                           "draft of the cloth whose BRDF is measured for merl, scaled to the thread");
+  CLI::Option* draft =
+      or_ready("drafts", command->add_option("--draft", arguments->cloth.draft,
+                                             "draft of the cloth whose BRDF is measured for merl, or a ready one's "
+                                             "name; scaled to the thread"));
   command
       ->add_flag("--allow-anisotropic", arguments->cloth.allow_anisotropic,
                  "merl even of a cloth that changes when it is turned: the mean over all turns")

@@ -54,24 +54,19 @@ constexpr Guide kGuides[] = {
     {"library remove", kParts, "library remove 1"},
     {"library restore", kParts, "library restore 1"},
 
-    {"weave", "Predict cloth", "weave --draft DATA/drafts/twill_2_2.json --out twill.json --view twill.png"},
-    {"cloth", "Predict cloth", "cloth session --draft DATA/drafts/twill_2_2.json --quick"},
-    {"look", "Predict cloth",
-     "look DATA/threads/silk_red.json --weft DATA/threads/silk_gold.json --draft DATA/drafts/plain.json --spp 1 "
-     "--out looked"},
+    {"weave", "Predict cloth", "weave --draft twill_2_2 --out twill.json --view twill.png"},
+    {"cloth", "Predict cloth", "cloth session --draft twill_2_2 --quick"},
+    {"look", "Predict cloth", "look silk_red --weft silk_gold --draft plain --spp 1 --out looked"},
     {"render", "Predict cloth", "render DATA/scenes/plain_swatch.json --out swatch.exr --spp 4 --png"},
     {"pattern", "Predict cloth",
-     "pattern --image DATA/motifs/flower.jpg --thread DATA/threads/silk_gold.json --draft DATA/drafts/satin_5.json "
-     "--ends 40 --curves-only --out flower"},
-    {"embroider", "Predict cloth",
-     "embroider DATA/motifs/leaf.svg --thread DATA/threads/silk_blue.json --out leaf.png --spp 4"},
+     "pattern --image DATA/motifs/flower.jpg --thread silk_gold --draft satin_5 --ends 40 --curves-only --out flower"},
+    {"embroider", "Predict cloth", "embroider DATA/motifs/leaf.svg --thread silk_blue --out leaf.png --spp 4"},
     {"predict", "Predict cloth", "predict cloth_session --spp 4"},
     {"compare", "Predict cloth", "compare photograph.exr swatch.exr --out difference.png"},
 
     {"export", "Use them in other programs", ""},
-    {"export thread", kParts, "export thread DATA/threads/silk_red.json --out silk_red --only mitsuba,csv"},
-    {"export cloth", kParts,
-     "export cloth DATA/scenes/plain_swatch.json --out plain --size 64 --spp 4 --only textures"},
+    {"export thread", kParts, "export thread silk_red --out silk_red_exported --only mitsuba,csv"},
+    {"export cloth", kParts, "export cloth plain_swatch --out plain_cloth --size 64 --spp 4 --only textures"},
 
     {"scatter", "Study the models", ""},
     {"scatter simulate", kParts, "scatter simulate --theta 30 --absorption 0.2 --configurations 10 --out theta_30.csv"},

@@ -6,6 +6,7 @@
 #include "station/cloth/preview/cloth_preview.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/commands/ready_name.h"
 
 namespace station {
 
@@ -19,9 +20,15 @@ void add_look_command(CLI::App& app) {
   ClothLookRequest& request = arguments->request;
   CLI::App* command =
       app.add_subcommand("look", "cloth in a picture that gets better, turned by lines on standard input");
-  command->add_option("thread", arguments->of, "thread or bundle file of the warp")->required();
-  command->add_option("--draft", request.cloth.draft, "draft (JSON or WIF); scaled to the threads")->required();
-  command->add_option("--weft", request.cloth.weft_thread, "thread or bundle file of the weft; the warp's without it");
+  or_ready("threads",
+           command->add_option("thread", arguments->of, "thread or bundle file of the warp, or a ready thread's name"))
+      ->required();
+  or_ready("drafts", command->add_option("--draft", request.cloth.draft,
+                                         "draft (JSON or WIF) or a ready one's name; scaled to the threads"))
+      ->required();
+  or_ready("threads", command->add_option("--weft", request.cloth.weft_thread,
+                                          "thread or bundle file of the weft, or a ready thread's name; the warp's "
+                                          "without it"));
   command->add_option("--shape", request.shape, "what the cloth is made into")
       ->check(CLI::IsMember(cloth_shapes()))
       ->capture_default_str();

@@ -24,11 +24,7 @@ Words option_names_of(const CLI::App& app) {
 }
 
 std::string said(const std::string& word, const Words& known, const CLI::App& app) {
-  const auto nearest =
-      std::ranges::min_element(known, {}, [&](const std::string& k) { return typing_distance(word, k); });
-  const int most = std::min<int>(kNear, static_cast<int>(word.size()) / 2);
-  if (nearest != known.end() && typing_distance(word, *nearest) <= most)
-    return word + ": did you mean " + *nearest + "?";
+  if (const auto nearest = nearest_word(word, known)) return word + ": did you mean " + *nearest + "?";
   std::string command = app.get_name();
   for (const CLI::App* above = app.get_parent(); above; above = above->get_parent())
     command = above->get_name() + " " + command;
@@ -50,6 +46,13 @@ int typing_distance(const std::string& a, const std::string& b) {
         d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
     }
   return d[a.size()][b.size()];
+}
+
+std::optional<std::string> nearest_word(const std::string& word, const Words& known) {
+  const auto nearest =
+      std::ranges::min_element(known, {}, [&](const std::string& k) { return typing_distance(word, k); });
+  const int most = std::min<int>(kNear, static_cast<int>(word.size()) / 2);
+  return nearest != known.end() && typing_distance(word, *nearest) <= most ? std::optional(*nearest) : std::nullopt;
 }
 
 std::optional<std::string> unknown_word(const CLI::App& app, const Words& words) {

@@ -5,6 +5,7 @@
 #include "station/cloth/pattern/pattern_cloth.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/commands/ready_name.h"
 
 namespace station {
 
@@ -22,12 +23,17 @@ void add_pattern_command(CLI::App& app) {
   command
       ->add_option("--out", request.out, "folder for the absorption of each crossing, a scene to render and a report")
       ->required();
-  CLI::Option* thread =
-      command->add_option("--thread", request.thread, "thread file; each crossing changes its absorption alone");
-  CLI::Option* draft = command->add_option("--draft", request.draft, "draft of the cloth")->needs(thread);
+  CLI::Option* thread = or_ready(
+      "threads", command->add_option("--thread", request.thread,
+                                     "thread file or a ready one's name; each crossing changes its absorption alone"));
+  CLI::Option* draft =
+      or_ready("drafts", command->add_option("--draft", request.draft, "draft of the cloth, or a ready one's name"))
+          ->needs(thread);
   thread->needs(draft);
   CLI::Option* scene =
-      command->add_option("--scene", request.scene, "a scene whose cloth shows the picture, over and over")
+      or_ready("scenes",
+               command->add_option("--scene", request.scene,
+                                   "a scene, or a ready one's name, whose cloth shows the picture, over and over"))
           ->excludes(thread)
           ->excludes(draft);
   command->add_option("--cloth", request.cloth, "which of the scene's cloths, from 0")
@@ -46,10 +52,9 @@ void add_pattern_command(CLI::App& app) {
   CLI::Option* curves_only = command->add_flag("--curves-only", arguments->curves_only,
                                                "without refinement: each crossing as if all cloth had its colour");
   CLI::Option* jacquard =
-      command
-          ->add_option("--jacquard", arguments->jacquard_weft,
-                       "two colours by structure alone: weft of this thread file, warp of --thread, their own colours; "
-                       "of the draft only yarns and sett are taken")
+      or_ready("threads", command->add_option("--jacquard", arguments->jacquard_weft,
+                                              "two colours by structure alone: weft of this thread, warp of --thread, "
+                                              "their own colours; of the draft only yarns and sett are taken"))
           ->needs(thread);
   curves_only->excludes(jacquard);
   as_it_is->excludes(jacquard);

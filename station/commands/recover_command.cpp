@@ -2,6 +2,7 @@
 
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/commands/ready_name.h"
 #include "station/thread/validate/recover_thread.h"
 
 namespace station {
@@ -31,7 +32,9 @@ void add_recover_command(CLI::App& app) {
       app.add_subcommand("recover", "fit pictures of a known thread: errors, and predicted against seen deviations");
   command->add_option("--rig", request.rig, "rig file with a simulation part: lens, lamps and sensor")->required();
   command->add_option("--spool", request.spool, "spool file, for its wrapping")->required();
-  command->add_option("--thread", arguments->threads, "thread files: the truth, one after the other")->required();
+  or_ready("threads", command->add_option("--thread", arguments->threads,
+                                          "thread files or ready ones' names: the truth, one after the other"))
+      ->required();
   command->add_option("--draws", request.draws, "fits to other draws of the noise; 0: none")
       ->check(CLI::Range(0, 10000));
   command->add_option("--prior", request.fit.prior_weight, "weight of the simulated threads' prior; 0: none")

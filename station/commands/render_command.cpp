@@ -4,6 +4,7 @@
 #include "station/cloth/render/render_scene.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/commands/ready_name.h"
 
 namespace station {
 namespace {
@@ -49,7 +50,8 @@ void add_render_command(CLI::App& app) {
   auto arguments = std::make_shared<RenderArguments>();
   RenderRequest& request = arguments->request;
   CLI::App* command = app.add_subcommand("render", "a scene of cloth to a picture");
-  command->add_option("scene", arguments->scenes, "scene file, or several")->required();
+  or_ready("scenes", command->add_option("scene", arguments->scenes, "scene file or a ready one's name, or several"))
+      ->required();
   command
       ->add_option("--out", request.out,
                    "picture to write: .exr (linear) or .png (display); or a folder: both, named as the scene")

@@ -11,6 +11,7 @@
 #include "station/cloth/patch_picture.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/commands/ready_name.h"
 #include "station/documents/draft_drawing.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/number_text.h"
@@ -123,7 +124,8 @@ void add_weave_command(CLI::App& app) {
   };
   auto arguments = std::make_shared<WeaveArguments>();
   CLI::App* command = app.add_subcommand("weave", "a weave draft to a periodic patch of yarns");
-  command->add_option("--draft", arguments->draft, "draft file (JSON or WIF)")->required();
+  or_ready("drafts", command->add_option("--draft", arguments->draft, "draft file (JSON or WIF) or a ready one's name"))
+      ->required();
   command->add_option("--out", arguments->out, "patch file to write")->required();
   command->add_option("--drawing", arguments->drawing, "the draft as weavers draw it, PNG or SVG");
   command->add_option("--view", arguments->view, "the patch from above, in perspective and in section, PNG or EXR");

@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include "inversion/fit/energy_bands.h"
+#include "inversion/fit/fit_family.h"
 #include "inversion/fit/fit_views.h"
 #include "inversion/fit/independent_loss.h"
+#include "inversion/fit/thread_unknowns.h"
 #include "inversion/view/agreement.h"
 #include "tests/inversion/fit/synthetic_spool.h"
 
@@ -98,6 +100,26 @@ TEST(FitRecoveryTest, TheTintOfAMetallicThreadsHighlightIsFound) {
   EXPECT_EQ(found[0], 1);
   EXPECT_NEAR(found[1], metal.lambda0_rgb[1], 0.05);
   EXPECT_NEAR(found[2], metal.lambda0_rgb[2], 0.05);
+}
+
+// Noise leads a search into a lobe so narrow that few paths say how wide it should be, and it stays there. The nearer
+// of these two begins in one; the other is nowhere near.
+TEST(FitRecoveryTest, ALobeThatASearchHasMadeFarTooNarrowIsWidenedAgain) {
+  const WrappedSpool spool;
+  renderer::ThreadParameters metal = known_thread();
+  metal.alpha = {0.12, 0.2, 0.22};
+  metal.beta[0] = 0.4;
+  metal.lambda0_rgb = {1, 0.76, 0.34};
+  FitOptions options{.paths_per_block = {2048}};
+  options.robust = false;
+  options.tinted = true;
+  const ThreadFamily family{metal.exit, metal.transmittance_powers, true};
+  Eigen::VectorXd narrow = tinted_unknowns_of(metal), far = tinted_unknowns_of(options.start);
+  narrow[kBeta] = unknowns_of(ScatteringFamily(family)).lower[kBeta];
+  far.segment<3>(kAlpha) = unknowns_of(ScatteringFamily(family)).upper.segment<3>(kAlpha);
+  const ViewFit fit = fit_family(spool, photographs(spool, metal, 72, 256), options, family, {far, narrow});
+  std::printf("start %d, beta_R %.3f\n", fit.start, fit.unknowns[kBeta]);
+  EXPECT_NEAR(fit.unknowns[kBeta], metal.beta[0], 0.1);
 }
 
 TEST(FitRecoveryTest, AWhiteThreadThatKeepsNearlyAllLightIsFittedWithoutEnergyBeyondOne) {
