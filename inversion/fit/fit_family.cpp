@@ -30,7 +30,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 // By the loss of the pictures alone, with light paths of each step's own.
 Attempt search_by_adam(const Search& search, const VectorXd& start, int paths, const StochasticLoss& of_pictures) {
   const FitOptions& options = *search.options;
-  const Work work(options, options.adam_steps);
+  Work work(options, options.adam_steps);
   Attempt attempt{.unknowns = start};
   VectorXd low = search.unknowns.lower, high = search.unknowns.upper;
   for (int k : search.held) low[k] = high[k] = start[k];
@@ -106,7 +106,7 @@ class LevenbergFit {
     }
     Ended end = without_bias(std::move(best), "without bias");
     work_.finish(work_of_steps());
-    if (exchanges()) end = widened(std::move(end));
+    if (seeks_thread()) end = widened(std::move(end));
     if (!exchanged_) return end;
     Ended other = widened(at_other_end(*std::move(exchanged_), "R and TRT exchanged"));
     return nearer(std::move(end), std::move(other));
@@ -116,7 +116,8 @@ class LevenbergFit {
   int rounds() const { return static_cast<int>(search_.options->paths_per_block.size()); }
   double last_paths() const { return search_.options->paths_per_block.back(); }
   bool chooses() const { return without_bias_ && starts_.size() > 1; }
-  bool exchanges() const { return chooses() && std::holds_alternative<ThreadFamily>(*search_.family); }
+  // From several starts: where R and TRT may be exchanged and lobes get lost.
+  bool seeks_thread() const { return chooses() && std::holds_alternative<ThreadFamily>(*search_.family); }
   static constexpr double kWorkOfComparison = 2.0 * kComparedEnds * MisfitComparison::kPaths;
   double work_of_other_end() const { return 2 * work_of_steps() + kWorkOfComparison; }
   double work_of_steps() const { return last_paths() * steps(); }
@@ -125,7 +126,7 @@ class LevenbergFit {
   double whole_work() const {
     const std::vector<int>& paths = search_.options->paths_per_block;
     double work = without_bias_ ? work_of_steps() : 0;
-    if (exchanges()) work += work_of_other_end();
+    if (seeks_thread()) work += work_of_other_end();
     if (!search_.effort.rounds && without_bias_) return work;
     work += last_paths() + static_cast<double>(starts_.size()) * std::accumulate(paths.begin(), paths.end() - 1, 0.0);
     return chooses() ? work + work_of_choice(search_, objective_.block_count(), starts_.size()) : work;
@@ -168,6 +169,7 @@ class LevenbergFit {
     return nearer(std::move(end), std::move(other));
   }
 
+  // Two at a time: the noise of a narrow lobe counts in the weights of all that are compared with it.
   Ended nearer(Ended end, Ended other) {
     MisfitComparison comparison(objective_, *search_.options, kComparedEnds);
     for (const Ended* one : {&end, &other})
@@ -215,7 +217,7 @@ class LevenbergFit {
     exchanged_ = std::move(exchanged);
     if (exchanged_)
       exchanged_->rounds = best.rounds, exchanged_->view_weights = best.view_weights;
-    else if (exchanges())
+    else if (seeks_thread())
       work_.drop(work_of_other_end());
     return std::move(best);
   }

@@ -12,12 +12,12 @@ void lighten_blackest(const Search& search, Eigen::VectorXd& unknowns) {
       unknowns[k] = std::min(unknowns[k], kBlackest);
 }
 
-bool Work::goes_on(const std::string& what, double part) const {
+bool Work::goes_on(const std::string& what, double part) {
   said_ = std::clamp((done_ + part) / whole_, said_, 1.0);
   return !options_.progress || options_.progress(what, said_);
 }
 
-void Work::show(const std::string& what, double part) const {
+void Work::show(const std::string& what, double part) {
   if (!goes_on(what, part)) throw_stopped();
 }
 

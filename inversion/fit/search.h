@@ -46,9 +46,9 @@ class Work {
  public:
   Work(const FitOptions& options, double whole) : options_(options), whole_(whole) {}
   // Says what is done and that `part` of the next piece is; false: the fit is to stop.
-  bool goes_on(const std::string& what, double part) const;
+  bool goes_on(const std::string& what, double part);
   // The same; throws std::runtime_error when the fit is to stop.
-  void show(const std::string& what, double part) const;
+  void show(const std::string& what, double part);
   void finish(double piece) { done_ += piece; }
   void drop(double piece) { whole_ -= piece; }  // that needs not be done
   void add(double piece) { whole_ += piece; }   // that nobody expected; what is said to be done waits for it
@@ -56,7 +56,7 @@ class Work {
  private:
   const FitOptions& options_;
   double whole_, done_ = 0;
-  mutable double said_ = 0;  // the greatest share
+  double said_ = 0;  // the greatest share
 };
 
 [[noreturn]] void throw_stopped();

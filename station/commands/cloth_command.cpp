@@ -4,7 +4,7 @@
 #include "station/cloth/preview/cloth_preview.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/commands/ready_name.h"
+#include "station/commands/weave_options.h"
 #include "station/session/results.h"
 
 namespace station {
@@ -23,12 +23,7 @@ void add_cloth_command(CLI::App& app) {
                                           "session folder with a fitted thread or bundle, or, with --out, a thread or "
                                           "bundle file or a ready thread's name"))
       ->required();
-  or_ready("drafts", command->add_option("--draft", request.cloth.draft,
-                                         "draft (JSON or WIF) or a ready one's name; scaled to the threads"))
-      ->required();
-  or_ready("threads", command->add_option("--weft", request.cloth.weft_thread,
-                                          "thread or bundle file of the weft, or a ready thread's name; the warp's "
-                                          "without it"));
+  add_weave_options(*command, request.cloth);
   command->add_option("--out", request.cloth.out,
                       "folder for a cloth that belongs to no session, with copies of its threads");
   command->add_option("--model", arguments->model, "the session's fitted model that it is woven of: thread or bundle")

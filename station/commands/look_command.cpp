@@ -6,7 +6,7 @@
 #include "station/cloth/preview/cloth_preview.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
-#include "station/commands/ready_name.h"
+#include "station/commands/weave_options.h"
 
 namespace station {
 
@@ -23,12 +23,7 @@ void add_look_command(CLI::App& app) {
   or_ready("threads",
            command->add_option("thread", arguments->of, "thread or bundle file of the warp, or a ready thread's name"))
       ->required();
-  or_ready("drafts", command->add_option("--draft", request.cloth.draft,
-                                         "draft (JSON or WIF) or a ready one's name; scaled to the threads"))
-      ->required();
-  or_ready("threads", command->add_option("--weft", request.cloth.weft_thread,
-                                          "thread or bundle file of the weft, or a ready thread's name; the warp's "
-                                          "without it"));
+  add_weave_options(*command, request.cloth);
   command->add_option("--shape", request.shape, "what the cloth is made into")
       ->check(CLI::IsMember(cloth_shapes()))
       ->capture_default_str();

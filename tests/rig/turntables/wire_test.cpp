@@ -230,14 +230,12 @@ TEST_P(Wire, ASignalIsNotTakenForAPulledPlug) {
   const auto open = open_line(line(), server->path());
   const SignalsTo signals(pthread_self());
   const auto use_for_a_while = [&] {
-    for (const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(2);
-         std::chrono::steady_clock::now() < until;) {
+    while (signals.sent() < 20000) {
       open->write("?");
       open->read(0.001);
     }
   };
   EXPECT_NO_THROW(use_for_a_while());
-  EXPECT_GT(signals.sent(), 1000);
 }
 
 TEST_P(Wire, ItIsTakenForOneProgramAlone) {

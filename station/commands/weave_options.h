@@ -1,0 +1,18 @@
+// What a cloth of a digitized thread is woven by: the options that `cloth` and `look` share.
+#pragma once
+
+#include "station/cloth/preview/woven_threads.h"
+#include "station/commands/ready_name.h"
+
+namespace station {
+
+inline void add_weave_options(CLI::App& command, ThreadsToWeave& cloth) {
+  or_ready("drafts", command.add_option("--draft", cloth.draft,
+                                        "draft (JSON or WIF) or a ready one's name; scaled to the threads"))
+      ->required();
+  or_ready("threads", command.add_option("--weft", cloth.weft_thread,
+                                         "thread or bundle file of the weft, or a ready thread's name; the warp's "
+                                         "without it"));
+}
+
+}  // namespace station
