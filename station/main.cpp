@@ -6,6 +6,7 @@
 #include <iostream>
 #include <new>
 
+#include "station/cloth/render/ranks.h"
 #include "station/commands/commands.h"
 #include "station/commands/guide.h"
 #include "station/commands/nearest_word.h"
@@ -60,6 +61,8 @@ int main(int argc, char** argv) {
     const std::optional<std::string> unknown = unknown_word(app, {argv + 1, argv + argc});
     fail(unknown ? *unknown : std::string(error.what()) + "; see --help");
     return 2;
+  } catch (const station::EndsWithOthers&) {
+    return 1;
   } catch (const std::bad_alloc&) {
     return fail("out of memory; use smaller pictures or fewer samples");
   } catch (const std::exception& error) {

@@ -40,12 +40,15 @@ Film empty_film(int width, int height) {
           .goals = cv::Mat1i(1, tiles_along(width) * tiles_along(height), 0)};
 }
 
+cv::Rect tile_of(const cv::Size& picture, int number) {
+  const int along = tiles_along(picture.width);
+  return cv::Rect(number % along * kTile, number / along * kTile, kTile, kTile) & cv::Rect({0, 0}, picture);
+}
+
 std::vector<cv::Rect> tiles_of(const cv::Size& picture) {
-  const cv::Rect whole({0, 0}, picture);
   std::vector<cv::Rect> tiles;
-  for (int row = 0; row < picture.height; row += kTile)
-    for (int column = 0; column < picture.width; column += kTile)
-      tiles.push_back(cv::Rect(column, row, kTile, kTile) & whole);
+  for (int i = 0; i < tiles_along(picture.width) * tiles_along(picture.height); ++i)
+    tiles.push_back(tile_of(picture, i));
   return tiles;
 }
 
@@ -131,18 +134,23 @@ bool raise_goals(Film& film, int most_samples, double noise) {
   return raised;
 }
 
-double expected_samples(const Film& film, int most_samples, double noise) {
-  const std::vector<cv::Rect> tiles = tiles_of(film.counts.size());
+double expected_samples(const Film& film, const std::vector<int>& tiles, int most_samples, double noise) {
   const std::vector<double> errors = noise > 0 ? relative_errors_of_tiles(film) : std::vector<double>{};
   double sum = 0;
-  for (std::size_t i = 0; i < tiles.size(); ++i) {
-    const int goal = film.goals(static_cast<int>(i));
+  for (const int tile : tiles) {
+    const int goal = film.goals(tile);
     int expected = most_samples;
     if (noise > 0 && goal >= kLeastJudged && goal < most_samples)
-      expected = std::clamp(wanted_samples(goal, errors[i], noise), goal, most_samples);
-    sum += static_cast<double>(expected) * tiles[i].area();
+      expected = std::clamp(wanted_samples(goal, errors[static_cast<std::size_t>(tile)], noise), goal, most_samples);
+    sum += static_cast<double>(expected) * tile_of(film.counts.size(), tile).area();
   }
   return sum;
+}
+
+std::uint64_t samples_in(const Film& film, const std::vector<int>& tiles) {
+  double sum = 0;  // exact below 2^53
+  for (const int tile : tiles) sum += cv::sum(film.counts(tile_of(film.counts.size(), tile)))[0];
+  return static_cast<std::uint64_t>(sum);
 }
 
 }  // namespace renderer

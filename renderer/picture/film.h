@@ -26,8 +26,9 @@ struct Film {
 
 Film empty_film(int width, int height);
 
-// The tiles into which a picture is cut, by rows; and the number of a pixel's tile among them.
+// The tiles into which a picture is cut, by rows; one of them; and the number of a pixel's tile among them.
 std::vector<cv::Rect> tiles_of(const cv::Size& picture);
+cv::Rect tile_of(const cv::Size& picture, int number);
 int tile_at(const cv::Size& picture, int column, int row);
 
 // The mean radiance, RGB; black where there is no sample.
@@ -57,7 +58,9 @@ std::vector<double> relative_errors_of_tiles(const Film& film);
 inline constexpr int kLeastJudged = 4 * kBatch;
 bool raise_goals(Film& film, int most_samples, double noise = 0);
 
-// The number of samples that the whole picture will have when it is finished, as far as the film can tell now.
-double expected_samples(const Film& film, int most_samples, double noise = 0);
+// The number of samples that these tiles will have when the picture is finished, as far as the film can tell now.
+double expected_samples(const Film& film, const std::vector<int>& tiles, int most_samples, double noise = 0);
+// The number that they have.
+std::uint64_t samples_in(const Film& film, const std::vector<int>& tiles);
 
 }  // namespace renderer

@@ -134,15 +134,16 @@ PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
 
 namespace {
 
-// Tiles that still have pixels below their goal.
-std::vector<cv::Rect> tiles_to_draw(const Film& film) {
-  std::vector<cv::Rect> tiles, all = tiles_of(film.counts.size());
-  for (std::size_t i = 0; i < all.size(); ++i) {
+// Those of the tiles that still have pixels below their goal.
+std::vector<cv::Rect> tiles_to_draw(const Film& film, const std::vector<int>& tiles) {
+  std::vector<cv::Rect> parts;
+  for (const int tile : tiles) {
+    const cv::Rect part = tile_of(film.counts.size(), tile);
     double least = 0;
-    cv::minMaxLoc(film.counts(all[i]), &least);
-    if (least < film.goals(static_cast<int>(i))) tiles.push_back(all[i]);
+    cv::minMaxLoc(film.counts(part), &least);
+    if (least < film.goals(tile)) parts.push_back(part);
   }
-  return tiles;
+  return parts;
 }
 
 void check_sizes(const Camera& camera, const RenderOptions& options, const Film& film) {
@@ -179,7 +180,8 @@ void PathTracer::Impl::add_samples(const PixelRays& pixel_rays, int column, int 
 bool PathTracer::refine(const Camera& camera, const RenderOptions& options, Film& film) const {
   check_sizes(camera, options, film);
   const int max_vertices = options.max_vertices > 0 ? options.max_vertices : kMostVertices;
-  const std::uint64_t before = samples_in(film);
+  const std::vector<int> tiles = tiles_in(options.share, film.goals.cols);
+  const std::uint64_t before = samples_in(film, tiles);
   std::atomic<std::uint64_t> samples{before}, all_traced{0};
   const auto draw = [&](const PixelRays& rays, int column, int row) {
     const int goal = film.goals(tile_at(film.counts.size(), column, row)), count = film.counts(row, column);
@@ -200,14 +202,18 @@ bool PathTracer::refine(const Camera& camera, const RenderOptions& options, Film
     return options.progress(shown);
   };
   const double asked_for = options.only.empty() ? 1 : cv::mean(options.only != 0)[0] / 255;
-  bool finished = false;
-  for (bool stopped = false; !stopped && !finished;) {
-    expected = std::max(1.0, asked_for * expected_samples(film, options.samples_per_pixel, options.noise));
-    stopped = !for_each_pixel(camera, tiles_to_draw(film), options.threads, draw, go_on);
-    finished = !stopped && !raise_goals(film, options.samples_per_pixel, options.noise);
+  const auto end_pass = [&] {
+    if (options.end_pass) return options.end_pass(film);
+    return raise_goals(film, options.samples_per_pixel, options.noise) ? PassEnd::next : PassEnd::finished;
+  };
+  PassEnd end = PassEnd::next;
+  while (end == PassEnd::next) {
+    expected = std::max(1.0, asked_for * expected_samples(film, tiles, options.samples_per_pixel, options.noise));
+    const bool drawn = for_each_pixel(camera, tiles_to_draw(film, tiles), options.threads, draw, go_on);
+    end = drawn ? end_pass() : PassEnd::stopped;
   }
-  if (options.statistics) *options.statistics = {samples_in(film) - before, all_traced};
-  return finished;
+  if (options.statistics) *options.statistics = {samples_in(film, tiles) - before, all_traced};
+  return end == PassEnd::finished;
 }
 
 cv::Mat3f PathTracer::render(const Camera& camera, const RenderOptions& options) const {

@@ -10,6 +10,7 @@
 
 #include "renderer/picture/camera.h"
 #include "renderer/picture/film.h"
+#include "renderer/picture/tile_share.h"
 #include "renderer/scene/scene.h"
 #include "renderer/trace/layers.h"
 
@@ -21,6 +22,9 @@ struct RenderStatistics {
   std::uint64_t rays = 0;     // traced for nearest hits and shadows, without camera rays that miss the scene's box
 };
 
+// What is to be done after a pass over the tiles.
+enum class PassEnd { next, finished, stopped };
+
 struct RenderOptions {
   int samples_per_pixel = 16;
   double noise = 0;  // above 0: a tile gets only the samples that bring its relative error (film.h) down to this
@@ -31,6 +35,10 @@ struct RenderOptions {
   // Called now and then from the calling thread with the finished fraction; returning false stops the rendering.
   std::function<bool(double)> progress{};
   RenderStatistics* statistics = nullptr;  // when given: written at the end
+  TileShare share{};                       // refine draws these tiles alone
+  // Called at the end of each pass in place of raise_goals (film.h), where others draw the other shares: it sets the
+  // goals of the next pass, or says that all have finished, or that this rendering is to stop.
+  std::function<PassEnd(Film&)> end_pass{};
 };
 
 // A scene committed to Embree, rendered as often as wanted.
@@ -46,7 +54,8 @@ class PathTracer {
   cv::Mat3f render(const Camera& camera, const RenderOptions& options) const;
 
   // Renders in passes over a film, which is empty_film() of the camera's size to begin with and holds a usable picture
-  // at any time. Returns true when the film has all samples, false when stopped by `progress`. Called again with the
+  // at any time. Returns true when the film (its share, see RenderOptions) has all samples, false when stopped by
+  // `progress` or `end_pass`. Called again with the
   // same scene, camera and options, it ends with the picture that render() gives, bit for bit. `statistics` count this
   // call alone. Errors: std::runtime_error when the film or `only` has another size.
   bool refine(const Camera& camera, const RenderOptions& options, Film& film) const;

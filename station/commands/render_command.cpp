@@ -18,14 +18,14 @@ struct RenderArguments {
 };
 
 // Renders into a folder where several pictures are to be made, or where the name has no ending.
-std::vector<RenderReport> render(const RenderArguments& arguments) {
+std::vector<RenderReport> render(const RenderArguments& arguments, RenderRanks& ranks) {
   RenderRequest request = arguments.request;
   request.noise = parse_noise(arguments.noise).value_or(0);
   request.progress = arguments.output.progress_style();
   const bool is_folder = !request.out.has_extension() || std::filesystem::is_directory(request.out);
-  if (arguments.scenes.size() > 1 || is_folder) return render_scenes(arguments.scenes, request);
+  if (arguments.scenes.size() > 1 || is_folder) return render_scenes(arguments.scenes, request, ranks);
   request.scene = arguments.scenes.front();
-  return {render_scene(request)};
+  return {render_scene(request, ranks)};
 }
 
 std::string description(const RenderArguments& arguments, const RenderReport& report) {
@@ -49,7 +49,8 @@ void print(const RenderArguments& arguments, const std::vector<RenderReport>& re
 void add_render_command(CLI::App& app) {
   auto arguments = std::make_shared<RenderArguments>();
   RenderRequest& request = arguments->request;
-  CLI::App* command = app.add_subcommand("render", "a scene of cloth to a picture");
+  CLI::App* command = app.add_subcommand(
+      "render", "a scene of cloth to a picture; by several processes where mpirun or srun starts them");
   or_ready("scenes", command->add_option("scene", arguments->scenes, "scene file or a ready one's name, or several"))
       ->required();
   command
@@ -63,7 +64,13 @@ void add_render_command(CLI::App& app) {
                    "reached (4096 when left out)")
       ->check([](const std::string& text) { return parse_noise(text) ? "" : "give 0.01% to 100%"; });
   command->add_option("--seed", request.seed, "another number gives another noise")->capture_default_str();
-  command->add_option("--threads", request.threads, "processor threads, 0 for all")->check(CLI::Range(0, 4096));
+  command->add_option("--threads", request.threads, "processor threads of each process, 0 for all")
+      ->check(CLI::Range(0, 4096));
+  command
+      ->add_option("--checkpoint-every", request.checkpoint_every_s,
+                   "seconds after which what there is is stored, so that even a pulled plug loses no more")
+      ->check(CLI::Range(0.05, 1e6))
+      ->capture_default_str();
   command->add_option("--exposure", request.brightness, "PNG: radiance times this is shown")
       ->check(CLI::PositiveNumber);
   command->add_flag("--png", request.png, "a PNG beside the EXR");
@@ -77,7 +84,11 @@ void add_render_command(CLI::App& app) {
   command->add_flag("--time", arguments->time, "print how long it took, and how noisy the picture is");
   command->add_flag("--memory", arguments->memory, "print what the scene and the picture take of the memory");
   arguments->output.add_to(*command);
-  command->callback([arguments] { print(*arguments, render(*arguments)); });
+  command->callback([arguments] {
+    RenderRanks ranks = RenderRanks::started();
+    const std::vector<RenderReport> reports = render(*arguments, ranks);
+    if (ranks.first()) print(*arguments, reports);
+  });
 }
 
 }  // namespace station

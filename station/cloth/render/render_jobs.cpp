@@ -32,13 +32,13 @@ struct RenderJob {
   double build_s = 0;
 };
 
-RenderJob prepared(RenderRequest request) {
+RenderJob prepared(RenderRequest request, RenderRanks& ranks) {
   const auto start = std::chrono::steady_clock::now();
   RenderJob job;
   if (fs::exists(request.scene)) job.scene_sha256 = sha256_of_scene(request.scene);  // read_scene refuses it otherwise
   const SceneFile scene = read_scene(request.scene);
-  if (!is_kept(request, scene)) {
-    ProgressDisplay progress(request.task, request.progress);
+  if (!ranks.of_first(ranks.first() && is_kept(request, scene))) {
+    ProgressDisplay progress(request.task, ranks.first() ? request.progress : ProgressStyle::quiet);
     job.cloths = build_cloths(scene, progress);
   }
   job.request = std::move(request);
@@ -48,7 +48,8 @@ RenderJob prepared(RenderRequest request) {
 
 }  // namespace
 
-std::vector<RenderReport> render_scenes(const std::vector<fs::path>& scenes, const RenderRequest& common) {
+std::vector<RenderReport> render_scenes(const std::vector<fs::path>& scenes, const RenderRequest& common,
+                                        RenderRanks& ranks) {
   if (common.out.extension() == ".exr" || common.out.extension() == ".png")
     throw std::runtime_error("cannot write " + std::to_string(scenes.size()) + " pictures to " + common.out.string() +
                              "; give --out the name of a folder");
@@ -63,13 +64,13 @@ std::vector<RenderReport> render_scenes(const std::vector<fs::path>& scenes, con
     request.keep_finished = !common.fresh;
     request.task = "render " + scene.stem().string() + " (" + std::to_string(jobs.size() + 1) + " of " +
                    std::to_string(scenes.size()) + ")";
-    jobs.push_back(prepared(std::move(request)));
+    jobs.push_back(prepared(std::move(request), ranks));
   }
-  make_folder(common.out);
+  if (ranks.first()) make_folder(common.out);
   std::vector<RenderReport> reports;
   for (RenderJob& job : jobs) {
     if (sha256_of_scene(job.request.scene) != job.scene_sha256) job.cloths.clear();  // built again as it is now
-    reports.push_back(render_scene(job.request, std::move(job.cloths)));
+    reports.push_back(render_scene(job.request, ranks, std::move(job.cloths)));
     if (!reports.back().kept) reports.back().build_s += job.build_s;
     if (interrupted() && reports.size() < scenes.size())
       throw std::runtime_error("rendering was stopped on request after " + job.request.out.string() +

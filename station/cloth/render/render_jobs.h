@@ -13,6 +13,7 @@ namespace station {
 // interrupted goes on from its checkpoint, so that the same command again does what is left. Errors: those of
 // render_scene; std::runtime_error for two scenes of one name and for an `out` that ends as a picture. All scenes are
 // read, and the cloths of those that are not kept built, before the first is rendered.
-std::vector<RenderReport> render_scenes(const std::vector<std::filesystem::path>& scenes, const RenderRequest& common);
+std::vector<RenderReport> render_scenes(const std::vector<std::filesystem::path>& scenes, const RenderRequest& common,
+                                        RenderRanks& ranks);
 
 }  // namespace station

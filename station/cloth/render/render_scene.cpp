@@ -84,6 +84,7 @@ bool is_finished(const RenderRequest& request, const RenderIdentity& identity) {
 }
 
 struct Rendering {
+  RenderRanks& ranks;
   const RenderRequest& request;
   const SceneFile& scene;
   const std::vector<BuiltCloth>& cloths;
@@ -132,7 +133,7 @@ void write_denoised(const Rendering& rendering, const renderer::PictureLayers& l
 
 void write_pictures(const Rendering& rendering, const renderer::PathTracer& tracer, const renderer::Film& film,
                     RenderReport& report) {
-  const auto& [request, scene, cloths, identity, given] = rendering;
+  const auto& [ranks, request, scene, cloths, identity, given] = rendering;
   const cv::Mat3f image = renderer::mean_radiance(film);
   const bool is_exr = request.out.extension() == ".exr";
   std::optional<renderer::PictureLayers> layers;
@@ -154,18 +155,29 @@ void write_pictures(const Rendering& rendering, const renderer::PathTracer& trac
 // written into it, or the checkpoint where that fails.
 class Room {
  public:
-  Room(const RenderRequest& request, const renderer::Film& film)
-      : held_(reserve_space(request.out.parent_path(), renderer::bytes_of(film) + kHead)) {}
+  Room(const RenderRequest& request, const renderer::Film& film, const RenderRanks& ranks)
+      : held_(reserve_space(request.out.parent_path(), room_of(film, ranks) + kHead)) {}
   void release() { held_ = OpenFile(); }
 
  private:
   static constexpr std::size_t kHead = std::size_t{64} << 10U;  // of a checkpoint, at most
+  static std::size_t room_of(const renderer::Film& film, const RenderRanks& ranks) {
+    const std::size_t all = renderer::bytes_of(film), goals = film.goals.total() * film.goals.elemSize();
+    if (ranks.alone()) return all;
+    const std::size_t part =
+        goals + sizeof(renderer::TileRecord) * renderer::tiles_in(ranks.share(), film.goals.cols).size();
+    return ranks.first() ? std::max(all, part) : part;  // the first writes the picture
+  }
   OpenFile held_;
 };
 
-// A checkpoint to go on from.
+// A checkpoint to go on from; one of several ranks stores its part of it.
 void keep(const Rendering& rendering, const renderer::Film& film) {
-  store_checkpoint(checkpoint_of(rendering.request.out), rendering.identity, film);
+  const renderer::TileShare& share = rendering.ranks.share();
+  if (rendering.ranks.alone())
+    store_checkpoint(checkpoint_of(rendering.request.out), rendering.identity, film);
+  else
+    store_part(part_of(rendering.request.out, share), rendering.identity, film, share);
 }
 
 // A checkpoint to go on from, and a picture of it to look at. Where the disk is full the rendering goes on without one
@@ -173,6 +185,7 @@ void keep(const Rendering& rendering, const renderer::Film& film) {
 void leave_behind(const Rendering& rendering, Room& room, const renderer::Film& film, ProgressDisplay& progress) {
   try {
     keep(rendering, film);
+    if (!rendering.ranks.first()) return;
     const cv::Mat3f image = renderer::mean_radiance(film);
     renderer::write_png(preview_of(rendering.request.out),
                         display(image, rendering.exposure(image), rendering.scene.linear_srgb_from_camera));
@@ -194,7 +207,7 @@ void finish(const Rendering& rendering, const renderer::PathTracer& tracer, Room
   try {
     write_pictures(rendering, tracer, film, report);
   } catch (const std::runtime_error& problem) {
-    keep(rendering, film);
+    store_checkpoint(checkpoint_of(rendering.request.out), rendering.identity, film);
     throw std::runtime_error(std::string(problem.what()) +
                              "; nothing is lost: " + checkpoint_of(rendering.request.out).string() +
                              " has the whole rendering, and the same command then writes the picture");
@@ -205,17 +218,31 @@ void remove_what_was_left(const std::filesystem::path& out) {
   std::error_code ignored;
   std::filesystem::remove(checkpoint_of(out), ignored);
   std::filesystem::remove(preview_of(out), ignored);
+  remove_parts(out);
 }
 
-renderer::Film film_to_begin_with(const RenderRequest& request, const RenderIdentity& identity, const cv::Size& size) {
-  if (request.fresh) remove_what_was_left(request.out);
-  try {
-    if (const auto film = read_checkpoint(checkpoint_of(request.out), identity, size)) return *film;
-  } catch (const std::runtime_error&) {
-    if (!request.only_this) throw;
-    remove_what_was_left(request.out);
+// What is there of the picture already: read by the first rank, for all. Parts are made one checkpoint, because who
+// drew them may not be there this time.
+renderer::Film film_to_begin_with(const RenderRequest& request, const RenderIdentity& identity, const cv::Size& size,
+                                  RenderRanks& ranks) {
+  std::optional<renderer::Film> film;
+  if (ranks.first()) {
+    if (request.fresh) remove_what_was_left(request.out);
+    try {
+      film = read_checkpoint(request.out, identity, size);
+    } catch (const std::runtime_error&) {
+      if (!request.only_this) throw;
+      remove_what_was_left(request.out);
+    }
+    if (film && has_parts(request.out)) {
+      store_checkpoint(checkpoint_of(request.out), identity, *film);
+      remove_parts(request.out);
+    }
   }
-  return renderer::empty_film(size.width, size.height);
+  const bool goes_on = ranks.of_first(film.has_value());
+  if (!film) film = renderer::empty_film(size.width, size.height);
+  if (goes_on) ranks.of_first(*film);
+  return *film;
 }
 
 // Goes on with the film until it is finished. Errors: as render_scene.
@@ -223,23 +250,32 @@ renderer::RenderStatistics gather(const Rendering& rendering, const renderer::Pa
                                   RenderProgress& progress, renderer::Film& film) {
   Clock::time_point stored = Clock::now();
   double finished = 0;
+  RenderRanks& ranks = rendering.ranks;
+  const RenderIdentity& identity = rendering.identity;
   const auto go_on = [&](double fraction) {
     finished = fraction;
-    progress.show(fraction);
+    progress.show(ranks.tell(fraction));
     return !interrupted() && seconds_since(stored) < rendering.request.checkpoint_every_s;
   };
+  const auto end_pass = [&](renderer::Film& all) {
+    return ranks.end_pass(all, identity.samples_per_pixel, identity.noise, [&] { return go_on(finished); });
+  };
   renderer::RenderStatistics sum, part;
-  const renderer::RenderOptions options{.samples_per_pixel = rendering.identity.samples_per_pixel,
-                                        .noise = rendering.identity.noise,
-                                        .seed = rendering.identity.seed,
-                                        .threads = rendering.request.threads,
+  const renderer::RenderOptions options{.samples_per_pixel = identity.samples_per_pixel,
+                                        .noise = identity.noise,
+                                        .seed = identity.seed,
+                                        .threads = ranks.threads(rendering.request.threads),
                                         .progress = go_on,
-                                        .statistics = &part};
+                                        .statistics = &part,
+                                        .share = ranks.share(),
+                                        .end_pass = end_pass};
   for (bool all = false; !all;) {
     all = tracer.refine(rendering.scene.camera, options, film);
     sum.samples += part.samples, sum.rays += part.rays;
     if (all) break;
     leave_behind(rendering, room, film, progress.display());
+    if (interrupted()) ranks.wait_for_parts();
+    if (interrupted() && !ranks.first()) throw EndsWithOthers();
     if (interrupted())
       throw std::runtime_error("rendering was stopped on request at " +
                                std::to_string(static_cast<int>(100 * finished)) +
@@ -247,7 +283,20 @@ renderer::RenderStatistics gather(const Rendering& rendering, const renderer::Pa
                                preview_of(rendering.request.out).string() + " shows what is there");
     stored = Clock::now();
   }
-  return sum;
+  return ranks.sum_of(sum);
+}
+
+// What weaving has computed, as bytes: computers with other libraries may round otherwise.
+std::string numbers_of(const std::vector<BuiltCloth>& cloths) {
+  std::string bytes;
+  const auto append = [&bytes](const std::vector<Eigen::Vector3d>& points) {
+    bytes.append(reinterpret_cast<const char*>(points.data()), points.size() * sizeof(Eigen::Vector3d));
+  };
+  for (const auto& [patch, shape] : cloths) {
+    for (const renderer::Yarn& yarn : patch.yarns) append(yarn.control_points);
+    if (const auto* garment = std::get_if<renderer::MeshShape>(&shape)) append(garment->mesh->vertices);
+  }
+  return bytes;
 }
 
 RenderIdentity identity_of(const RenderRequest& request, const SceneFile& scene) {
@@ -300,8 +349,13 @@ bool is_kept(const RenderRequest& request, const SceneFile& scene) {
 }
 
 RenderReport render_scene(const RenderRequest& request, std::vector<BuiltCloth> cloths) {
+  RenderRanks alone;
+  return render_scene(request, alone, std::move(cloths));
+}
+
+RenderReport render_scene(const RenderRequest& request, RenderRanks& ranks, std::vector<BuiltCloth> cloths) {
   watch_interrupts();
-  check_destination(request);
+  if (ranks.first()) check_destination(request);
   const Clock::time_point start = Clock::now();
   const SceneFile scene = read_scene(request.scene);
   const RenderIdentity identity = identity_of(request, scene);
@@ -309,12 +363,15 @@ RenderReport render_scene(const RenderRequest& request, std::vector<BuiltCloth> 
     throw std::runtime_error("cannot denoise " + request.out.string() + " from " +
                              std::to_string(identity.samples_per_pixel) +
                              " samples per pixel, whose noise is not known; give --spp 32 or more");
-  if (request.keep_finished && is_finished(request, identity)) return {.image = request.out.string(), .kept = true};
+  if (ranks.of_first(request.keep_finished && ranks.first() && is_finished(request, identity)))
+    return {.image = request.out.string(), .kept = true};
   const std::optional<Exposure> exposure = given_exposure(request, scene);
-  renderer::Film film = film_to_begin_with(request, identity, {scene.camera.width, scene.camera.height});
-  Room room(request, film);
-  RenderProgress progress(request.task, request.progress);
+  ranks.must_agree(to_json(identity).dump(), "scene");
+  renderer::Film film = film_to_begin_with(request, identity, {scene.camera.width, scene.camera.height}, ranks);
+  Room room(request, film, ranks);
+  RenderProgress progress(request.task, ranks.first() ? request.progress : ProgressStyle::quiet);
   if (cloths.empty()) cloths = build_cloths(scene, progress.display());
+  ranks.must_agree(numbers_of(cloths), "cloth woven from the same draft");
   const renderer::PathTracer tracer(build_scene(scene, cloths));
   RenderReport report{.image = request.out.string(),
                       .width = scene.camera.width,
@@ -322,10 +379,11 @@ RenderReport render_scene(const RenderRequest& request, std::vector<BuiltCloth> 
                       .samples_per_pixel = identity.samples_per_pixel,
                       .build_s = seconds_since(start),
                       .samples_before = renderer::samples_in(film)};
-  const Rendering rendering{request, scene, cloths, identity, exposure};
+  const Rendering rendering{ranks, request, scene, cloths, identity, exposure};
   const Clock::time_point render_start = Clock::now();
   const renderer::RenderStatistics statistics = gather(rendering, tracer, room, progress, film);
   report.render_s = seconds_since(render_start);
+  if (!ranks.first()) return report;
   report.samples = statistics.samples;
   report.rays = statistics.rays;
   report_noise(film, request.noise, report);

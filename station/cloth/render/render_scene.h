@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "station/cloth/render/ranks.h"
 #include "station/cloth/render/render_memory.h"
 #include "station/output/progress.h"
 
@@ -53,6 +54,8 @@ struct RenderReport {
 // std::runtime_error with one line: a bad scene (scene_file.h, build_scene.h), an ending that is neither, a file that
 // cannot be written, another rendering's checkpoint, stopped.
 RenderReport render_scene(const RenderRequest& request, std::vector<BuiltCloth> cloths = {});
+// The same by several processes; the first reports and writes the picture, the others report nothing of use.
+RenderReport render_scene(const RenderRequest& request, RenderRanks& ranks, std::vector<BuiltCloth> cloths = {});
 
 // Whether the picture is there already and render_scene would keep it.
 bool is_kept(const RenderRequest& request, const SceneFile& scene);

@@ -32,6 +32,44 @@ bool same(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
 
+// As several processes do that hand over their tiles after each pass.
+TEST(FilmTest, SharesDrawnApartAreTheSamePictureBitForBit) {
+  const PathTracer tracer(lit_floor());
+  const Camera camera = camera_above(100, 70);
+  constexpr int kShares = 3, kSamples = 100;
+  constexpr double kNoise = 0.05;
+  Film whole = empty_film(camera.width, camera.height);
+  ASSERT_TRUE(tracer.refine(camera, {.samples_per_pixel = kSamples, .noise = kNoise, .seed = 3}, whole));
+  std::vector<Film> films;
+  for (int i = 0; i < kShares; ++i) films.push_back(empty_film(camera.width, camera.height));
+  std::set<int> drawn;
+  for (bool more = true; more;) {
+    for (int i = 0; i < kShares; ++i) {
+      const TileShare share{i, kShares};
+      RenderStatistics statistics;
+      const auto stop = [](Film&) { return PassEnd::stopped; };
+      EXPECT_FALSE(tracer.refine(camera,
+                                 {.samples_per_pixel = kSamples,
+                                  .noise = kNoise,
+                                  .seed = 3,
+                                  .statistics = &statistics,
+                                  .share = share,
+                                  .end_pass = stop},
+                                 films[static_cast<std::size_t>(i)]));
+      for (const int tile : tiles_in(share, whole.goals.cols)) {
+        put(record_of(films[static_cast<std::size_t>(i)], tile), films[0]);
+        drawn.insert(tile);
+      }
+    }
+    more = raise_goals(films[0], kSamples, kNoise);
+    for (Film& film : films) films[0].goals.copyTo(film.goals);
+  }
+  EXPECT_EQ(static_cast<int>(drawn.size()), whole.goals.cols);
+  EXPECT_TRUE(same(films[0].sums, whole.sums));
+  EXPECT_TRUE(same(films[0].squares, whole.squares));
+  EXPECT_TRUE(same(films[0].counts, whole.counts));
+}
+
 TEST(FilmTest, InterruptedAnywhereItEndsWithTheSamePictureBitForBit) {
   const PathTracer tracer(lit_floor());
   const Camera camera = camera_above();

@@ -12,26 +12,13 @@
 #include "station/documents/disk/sha256.h"
 #include "station/documents/reader.h"
 #include "tests/places.h"
+#include "tests/station/cloth/render/small_scene.h"
 #include "tests/station/commands/program.h"
 
 namespace station_test {
 namespace {
 
 using nlohmann::json;
-
-// A ready scene in few pixels, with its files named absolutely.
-json small_scene(const std::string& name) {
-  json scene = station::read_json_file(std::string(DATA_DIR) + "/scenes/" + name + ".json");
-  for (json& thread : scene["threads"]) thread = std::string(DATA_DIR) + "/scenes/" + thread.get<std::string>();
-  for (json& cloth : scene["cloths"])
-    cloth["draft"] = std::string(DATA_DIR) + "/scenes/" + cloth["draft"].get<std::string>();
-  const int divisor = 12;
-  scene["camera"]["width_px"] = scene["camera"]["width_px"].get<int>() / divisor;
-  scene["camera"]["height_px"] = scene["camera"]["height_px"].get<int>() / divisor;
-  scene["camera"]["focal_length_px"] = scene["camera"]["focal_length_px"].get<double>() / divisor;
-  scene["samples_per_pixel"] = 2;
-  return scene;
-}
 
 // Reads progress until it says more than that it begins: at its first line nothing may have been drawn yet.
 const std::string kUntilItGoesOn = "while read said; do case $said in *' 0/100 %') ;; *) break ;; esac; done";
