@@ -6,6 +6,7 @@
 
 namespace station {
 
+void add_batch_command(CLI::App& app);
 void add_calibrate_command(CLI::App& app);
 void add_camera_process_command(CLI::App& app);
 void add_capture_command(CLI::App& app);

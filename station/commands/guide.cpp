@@ -87,6 +87,12 @@ constexpr Guide kGuides[] = {
      "recover --rig rig.json --spool DATA/spools/silk_blue.json --thread DATA/threads/silk_blue.json --draws 0 --spp 8 "
      "--paths 64 256"},
 
+    {"batch", "Many at once", "batch DATA/batches/ready_threads.json --out batch"},
+    {"batch status", kParts, "batch status batch"},
+    {"batch report", kParts, "batch report batch"},
+    {"batch cancel", kParts, "batch cancel batch"},
+    {"batch task", kParts, "batch task batch --step tables --item 0"},
+
     {"upgrade", "Use this program", "upgrade session"},
     {"completion", "Use this program", "completion bash"},
 };

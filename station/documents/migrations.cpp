@@ -49,18 +49,33 @@ using Step = json (*)(json);
 
 // Each kind with its steps, the first from version 1.
 const std::map<std::string, std::vector<Step>>& kinds() {
-  static const std::map<std::string, std::vector<Step>> all{{"board", {}},          {"bundle", {}},
-                                                            {"calibration", {}},    {"calibration_pictures", {}},
-                                                            {"checkpoint", {}},     {"draft", {}},
-                                                            {"fabric", {}},         {"faults", {}},
-                                                            {"fiber", {}},          {"import", {}},
-                                                            {"lens", {}},           {"manifest", {}},
-                                                            {"patch", {}},          {"plan", {}},
-                                                            {"platform-place", {}}, {"rig", {rig_1_to_2}},
-                                                            {"sample", {}},         {"scene", {}},
-                                                            {"session", {}},        {"spool", {}},
-                                                            {"thread", {}},         {"turntable-settings", {}},
-                                                            {"views", {}},          {"yarn", {}}};
+  static const std::map<std::string, std::vector<Step>> all{{"batch", {}},
+                                                            {"batch-items", {}},
+                                                            {"batch-task", {}},
+                                                            {"board", {}},
+                                                            {"bundle", {}},
+                                                            {"calibration", {}},
+                                                            {"calibration_pictures", {}},
+                                                            {"checkpoint", {}},
+                                                            {"draft", {}},
+                                                            {"fabric", {}},
+                                                            {"faults", {}},
+                                                            {"fiber", {}},
+                                                            {"import", {}},
+                                                            {"lens", {}},
+                                                            {"manifest", {}},
+                                                            {"patch", {}},
+                                                            {"plan", {}},
+                                                            {"platform-place", {}},
+                                                            {"rig", {rig_1_to_2}},
+                                                            {"sample", {}},
+                                                            {"scene", {}},
+                                                            {"session", {}},
+                                                            {"spool", {}},
+                                                            {"thread", {}},
+                                                            {"turntable-settings", {}},
+                                                            {"views", {}},
+                                                            {"yarn", {}}};
   return all;
 }
 

@@ -12,33 +12,44 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 // By name as written, so that a scene may move with its folder.
-using FileHashes = std::map<std::string, std::string>;
+using FilesByName = std::map<std::string, fs::path>;
 
-void add_file(const fs::path& file, const std::string& name, FileHashes& hashes);
+void add_file(const fs::path& file, const std::string& name, FilesByName& files);
 
-void add_named_files(const json& document, const fs::path& folder, FileHashes& hashes) {
+void add_named_files(const json& document, const fs::path& folder, FilesByName& files) {
   if (document.is_structured()) {
-    for (const json& part : document) add_named_files(part, folder, hashes);
+    for (const json& part : document) add_named_files(part, folder, files);
   } else if (document.is_string()) {
     const auto& name = document.get_ref<const std::string&>();
     std::error_code not_a_name;
-    if (fs::is_regular_file(folder / name, not_a_name)) add_file(folder / name, name, hashes);
+    if (fs::is_regular_file(folder / name, not_a_name)) add_file(folder / name, name, files);
   }
 }
 
-void add_file(const fs::path& file, const std::string& name, FileHashes& hashes) {
-  if (!hashes.emplace(name, sha256_of_file(file)).second) return;
+void add_file(const fs::path& file, const std::string& name, FilesByName& files) {
+  if (!files.emplace(name, file).second) return;
   if (file.extension() == ".json" || file.extension() == ".gltf")
-    add_named_files(read_json_file(file), file.parent_path(), hashes);
+    add_named_files(read_json_file(file), file.parent_path(), files);
+}
+
+FilesByName named_files(const fs::path& scene) {
+  FilesByName files{{"", scene}};
+  add_named_files(read_json_file(scene), scene.parent_path(), files);
+  return files;
 }
 
 }  // namespace
 
 std::string sha256_of_scene(const fs::path& scene) {
-  FileHashes hashes;
-  hashes.emplace("", sha256_of_file(scene));
-  add_named_files(read_json_file(scene), scene.parent_path(), hashes);
+  std::map<std::string, std::string> hashes;
+  for (const auto& [name, file] : named_files(scene)) hashes.emplace(name, sha256_of_file(file));
   return sha256_hex(json(hashes).dump());
+}
+
+std::vector<fs::path> files_of_scene(const fs::path& scene) {
+  std::vector<fs::path> files;
+  for (const auto& [name, file] : named_files(scene)) files.push_back(file);
+  return files;
 }
 
 json to_json(const RenderIdentity& identity) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace station {
 
@@ -20,6 +21,9 @@ struct RenderIdentity {
 // The SHA-256 over the scene file and the files that its texts name, relative to its folder, and so on in the documents
 // (.json, .gltf) among them. Errors: std::runtime_error that names a file which cannot be read.
 std::string sha256_of_scene(const std::filesystem::path& scene);
+
+// Those files, the scene's own first.
+std::vector<std::filesystem::path> files_of_scene(const std::filesystem::path& scene);
 
 nlohmann::json to_json(const RenderIdentity& identity);
 

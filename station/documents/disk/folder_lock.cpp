@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "station/documents/disk/stored_file.h"
 
@@ -20,12 +21,6 @@ namespace {
 
 constexpr int kWidth = 20;  // of any process number
 
-std::string holder_of(const std::filesystem::path& file) {
-  std::string process;
-  std::ifstream(file) >> process;
-  return process.empty() ? "another process" : "process " + process;
-}
-
 }  // namespace
 
 bool folder_in_use(const std::filesystem::path& folder) {
@@ -33,14 +28,13 @@ bool folder_in_use(const std::filesystem::path& folder) {
   return file.descriptor() >= 0 && ::flock(file.descriptor(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
 
-OpenFile lock_folder(const std::filesystem::path& folder, FileSystem& file_system) {
+std::optional<OpenFile> try_lock_folder(const std::filesystem::path& folder, FileSystem& file_system) {
   const std::filesystem::path path = folder / kLockFile;
   try {
     OpenFile file = file_system.open(path, O_RDWR | O_CREAT);
     if (::flock(file.descriptor(), LOCK_EX | LOCK_NB) != 0) {
       if (errno != EWOULDBLOCK) throw std::system_error(errno, std::generic_category());
-      throw std::runtime_error("the session '" + folder.string() + "' is in use by " + holder_of(path) +
-                               "; wait until it ends, or end it");
+      return std::nullopt;
     }
     // The number always has the same length, so that it replaces the one before without a moment in which the file is
     // empty.
@@ -52,6 +46,20 @@ OpenFile lock_folder(const std::filesystem::path& folder, FileSystem& file_syste
   } catch (const std::system_error& error) {
     throw std::runtime_error(write_problem(path, error.code()));
   }
+}
+
+OpenFile lock_folder(const std::filesystem::path& folder, FileSystem& file_system) {
+  if (std::optional<OpenFile> file = try_lock_folder(folder, file_system)) return std::move(*file);
+  const int holder = holder_of_lock(folder);
+  throw std::runtime_error("the session '" + folder.string() + "' is in use by " +
+                           (holder > 0 ? "process " + std::to_string(holder) : "another process") +
+                           "; wait until it ends, or end it");
+}
+
+int holder_of_lock(const std::filesystem::path& folder) {
+  int process = 0;
+  std::ifstream(folder / kLockFile) >> process;
+  return process;
 }
 
 }  // namespace station

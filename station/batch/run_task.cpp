@@ -1,0 +1,148 @@
+#include "station/batch/run_task.h"
+
+#include <sched.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+
+#include "rig/devices/clock.h"
+#include "station/batch/task_record.h"
+#include "station/documents/disk/folder_lock.h"
+#include "station/documents/disk/sha256.h"
+#include "station/documents/disk/stored_file.h"
+#include "station/documents/session_file.h"
+#include "station/output/child_process.h"
+#include "station/output/interrupt.h"
+
+namespace station {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr auto kTaskLooks = std::chrono::milliseconds(20), kBetweenTries = std::chrono::milliseconds(500);
+
+std::runtime_error stop_of(const BatchTask& task) {
+  return std::runtime_error(name_of(task) + " was stopped on request; the same batch goes on with it");
+}
+
+// Threads that are started later, by us and by the command, have the same.
+void use_cores(const std::vector<int>& cores) {
+  if (cores.empty()) return;
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  for (const int core : cores) CPU_SET(static_cast<std::size_t>(core), &set);
+  sched_setaffinity(0, sizeof set, &set);
+}
+
+OpenFile locked(const fs::path& folder, const BatchTask& task) {
+  FileSystem disk;
+  for (;;) {
+    if (std::optional<OpenFile> lock = try_lock_folder(folder, disk)) return std::move(*lock);
+    if (interrupted()) throw stop_of(task);
+    std::this_thread::sleep_for(kBetweenTries);
+  }
+}
+
+void check_needs(const BatchWork& work, const BatchTask& task) {
+  for (const BatchTask& need : needs_of(work, task)) {
+    while (folder_in_use(task_folder(work, need))) {  // by somebody whom nobody knows of, such as a process whose
+      if (interrupted()) throw stop_of(task);         // computer was given up
+      std::this_thread::sleep_for(kBetweenTries);
+    }
+    const std::optional<TaskRecord> record = read_record(task_folder(work, need));
+    if (record && record->done) continue;
+    throw std::runtime_error(name_of(task) + " needs " + name_of(need) + ", which " +
+                             (record ? "failed: " + record->problem : "is not done") +
+                             "; put that right and run the batch again");
+  }
+}
+
+// A folder or file that an attempt with other inputs has left. Where they are the same, its command goes on with it, if
+// it can.
+void clear_result(const BatchWork& work, const BatchTask& task, bool same_inputs) {
+  const fs::path result = result_of(work, task);
+  if (result.empty()) return;
+  std::error_code ignored;
+  if (!same_inputs || task.step->command == "export") fs::remove_all(result, ignored);
+  make_folder(result.parent_path());
+}
+
+std::string host() {
+  std::array<char, 256> name{};
+  gethostname(name.data(), name.size() - 1);
+  return name.data();
+}
+
+std::string job_of_slurm() {
+  const char* job = std::getenv("SLURM_JOB_ID");
+  return job ? job : "";
+}
+
+// Runs the command to its end; after ctrl-C it is asked to stop, as often as we are.
+EndedProcess run(const BatchWork& work, const BatchTask& task, const fs::path& folder, const OpenFile& lock) {
+  std::vector<std::string> words = arguments_of(work, task);
+  words.insert(words.begin(), kOwnProgram);
+  // Where this process is killed, nobody else begins while the command is still writing.
+  ChildProcess process(words, log_of(folder), work.plan.folder, lock.descriptor());
+  for (int told = 0;;) {
+    if (const auto ended = process.ended()) return *ended;
+    for (; told < interrupts(); ++told) process.signal(SIGINT);
+    std::this_thread::sleep_for(kTaskLooks);
+  }
+}
+
+}  // namespace
+
+TaskOutcome run_task(const TaskRequest& request) {
+  watch_interrupts(100);
+  use_cores(request.cores);
+  const BatchWork work = read_batch_work(request.folder);
+  const BatchTask task = task_named(work, request.step, request.item);
+  const fs::path folder = task_folder(work, task);
+  make_folder(folder.parent_path().parent_path());
+  make_folder(folder.parent_path());
+  make_folder(folder);
+  const OpenFile lock = locked(folder, task);
+  check_needs(work, task);
+  const std::optional<TaskRecord> last = read_record(folder);
+  if (last && is_up_to_date(work, task, *last)) return TaskOutcome::kept;
+
+  TaskRecord record{.arguments = arguments_of(work, task), .software = software_version(), .host = host()};
+  record.inputs = stamps_of(inputs_of(work, task), last ? last->inputs : FileStamps{});
+  std::string content = nlohmann::json(record.arguments).dump();
+  for (const auto& [file, stamp] : record.inputs) content += stamp.sha256;
+  const std::optional<TaskBegun> before = read_begun(folder);
+  const TaskBegun begun{.deaths = before ? before->deaths + (before->stopped ? 0 : 1) : 0,
+                        .inputs_hash = sha256_hex(content),
+                        .host = record.host,
+                        .job = job_of_slurm()};
+  clear_result(work, task, before && before->inputs_hash == begun.inputs_hash);
+  write_begun(folder, begun);
+  remove_record(folder);
+  const EndedProcess ended = run(work, task, folder, lock);
+  if (interrupted() && ended.status != 0) {
+    TaskBegun again = begun;
+    again.stopped = true;
+    write_begun(folder, again);
+    throw stop_of(task);
+  }
+  record.seconds = ended.seconds, record.processor_s = ended.processor_s, record.peak_mib = ended.peak_mib;
+  record.ended_utc = rig::SystemClock().utc();
+  record.done = ended.status == 0;
+  if (record.done) {
+    record.outputs = stamps_of(outputs_of(work, task));
+  } else {
+    record.problem = last_words(log_of(folder));
+    if (record.problem.empty()) record.problem = "it ended with status " + std::to_string(ended.status);
+  }
+  write_record(folder, record);
+  remove_begun(folder);
+  return record.done ? TaskOutcome::done : TaskOutcome::failed;
+}
+
+}  // namespace station

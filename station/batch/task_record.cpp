@@ -1,0 +1,119 @@
+#include "station/batch/task_record.h"
+
+#include <fstream>
+
+#include "station/documents/migrations.h"
+#include "station/documents/reader.h"
+#include "station/documents/session_file.h"
+
+namespace station {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* kRecord = "batch-task";
+
+fs::path record_of(const fs::path& task_folder) {
+  return task_folder / "record.json";
+}
+fs::path begun_of(const fs::path& task_folder) {
+  return task_folder / "begun.json";
+}
+
+}  // namespace
+
+std::optional<TaskRecord> read_record(const fs::path& task_folder) {
+  const fs::path file = record_of(task_folder);
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return std::nullopt;
+  const json document = read_json_file(file);
+  ObjectReader reader(document, file.string(), kRecord);
+  TaskRecord record{.done = reader.choice("ended", {"well", "badly"}) == "well",
+                    .problem = reader.text("problem"),
+                    .arguments = reader.raw("arguments").get<std::vector<std::string>>(),
+                    .software = reader.text("software"),
+                    .inputs = parse_stamps(reader.raw("inputs")),
+                    .outputs = parse_stamps(reader.raw("outputs"))};
+  constexpr double kMost = 1e12;
+  record.seconds = reader.number("seconds", 0, kMost);
+  record.processor_s = reader.number("processor_s", 0, kMost);
+  record.peak_mib = reader.number("peak_mib", 0, kMost);
+  record.host = reader.text("host");
+  record.ended_utc = reader.text("ended_utc");
+  reader.finish();
+  return record;
+}
+
+void write_record(const fs::path& task_folder, const TaskRecord& record) {
+  write_json_file(record_of(task_folder), {{"format", std::string("threadstation/") + kRecord},
+                                           {"version", current_version(kRecord)},
+                                           {"ended", record.done ? "well" : "badly"},
+                                           {"problem", record.problem},
+                                           {"arguments", record.arguments},
+                                           {"software", record.software},
+                                           {"inputs", to_json(record.inputs)},
+                                           {"outputs", to_json(record.outputs)},
+                                           {"seconds", record.seconds},
+                                           {"processor_s", record.processor_s},
+                                           {"peak_mib", record.peak_mib},
+                                           {"host", record.host},
+                                           {"ended_utc", record.ended_utc}});
+}
+
+void remove_record(const fs::path& task_folder) {
+  std::error_code ignored;
+  fs::remove(record_of(task_folder), ignored);
+}
+
+std::optional<TaskBegun> read_begun(const fs::path& task_folder) {
+  std::error_code ignored;
+  if (!fs::exists(begun_of(task_folder), ignored)) return std::nullopt;
+  const json document = read_json_file(begun_of(task_folder));
+  return TaskBegun{.deaths = document.value("deaths", 0),
+                   .stopped = document.value("stopped", false),
+                   .inputs_hash = document.value("inputs_hash", ""),
+                   .host = document.value("host", ""),
+                   .job = document.value("job", "")};
+}
+
+void write_begun(const fs::path& task_folder, const TaskBegun& begun) {
+  write_json_file(begun_of(task_folder), {{"deaths", begun.deaths},
+                                          {"stopped", begun.stopped},
+                                          {"inputs_hash", begun.inputs_hash},
+                                          {"host", begun.host},
+                                          {"job", begun.job}});
+}
+
+void remove_begun(const fs::path& task_folder) {
+  std::error_code ignored;
+  fs::remove(begun_of(task_folder), ignored);
+}
+
+bool is_up_to_date(const BatchWork& work, const BatchTask& task, const TaskRecord& record) {
+  if (!record.done || record.software != software_version() || record.arguments != arguments_of(work, task))
+    return false;
+  try {
+    return same_content(stamps_of(inputs_of(work, task), record.inputs), record.inputs) &&
+           same_content(stamps_of(outputs_of(work, task), record.outputs), record.outputs);
+  } catch (const std::runtime_error&) {
+    return false;  // what cannot be read any more is made again, or told by the command that needs it
+  }
+}
+
+fs::path log_of(const fs::path& task_folder) {
+  return task_folder / "log.txt";
+}
+
+std::string last_words(const fs::path& log) {
+  const std::string problem = "threadstation: ";
+  std::string last, told;
+  std::ifstream lines(log);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(problem)) told = line.substr(problem.size());
+    if (!line.empty()) last = line;
+  }
+  return told.empty() ? last : told;
+}
+
+}  // namespace station
