@@ -18,10 +18,10 @@ void judge_remains(const fs::path& folder, TaskStatus& status) {
   if (begun && begun->stopped) {
     status.state = stopped;
   } else if (begun) {
-    const std::string last = last_words(log_of(folder));
+    const std::string own = last_words(begun->said), last = own.empty() ? last_words(log_of(folder)) : own;
     status.state = died;
-    status.why = "it ended without a word on " + begun->host +
-                 (last.empty() ? ", killed or out of memory or time" : "; the last that it said: " + last);
+    status.why = "it ended on " + begun->host +
+                 (last.empty() ? " without a word, killed or out of memory or time" : "; its last words: " + last);
   } else if (status.record && !status.record->done) {
     status.state = failed;
     status.why = status.record->problem;

@@ -123,7 +123,7 @@ class LocalBatch {
     } else if (status.record && !status.record->done) {
       status.state = TaskState::failed, status.why = status.record->problem;
     } else {
-      const std::string said = last_words(own_log(status.task));
+      const std::string said = last_words(own_log_of(folder));
       status.state = TaskState::died;
       status.why = said.empty() ? "it was killed (status " + std::to_string(ended.status) + ")" : said;
     }
@@ -134,8 +134,6 @@ class LocalBatch {
   void show(const BatchTask& task) {
     progress_.show(static_cast<int>(count(TaskState::done)), static_cast<int>(states_.size()), name_of(task));
   }
-
-  std::filesystem::path own_log(const BatchTask& task) const { return task_folder(work_, task) / "task.txt"; }
 
   void start_what_can_start() {
     for (std::size_t i = 0; i < states_.size() && !free_cores_.empty(); ++i) {
@@ -162,7 +160,7 @@ class LocalBatch {
     make_folders(status.task);
     ChildProcess process({kOwnProgram, "batch", "task", work_.folder.string(), "--step", status.task.step->name,
                           "--item", std::to_string(status.task.item->number), "--cores", list},
-                         own_log(status.task), work_.folder);
+                         own_log_of(task_folder(work_, status.task)), work_.folder);
     free_cores_.resize(free_cores_.size() - cores.size());
     free_mib_ -= needs.memory_mib;
     status.state = TaskState::running;

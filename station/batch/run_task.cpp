@@ -78,9 +78,9 @@ std::string host() {
   return name.data();
 }
 
-std::string job_of_slurm() {
-  const char* job = std::getenv("SLURM_JOB_ID");
-  return job ? job : "";
+std::string from_slurm(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? value : "";
 }
 
 // Runs the command to its end; after ctrl-C it is asked to stop, as often as we are.
@@ -117,10 +117,14 @@ TaskOutcome run_task(const TaskRequest& request) {
   std::string content = nlohmann::json(record.arguments).dump();
   for (const auto& [file, stamp] : record.inputs) content += stamp.sha256;
   const std::optional<TaskBegun> before = read_begun(folder);
-  const TaskBegun begun{.deaths = before ? before->deaths + (before->stopped ? 0 : 1) : 0,
-                        .inputs_hash = sha256_hex(content),
-                        .host = record.host,
-                        .job = job_of_slurm()};
+  TaskBegun begun{.attempts = before ? before->attempts + 1 : 1,
+                  .deaths = before ? before->deaths + (before->stopped ? 0 : 1) : 0,
+                  .inputs_hash = sha256_hex(content),
+                  .host = record.host,
+                  .job = from_slurm("SLURM_JOB_ID")};
+  begun.said = begun.job.empty() ? own_log_of(folder)
+                                 : slurm_log_of(work.folder, task.step->name, from_slurm("SLURM_ARRAY_JOB_ID"),
+                                                from_slurm("SLURM_ARRAY_TASK_ID"));
   clear_result(work, task, before && before->inputs_hash == begun.inputs_hash);
   write_begun(folder, begun);
   remove_record(folder);
@@ -132,6 +136,7 @@ TaskOutcome run_task(const TaskRequest& request) {
     throw stop_of(task);
   }
   record.seconds = ended.seconds, record.processor_s = ended.processor_s, record.peak_mib = ended.peak_mib;
+  record.attempts = begun.attempts;
   record.ended_utc = rig::SystemClock().utc();
   record.done = ended.status == 0;
   if (record.done) {
@@ -142,7 +147,8 @@ TaskOutcome run_task(const TaskRequest& request) {
   }
   write_record(folder, record);
   remove_begun(folder);
-  return record.done ? TaskOutcome::done : TaskOutcome::failed;
+  if (!record.done) throw std::runtime_error(name_of(task) + " failed: " + record.problem);
+  return TaskOutcome::done;
 }
 
 }  // namespace station

@@ -15,12 +15,12 @@ struct TaskRequest {
   std::vector<int> cores;  // the processor's, that it may use; empty: all that this process may
 };
 
-enum class TaskOutcome { done, kept, failed };  // kept: it was done already
+enum class TaskOutcome { done, kept };  // kept: it was done already
 
 // Does the task unless it is up to date; waits while another process does it. Ctrl-C is handed on to the command, and
 // the task is then as if it had not begun, but for what its command keeps. Errors: std::runtime_error, one line: where
-// a task that it needs is not done, when it was stopped, when its record cannot be written. A command that fails is an
-// outcome, told of in its record.
+// a task that it needs is not done, when it was stopped, when its record cannot be written, and when its command has
+// failed, which its record tells then.
 TaskOutcome run_task(const TaskRequest& request);
 
 }  // namespace station

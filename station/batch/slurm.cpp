@@ -68,13 +68,21 @@ std::vector<SlurmTask> slurm_queue() {
 std::optional<std::map<std::string, std::string>> slurm_ended(const std::vector<std::string>& jobs) {
   std::map<std::string, std::string> states;
   if (jobs.empty()) return states;
-  const CommandResult result = run_command(
-      {"sacct", "--noheader", "--parsable2", "--allocations", "--format=JobIDRaw,State", "--jobs=" + joined(jobs)});
-  if (result.status != 0) return std::nullopt;
-  std::istringstream lines(result.out);
-  for (std::string line; std::getline(lines, line);)
-    if (const std::vector<std::string> cells = cells_of(line); cells.size() == 2) states[cells[0]] = cells[1];
-  return states;
+  const std::string of = "--jobs=" + joined(jobs);
+  // From the accounts or, where there are none, from the list of completed jobs.
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"sacct", "--allocations", "--format=JobIDRaw,State"},
+        {"sacct", "--completion", "--format=JobID,State"}}) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), {"--noheader", "--parsable2", of});
+    const CommandResult result = run_command(all);
+    if (result.status != 0) continue;
+    std::istringstream lines(result.out);
+    for (std::string line; std::getline(lines, line);)
+      if (const std::vector<std::string> cells = cells_of(line); cells.size() == 2) states[cells[0]] = cells[1];
+    return states;
+  }
+  return std::nullopt;
 }
 
 void slurm_cancel(const std::vector<std::string>& jobs) {

@@ -25,8 +25,8 @@ struct SlurmTask {
 // All tasks of this user that wait or run.
 std::vector<SlurmTask> slurm_queue();
 
-// How jobs, by the number of each task's own, ended: such as "OUT_OF_MEMORY". Nothing where this Slurm keeps no
-// accounts.
+// How jobs, by the number of each task's own, ended: such as "OUT_OF_MEMORY". Nothing where this Slurm keeps
+// neither accounts nor a list of completed jobs.
 std::optional<std::map<std::string, std::string>> slurm_ended(const std::vector<std::string>& jobs);
 
 void slurm_cancel(const std::vector<std::string>& jobs);

@@ -206,7 +206,7 @@ class Submission {
         "--open-mode=append",
         "--kill-on-invalid-dep=yes",
         "--chdir=" + work_.plan.folder.string(),
-        "--output=" + (work_.folder / "slurm" / (step.name + "-%A_%a.txt")).string()};
+        "--output=" + slurm_log_of(work_.folder, step.name, "%A", "%a").string()};
     std::string after;
     for (const std::string& job : group.after) after += ":" + job;
     if (!after.empty()) options.push_back("--dependency=aftercorr" + after);

@@ -39,6 +39,7 @@ std::optional<TaskRecord> read_record(const fs::path& task_folder) {
   record.seconds = reader.number("seconds", 0, kMost);
   record.processor_s = reader.number("processor_s", 0, kMost);
   record.peak_mib = reader.number("peak_mib", 0, kMost);
+  record.attempts = reader.integer("attempts", 1, 1 << 30);
   record.host = reader.text("host");
   record.ended_utc = reader.text("ended_utc");
   reader.finish();
@@ -57,6 +58,7 @@ void write_record(const fs::path& task_folder, const TaskRecord& record) {
                                            {"seconds", record.seconds},
                                            {"processor_s", record.processor_s},
                                            {"peak_mib", record.peak_mib},
+                                           {"attempts", record.attempts},
                                            {"host", record.host},
                                            {"ended_utc", record.ended_utc}});
 }
@@ -70,19 +72,23 @@ std::optional<TaskBegun> read_begun(const fs::path& task_folder) {
   std::error_code ignored;
   if (!fs::exists(begun_of(task_folder), ignored)) return std::nullopt;
   const json document = read_json_file(begun_of(task_folder));
-  return TaskBegun{.deaths = document.value("deaths", 0),
+  return TaskBegun{.attempts = document.value("attempts", 1),
+                   .deaths = document.value("deaths", 0),
                    .stopped = document.value("stopped", false),
                    .inputs_hash = document.value("inputs_hash", ""),
                    .host = document.value("host", ""),
-                   .job = document.value("job", "")};
+                   .job = document.value("job", ""),
+                   .said = document.value("said", "")};
 }
 
 void write_begun(const fs::path& task_folder, const TaskBegun& begun) {
-  write_json_file(begun_of(task_folder), {{"deaths", begun.deaths},
+  write_json_file(begun_of(task_folder), {{"attempts", begun.attempts},
+                                          {"deaths", begun.deaths},
                                           {"stopped", begun.stopped},
                                           {"inputs_hash", begun.inputs_hash},
                                           {"host", begun.host},
-                                          {"job", begun.job}});
+                                          {"job", begun.job},
+                                          {"said", begun.said.string()}});
 }
 
 void remove_begun(const fs::path& task_folder) {
@@ -103,6 +109,15 @@ bool is_up_to_date(const BatchWork& work, const BatchTask& task, const TaskRecor
 
 fs::path log_of(const fs::path& task_folder) {
   return task_folder / "log.txt";
+}
+
+fs::path own_log_of(const fs::path& task_folder) {
+  return task_folder / "task.txt";
+}
+
+fs::path slurm_log_of(const fs::path& batch_folder, const std::string& step, const std::string& array,
+                      const std::string& index) {
+  return batch_folder / "slurm" / (step + "-" + array + "_" + index + ".txt");
 }
 
 std::string last_words(const fs::path& log) {

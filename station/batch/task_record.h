@@ -18,15 +18,18 @@ struct TaskRecord {
   std::string software;
   FileStamps inputs, outputs;
   double seconds = 0, processor_s = 0, peak_mib = 0;
+  int attempts = 1;  // how often its command was begun for this
   std::string host, ended_utc;
 };
 
 // What is known of a task that has begun and has no record yet, or that died without one.
 struct TaskBegun {
-  int deaths = 0;           // attempts before this one that left no record: killed, or out of memory or time
-  bool stopped = false;     // it was stopped on request, and is no death
-  std::string inputs_hash;  // of what the attempt read
-  std::string host, job;    // where it ran; Slurm's number of it
+  int attempts = 1;            // with this one
+  int deaths = 0;              // attempts before this one that left no record: killed, or out of memory or time
+  bool stopped = false;        // it was stopped on request, and is no death
+  std::string inputs_hash;     // of what the attempt read
+  std::string host, job;       // where it ran; Slurm's number of it
+  std::filesystem::path said;  // what the task said, beside what its command did
 };
 
 // Nothing where there is none. Errors: std::runtime_error, one line, for a file that is no record.
@@ -42,7 +45,12 @@ void remove_begun(const std::filesystem::path& task_folder);
 // is there unchanged.
 bool is_up_to_date(const BatchWork& work, const BatchTask& task, const TaskRecord& record);
 
+// What the command said; what the task said on this computer, and by Slurm's task of an array, both of which may be
+// its names for them ("%A", "%a").
 std::filesystem::path log_of(const std::filesystem::path& task_folder);
+std::filesystem::path own_log_of(const std::filesystem::path& task_folder);
+std::filesystem::path slurm_log_of(const std::filesystem::path& batch_folder, const std::string& step,
+                                   const std::string& array, const std::string& index);
 // The last line of what a task has said that tells a problem, or its last line; empty when it said nothing.
 std::string last_words(const std::filesystem::path& log);
 

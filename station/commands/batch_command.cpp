@@ -82,8 +82,7 @@ void add_batch_command(CLI::App& app) {
   task->add_option("--cores", arguments->task.cores, "cores that it may use")->delimiter(',');
   task->callback([arguments] {
     arguments->task.folder = arguments->folder;
-    const TaskOutcome outcome = run_task(arguments->task);
-    if (outcome == TaskOutcome::failed) throw std::runtime_error("its command failed; its record tells why");
+    if (run_task(arguments->task) == TaskOutcome::kept) std::cout << "it is done already\n";
   });
   command->callback([arguments, command] {
     if (command->get_subcommands().empty()) run(*arguments);

@@ -1,0 +1,235 @@
+// Batches on this computer, as a person starts them.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <thread>
+
+#include "station/batch/slurm.h"
+#include "station/documents/batch_file.h"
+#include "station/documents/reader.h"
+#include "tests/places.h"
+#include "tests/station/batch/small_sessions.h"
+#include "tests/station/commands/program.h"
+
+namespace station_test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+const json kFit{{"do", "invert"}, {"options", {"--paths", "16", "--spp", "1"}}, {"memory_gib", 0.3}};
+const json kTables{{"do", "export"}, {"options", {"--only", "csv"}}, {"memory_gib", 0.3}};
+
+class BatchTest : public ::testing::Test {
+ protected:
+  ProgramResult batch(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"batch", folder_ / "plan.json", "--out", folder_ / "batch", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_threadstation(words);
+  }
+  // How many tasks of the step are in this state.
+  static int count(const ProgramResult& result, const std::string& step, const std::string& state) {
+    const json description = json::parse(result.out);
+    for (const json& one : description.at("steps"))
+      if (one.at("step") == step) return one.at(state);
+    return -1;
+  }
+  std::string ended(const std::string& step, const std::string& item) {
+    return record_in(folder_.path(), step, item).at("ended_utc");
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(BatchTest, DoesEveryStepOfEachSessionOnceAndThenOnlyWhatChanged) {
+  make_sessions(folder_.path(), 3);
+  written_plan(folder_.path(), {{{"do", "develop"}}, kFit, {{"do", "report"}}, kTables});
+  const ProgramResult first = batch();
+  ASSERT_EQ(first.status, 0) << first.error;
+  for (const char* step : {"develop", "invert", "report", "export"}) EXPECT_EQ(count(first, step, "done"), 3) << step;
+  const auto made = made_in(folder_.path());
+  EXPECT_TRUE(made.contains("sessions/s01/result/thread.json"));
+  EXPECT_TRUE(made.contains("batch/results/export/s02/manifest.json") || made.size() > 30) << made.size();
+  const json record = record_in(folder_.path(), "invert", "s01");
+  EXPECT_GT(record.at("peak_mib"), 5);
+  EXPECT_GT(record.at("processor_s"), 0.01);
+
+  std::map<std::string, std::string> times;
+  const auto all_times = [&] {
+    std::map<std::string, std::string> all;
+    for (const char* step : {"develop", "invert", "report", "export"})
+      for (const char* item : {"s00", "s01", "s02"}) all[std::string(step) + " " + item] = ended(step, item);
+    return all;
+  };
+  times = all_times();
+  ASSERT_EQ(batch().status, 0);
+  EXPECT_EQ(all_times(), times) << "nothing was done again";
+
+  // A result that somebody spoils is made again as it was; nothing else changes.
+  std::ofstream(folder_ / "sessions/s01/result/thread.json", std::ios::app) << " ";
+  ASSERT_EQ(batch().status, 0);
+  EXPECT_NE(ended("invert", "s01"), times["invert s01"]);
+  EXPECT_EQ(ended("export", "s01"), times["export s01"]) << "what it reads is what it was";
+  EXPECT_EQ(ended("invert", "s02"), times["invert s02"]);
+  EXPECT_EQ(made_in(folder_.path()), made);
+
+  // Other options of one step.
+  times = all_times();
+  json mitsuba = kTables;
+  mitsuba["options"] = {"--only", "csv,blender"};
+  written_plan(folder_.path(), {{{"do", "develop"}}, kFit, {{"do", "report"}}, mitsuba});
+  ASSERT_EQ(batch().status, 0);
+  EXPECT_NE(ended("export", "s00"), times["export s00"]);
+  EXPECT_EQ(ended("report", "s00"), times["report s00"]);
+
+  // Another input: a session's mask.
+  times = all_times();
+  const fs::path mask = folder_ / "sessions/s02/masks/transmission-3.png";
+  fs::copy_file(folder_ / "sessions/s02/masks/reflection-horizontal-2.png", mask, fs::copy_options::overwrite_existing);
+  ASSERT_EQ(batch().status, 0);
+  EXPECT_NE(ended("develop", "s02"), times["develop s02"]) << "its mask is not what it made";
+  EXPECT_EQ(ended("invert", "s02"), times["invert s02"]) << "and then it is";
+  EXPECT_EQ(ended("develop", "s01"), times["develop s01"]);
+}
+
+TEST_F(BatchTest, AFailureHoldsOnlyWhatNeedsItAndSaysWhy) {
+  make_sessions(folder_.path(), 3);
+  fs::rename(folder_ / "sessions/s01/calibration/calibration.json", folder_ / "kept.json");
+  written_plan(folder_.path(), {{{"do", "develop"}}, kFit, kTables});
+  const ProgramResult failed = batch();
+  EXPECT_EQ(failed.status, 1);
+  EXPECT_EQ(failed.error_lines(), 2) << "a note and the end: " << failed.error;
+  EXPECT_NE(failed.error.find("3 of 9 tasks are not done"), std::string::npos) << failed.error;
+  EXPECT_EQ(count(failed, "develop", "failed"), 1);
+  EXPECT_EQ(count(failed, "invert", "held"), 1);
+  EXPECT_EQ(count(failed, "export", "done"), 2);
+  const json problem = json::parse(failed.out).at("problems").at(0);
+  EXPECT_EQ(problem.at("task"), "develop of s01");
+  EXPECT_NE(problem.at("why").get<std::string>().find("calibration.json: no such file"), std::string::npos);
+  const ProgramResult status = run_threadstation({"batch", "status", folder_ / "batch", "--json"});
+  EXPECT_EQ(json::parse(status.out), json::parse(failed.out)) << "as it stands in the folder";
+
+  fs::rename(folder_ / "kept.json", folder_ / "sessions/s01/calibration/calibration.json");
+  const std::string before = ended("export", "s00");
+  const ProgramResult good = batch();
+  EXPECT_EQ(good.status, 0) << good.error;
+  EXPECT_EQ(count(good, "export", "done"), 3);
+  EXPECT_EQ(ended("export", "s00"), before);
+  const ProgramResult report = run_threadstation({"batch", "report", folder_ / "batch"});
+  EXPECT_NE(report.out.find("develop"), std::string::npos) << report.out;
+  EXPECT_TRUE(fs::exists(folder_ / "batch" / "report.html"));
+}
+
+// Ctrl-C, and the kernel's kill, after which the tasks themselves go on.
+TEST_F(BatchTest, InterruptedItGoesOnAndEndsWithTheSameFiles) {
+  const json fit{{"do", "invert"}, {"options", {"--paths", "64", "--spp", "1"}}, {"memory_gib", 0.3}};
+  const TemporaryFolder whole;
+  make_sessions(whole.path(), 5, true);
+  written_plan(whole.path(), {fit, kTables});
+  ASSERT_EQ(run_threadstation({"batch", whole / "plan.json", "--out", whole / "batch", "--quiet"}).status, 0);
+  make_sessions(folder_.path(), 5, true);
+  written_plan(folder_.path(), {fit, kTables});
+  for (const int signal : {SIGINT, SIGKILL, SIGTERM}) {
+    const pid_t process = start_threadstation({"batch", folder_ / "plan.json", "--out", folder_ / "batch"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    ::kill(process, signal);
+    EXPECT_NE(wait_for(process), 0);
+  }
+  const ProgramResult end = batch();
+  ASSERT_EQ(end.status, 0) << end.error;
+  EXPECT_EQ(made_in(folder_.path()), made_in(whole.path()));
+  int attempts = 0;
+  for (int i = 0; i < 5; ++i)
+    attempts += record_in(folder_.path(), "invert", "s0" + std::to_string(i)).at("attempts").get<int>();
+  EXPECT_LE(attempts, 5 + 2 * 2) << "no more than were stopped: two at a time, twice";
+}
+
+TEST_F(BatchTest, UsesNoMoreCoresThanItMay) {
+  make_sessions(folder_.path(), 4, true);
+  written_plan(folder_.path(), json::array({kFit}));
+  ASSERT_EQ(batch({"--cores", "1"}).status, 0);
+  std::vector<std::pair<std::string, double>> ends;  // with their seconds
+  for (int i = 0; i < 4; ++i) {
+    const json record = record_in(folder_.path(), "invert", "s0" + std::to_string(i));
+    ends.emplace_back(record.at("ended_utc"), record.at("seconds"));
+  }
+  std::ranges::sort(ends);
+  const auto seconds = [](const std::string& utc) {
+    return 3600 * std::stod(utc.substr(11, 2)) + 60 * std::stod(utc.substr(14, 2)) + std::stod(utc.substr(17));
+  };
+  for (std::size_t i = 1; i < ends.size(); ++i)
+    EXPECT_GE(seconds(ends[i].first) - ends[i].second, seconds(ends[i - 1].first) - 0.1) << "one after the other";
+  written_plan(folder_.path(), json::array({{{"do", "invert"}, {"cores", 64}}}));
+  const ProgramResult many = batch({"--cores", "1"});
+  EXPECT_EQ(many.status, 1);
+  EXPECT_NE(many.error.find("is to have 64 cores, and there are 1"), std::string::npos) << many.error;
+}
+
+TEST_F(BatchTest, RendersScenesAndWeavesThreadFiles) {
+  const std::string data = DATA_DIR;
+  json plan{
+      {"format", "threadstation/batch"},
+      {"version", 1},
+      {"threads", {data + "/threads/silk_red.json"}},
+      {"scenes", {data + "/scenes/plain_swatch.json"}},
+      {"steps",
+       {{{"do", "cloth"}, {"name", "twill"}, {"options", {"--draft", "twill_2_2", "--quick", "--shape", "swatch"}}},
+        {{"do", "render"}, {"options", {"--spp", "1", "--png"}}}}}};
+  station::write_json_file(folder_ / "plan.json", plan);
+  const ProgramResult result = batch();
+  ASSERT_EQ(result.status, 0) << result.error;
+  EXPECT_TRUE(fs::exists(folder_ / "batch/results/twill/silk_red/swatch.exr"));
+  EXPECT_TRUE(fs::exists(folder_ / "batch/results/render/plain_swatch.png"));
+  const std::string before = ended("render", "plain_swatch");
+  ASSERT_EQ(batch().status, 0);
+  EXPECT_EQ(ended("render", "plain_swatch"), before);
+}
+
+TEST_F(BatchTest, BadPlansGetOneLine) {
+  make_sessions(folder_.path(), 1);
+  const auto refused = [&](const json& steps, const json& more, const std::string& must_name) {
+    written_plan(folder_.path(), steps, more);
+    const ProgramResult result = batch();
+    EXPECT_EQ(result.status, 1) << result.out;
+    EXPECT_EQ(result.error_lines(), 1) << result.error;
+    EXPECT_NE(result.error.find(must_name), std::string::npos) << result.error;
+    EXPECT_FALSE(fs::exists(folder_ / "batch"));
+  };
+  const json none = json::object();
+  refused(json::array({{{"do", "wash"}}}), none, "\"steps[0].do\"");
+  refused({kFit, kFit}, none, "two steps are called \"invert\"");
+  refused(json::array({{{"do", "invert"}, {"options", {"--out", "x"}}}}), none, "which the batch gives itself");
+  refused(json::array({{{"do", "invert"}, {"needs", json::array({"develop"})}}}), none, "which is no earlier step");
+  refused(json::array({{{"do", "report"}, {"model", "fiber"}}}), none, "report takes no fiber here");
+  refused(json::array({{{"do", "render"}}}), none, "has nothing that it could be done with");
+  refused(json::array(), none, "give at least one");
+  refused(json::array({kFit}), {{"sessions", json::array({"elsewhere/*"})}}, "nothing is found for \"elsewhere/*\"");
+  refused(json::array({kFit}), {{"sessions", json::array({"sessions"})}}, "is no session's folder");
+  refused(json::array({kFit}), {{"sessions", json::array()}}, "found nothing to work on");
+  refused(json::array({kFit}), {{"speed", 3}}, "\"speed\"");
+  EXPECT_EQ(run_threadstation({"batch", "status", folder_.path()}).status, 1);
+  EXPECT_EQ(run_threadstation({"batch"}).status, 1);
+  fs::create_directory(folder_ / "other");
+  std::ofstream(folder_ / "other/file") << "x";
+  written_plan(folder_.path(), json::array({kFit}));
+  const ProgramResult other = run_threadstation({"batch", folder_ / "plan.json", "--out", folder_ / "other"});
+  EXPECT_NE(other.error.find("holds other things than a batch"), std::string::npos) << other.error;
+}
+
+TEST(BatchFile, ReadyPlansAreRead) {
+  for (const auto& entry : fs::directory_iterator(fs::path(DATA_DIR) / "batches"))
+    if (entry.path().extension() == ".json") EXPECT_NO_THROW(station::read_batch(entry.path())) << entry.path();
+  const station::BatchFile plan = station::read_batch(fs::path(DATA_DIR) / "batches" / "sessions.json");
+  ASSERT_TRUE(plan.step("twill"));
+  EXPECT_EQ(plan.step("twill")->needs, std::vector<std::string>{"invert"});
+  EXPECT_EQ(plan.step("invert")->needs, std::vector<std::string>{"develop"});
+}
+
+TEST(SlurmWords, NumbersBecomeRanges) {
+  EXPECT_EQ(station::ranges_text({3, 0, 1, 2, 7, 9, 10}), "0-3,7,9-10");
+  EXPECT_EQ(station::ranges_text({5}), "5");
+}
+
+}  // namespace
+}  // namespace station_test
