@@ -2,18 +2,24 @@
 #include <iostream>
 #include <optional>
 
+#include "calibration/light/colour_chart.h"
+#include "renderer/picture/image_file.h"
 #include "rig/devices/clock.h"
 #include "station/commands/commands.h"
+#include "station/documents/srgb.h"
 #include "station/thread/library.h"
 
 namespace station {
 namespace {
 
 struct LibraryArguments {
-  std::string folder = "library", words, what, out;
+  std::string folder = "library", what, out;
   std::optional<std::string> barcode, name, lot, material, colour, note, tags;
   int number = 0;
   bool json = false;
+  LibraryQuery query;
+  std::string near;
+  std::vector<double> diameter_mm, highlight_rad;
 };
 
 nlohmann::json to_json(const LibraryThread& thread) {
@@ -22,6 +28,9 @@ nlohmann::json to_json(const LibraryThread& thread) {
       {"added_utc", thread.added_utc},     {"sha256", thread.sha256},           {"session", thread.session},
       {"session_utc", thread.session_utc}, {"diameter_mm", thread.diameter_mm}, {"tags", thread.tags}};
   if (thread.relative_rmse) document["relative_rmse"] = *thread.relative_rmse;
+  if (thread.lab) document["lab"] = {(*thread.lab)[0], (*thread.lab)[1], (*thread.lab)[2]};
+  if (thread.highlight_rad) document["highlight_rad"] = *thread.highlight_rad;
+  if (thread.distance) document["distance"] = *thread.distance;
   return document;
 }
 
@@ -30,6 +39,7 @@ void print_line(const LibraryThread& thread) {
               thread.sample.barcode.c_str(), thread.sample.lot.c_str(), thread.sample.material.c_str(),
               thread.sample.colour.c_str());
   if (thread.relative_rmse) std::printf("  %.1f %%", 100 * *thread.relative_rmse);
+  if (thread.distance) std::printf("  %.1f from the colour", *thread.distance);
   std::printf("\n");
 }
 
@@ -58,8 +68,22 @@ void print(const LibraryThread& thread, bool json) {
     print_line(thread);
 }
 
+Eigen::Vector3d lab_of(const Srgb8& colour) {
+  const cv::Vec3f linear = renderer::linear_of_srgb({colour[0], colour[1], colour[2]});
+  return calibration::lab_of_linear_srgb({linear[0], linear[1], linear[2]});
+}
+
+std::optional<std::array<double, 2>> range_of(const std::vector<double>& ends) {
+  if (ends.empty()) return std::nullopt;
+  return std::array{ends[0], ends[1]};
+}
+
 void list(const LibraryArguments& arguments) {
-  const auto threads = Library(arguments.folder, false).list(arguments.words);
+  LibraryQuery query = arguments.query;
+  if (!arguments.near.empty()) query.near_lab = lab_of(parse_colour(arguments.near));
+  query.diameter_mm = range_of(arguments.diameter_mm);
+  query.highlight_rad = range_of(arguments.highlight_rad);
+  const auto threads = Library(arguments.folder, false).find(query);
   if (arguments.json) {
     nlohmann::json all = nlohmann::json::array();
     for (const LibraryThread& thread : threads) all.push_back(to_json(thread));
@@ -104,7 +128,19 @@ void add_library_command(CLI::App& app) {
     print(Library(arguments->folder, true).add(arguments->what, clock.utc()), arguments->json);
   });
   CLI::App* listed = add("list", "one line for each thread");
-  listed->add_option("words", arguments->words, "only threads with this text in name, barcode, lot, material, ...");
+  LibraryQuery& query = arguments->query;
+  listed->add_option("words", query.words, "only threads with these words in name, barcode, lot, material, tags, ...");
+  listed->add_option("--near", arguments->near,
+                     "like #c01830, crimson or \"lab(40 60 30)\": the nearest to this colour first");
+  listed->add_option("--within", query.within, "how far from it they may be, in Lab (CIE 1976)")
+      ->check(CLI::Range(0.0, 500.0))
+      ->capture_default_str();
+  listed->add_option("--diameter", arguments->diameter_mm, "least and most, mm")->expected(2);
+  listed
+      ->add_option("--highlight", arguments->highlight_rad,
+                   "least and most width of the highlight along the thread, rad: glossy ones have little")
+      ->expected(2);
+  listed->add_option("--most", query.most, "so many threads at most")->check(CLI::Range(1, 1 << 30));
   listed->add_flag("--json", arguments->json, "as JSON, for machines");
   listed->callback([arguments] { list(*arguments); });
   CLI::App* shown = add("show", "all that is known of one thread");

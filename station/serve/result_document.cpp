@@ -13,6 +13,7 @@
 #include "station/documents/srgb.h"
 #include "station/session/results.h"
 #include "station/thread/invert/invert_session.h"
+#include "station/thread/thread_colour.h"
 
 namespace station {
 namespace {
@@ -38,15 +39,6 @@ std::optional<Eigen::MatrixXd> covariance_of(const ThreadFile& thread) {
   }
 }
 
-// All the light that the thread scatters, of what meets it from all sides in a plane along it; camera RGB.
-Eigen::Vector3d mean_albedo(const std::vector<inversion::EnergyBand>& bands) {
-  Eigen::Vector3d albedo = Eigen::Vector3d::Zero();
-  for (const inversion::EnergyBand& band : bands)
-    for (int c = 0; c < 3; ++c)
-      albedo[c] += band.albedo[static_cast<std::size_t>(c)] / static_cast<double>(bands.size());
-  return albedo;
-}
-
 json colour_of_linear_srgb(const Eigen::Vector3d& linear) {
   constexpr double kSeen = 0.002;  // less than a step of a screen's eight bits
   const Eigen::Vector3d lab = calibration::lab_of_linear_srgb(linear);
@@ -67,21 +59,6 @@ Eigen::Vector3d lab_of(const json& document) {
 json part_of(const json& fit, const char* key) {
   const auto found = fit.find(key);
   return found == fit.end() ? json::array() : *found;
-}
-
-// Camera RGB, as the photographs have it; nothing where an earlier version has not kept it.
-std::optional<Eigen::Vector3d> photographed_colour(const json& fit) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double count = 0;
-  for (const json& view : part_of(fit, "views")) {
-    if (view.value("transmission", false)) continue;
-    const auto colour = view.find("colour_over_diffuser");
-    if (colour == view.end()) return std::nullopt;
-    sum += Eigen::Vector3d(colour->at(0), colour->at(1), colour->at(2));
-    count += 1;
-  }
-  if (count == 0) return std::nullopt;
-  return sum / count;
 }
 
 json unknowns_of_fit(const ThreadFile& thread) {
@@ -117,9 +94,9 @@ json thread_document(const ThreadFile& thread) {
                      {"relative_rmse", view.at("relative_rmse")},
                      {"relative_bias", view.at("relative_bias")},
                      {"held_out", view.value("held_out", false)}});
-  const auto photographed = photographed_colour(thread.fit);
-  json colour = colour_document(photographed.value_or(mean_albedo(bands)), thread.linear_srgb_from_camera);
-  colour["of"] = photographed ? "views" : "model";
+  const ThreadColour thread_colour = colour_of(thread);
+  json colour = colour_of_linear_srgb(thread_colour.linear_srgb);
+  colour["of"] = thread_colour.photographed ? "views" : "model";
   return {{"name", thread.name},
           {"diameter_mm", thread.diameter_mm},
           {"relative_rmse", thread.fit.value("relative_rmse", json())},

@@ -10,6 +10,7 @@
 #include "station/data/data_folder.h"
 #include "station/documents/disk/whole_file.h"
 #include "station/documents/reader.h"
+#include "station/serve/batches.h"
 #include "station/serve/checked_devices.h"
 #include "station/serve/handbook_page.h"
 #include "station/serve/job_command.h"
@@ -76,9 +77,9 @@ json thread_of(const Workspace& workspace, const std::string& number, const std:
 }
 
 // A page that this program wrote: no scripts, nothing from elsewhere.
-HttpResponse own_page(const fs::path& file) {
+HttpResponse own_page(const std::string& page) {
   return {.content_type = "text/html; charset=utf-8",
-          .body = text_of_file(file),
+          .body = page,
           .headers = {{"Content-Security-Policy",
                        "default-src 'none'; img-src data:; style-src 'unsafe-inline'; frame-ancestors 'self'"}}};
 }
@@ -155,6 +156,8 @@ HttpResponse TechnicianPage::get(const HttpRequest& request) {
   if (request.path == "/api/result") return answered(result_of(workspace_, word_of(request, "name")));
   if (request.path == "/api/thread")
     return answered(thread_of(workspace_, word_of(request, "number"), word_of(request, "with")));
+  if (request.path == "/api/batches") return answered(batches_document(workspace_));
+  if (request.path == "/batch") return own_page(batch_report_page(workspace_, word_of(request, "name")));
   if (request.path == "/api/lots") return answered(from_library(workspace_, lots_document));
   if (request.path == "/label")
     return {.content_type = "image/svg+xml",
@@ -179,7 +182,7 @@ HttpResponse TechnicianPage::post(const HttpRequest& request) {
   if (request.path == "/api/control") return take_control(asked);
   const auto& path = request.path;
   if (path != "/api/job" && path != "/api/answer" && path != "/api/pause" && path != "/api/spool" &&
-      path != "/api/thread" && path != "/api/import" && path != "/api/look")
+      path != "/api/thread" && path != "/api/import" && path != "/api/look" && path != "/api/batch")
     refuse_path(request);
   if (!in_control(asked)) throw Refused(409, "another browser is in control; take control first");
   if (path == "/api/job") return start(asked);
@@ -187,6 +190,7 @@ HttpResponse TechnicianPage::post(const HttpRequest& request) {
   if (path == "/api/thread") return change_thread(asked);
   if (path == "/api/import") return import_thread(asked);
   if (path == "/api/look") return look(asked);
+  if (path == "/api/batch") return said(200, stop_batch(workspace_, text_of(asked, "name")));
   if (path == "/api/spool") {
     const std::string name = write_spool(asked, workspace_, rig_file_);
     changed_();
@@ -314,13 +318,13 @@ json TechnicianPage::bench() {
 HttpResponse TechnicianPage::report(const std::string& name) const {
   const fs::path file = workspace_.session(checked_name(name)) / "report.html";
   if (!fs::is_regular_file(file)) throw Refused(404, "the session " + name + " has no report yet");
-  return own_page(file);
+  return own_page(text_of_file(file));
 }
 
 HttpResponse TechnicianPage::calibration_report(const std::string& name) const {
   const fs::path file = workspace_.existing_calibration(name) / "calibration.html";
   if (!fs::is_regular_file(file)) throw Refused(404, "the calibration " + name + " has no report");
-  return own_page(file);
+  return own_page(text_of_file(file));
 }
 
 // The camera is the next job's as soon as the live view has left it.

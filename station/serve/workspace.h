@@ -8,6 +8,7 @@
 //   pictures/              thread_pictures.h
 //   look/                  made by look, of the cloth that is designed now
 //   rigs/<name>.json       made by rig new              preview.jpg          the camera's live view
+//   batches/<name>/        made by batch
 #pragma once
 
 #include <cstdint>
@@ -39,6 +40,7 @@ class Workspace {
   // The file of a thread in the library; refuses numbers that it does not have.
   std::filesystem::path thread_in_library(int number) const;
   std::filesystem::path exported(const std::string& name) const { return folder_ / "exports" / name; }
+  std::filesystem::path batch(const std::string& name) const { return folder_ / "batches" / name; }
   std::filesystem::path design(const std::string& name) const { return folder_ / "designs" / name; }
   // Of a thread without a session, by the hash of its file; it need not be there.
   std::filesystem::path thread_picture(const std::string& sha256) const {

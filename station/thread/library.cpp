@@ -12,15 +12,17 @@
 #include "station/documents/disk/stored_file.h"
 #include "station/documents/disk/whole_file.h"
 #include "station/documents/manifest.h"
+#include "station/documents/number_text.h"
 #include "station/documents/session_file.h"
 #include "station/documents/thread_file.h"
 #include "station/session/record/session_folder.h"
+#include "station/thread/thread_colour.h"
 
 namespace station {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kVersion = 3;
+constexpr int kVersion = 4;
 constexpr const char* kTables = R"(
 CREATE TABLE IF NOT EXISTS spools (id INTEGER PRIMARY KEY, barcode TEXT NOT NULL, name TEXT NOT NULL, lot TEXT NOT NULL,
   material TEXT NOT NULL, colour TEXT NOT NULL, note TEXT NOT NULL, UNIQUE (barcode, name, lot));
@@ -30,13 +32,16 @@ CREATE TABLE IF NOT EXISTS threads (id INTEGER PRIMARY KEY AUTOINCREMENT, spool 
   session INTEGER REFERENCES sessions (id), name TEXT NOT NULL, sha256 TEXT NOT NULL UNIQUE, added_utc TEXT NOT NULL,
   diameter_mm REAL NOT NULL, relative_rmse REAL);
 )";
-// What versions 2 and 3 added.
+// What versions 2, 3 and 4 added.
 constexpr const char* kRemoved = "ALTER TABLE threads ADD COLUMN removed_utc TEXT";
 constexpr const char* kTags = "ALTER TABLE threads ADD COLUMN tags TEXT NOT NULL DEFAULT ''";  // parted by ", "
+constexpr const char* kMeasures =
+    "ALTER TABLE threads ADD COLUMN lab_l REAL; ALTER TABLE threads ADD COLUMN lab_a REAL; "
+    "ALTER TABLE threads ADD COLUMN lab_b REAL; ALTER TABLE threads ADD COLUMN highlight_rad REAL";
 constexpr const char* kSelect =
     "SELECT threads.id, barcode, spools.name, lot, material, colour, note, threads.name, added_utc, sha256, "
     "coalesce(sessions.folder, ''), coalesce(sessions.utc, ''), relative_rmse, diameter_mm, "
-    "tags "
+    "tags, lab_l, lab_a, lab_b, highlight_rad "
     "FROM threads JOIN spools ON spools.id = threads.spool LEFT JOIN sessions ON sessions.id = threads.session ";
 
 }  // namespace
@@ -65,6 +70,7 @@ class Library::Index {
       execute(kRemoved);
     }
     if (version < 3) execute(kTags);
+    if (version < 4) execute(kMeasures);
     if (version < kVersion) execute(("PRAGMA user_version = " + std::to_string(kVersion)).c_str());
     execute("COMMIT");
   }
@@ -106,6 +112,15 @@ class Library::Index {
                  {sample.barcode, sample.name, sample.lot});
   }
 
+  // What of a thread is looked for by number.
+  void measure(int number, const ThreadFile& thread) {
+    const Eigen::Vector3d lab = colour_of(thread).lab;
+    run("UPDATE threads SET lab_l = CAST(? AS REAL), lab_a = CAST(? AS REAL), lab_b = CAST(? AS REAL), "
+        "highlight_rad = CAST(? AS REAL) WHERE id = CAST(? AS INTEGER)",
+        {shortest_text(lab[0]), shortest_text(lab[1]), shortest_text(lab[2]), shortest_text(thread.parameters.alpha[0]),
+         std::to_string(number)});
+  }
+
   static std::string text(sqlite3_stmt* row, int column) {
     const auto* value = reinterpret_cast<const char*>(sqlite3_column_text(row, column));
     return value == nullptr ? "" : value;
@@ -139,8 +154,35 @@ LibraryThread thread_of(sqlite3_stmt* row, const std::function<std::string(sqlit
                        .relative_rmse = std::nullopt,
                        .diameter_mm = sqlite3_column_double(row, 13),
                        .tags = tags_of(text(row, 14))};
-  if (sqlite3_column_type(row, 12) != SQLITE_NULL) thread.relative_rmse = sqlite3_column_double(row, 12);
+  const auto number = [row](int column) {
+    return sqlite3_column_type(row, column) == SQLITE_NULL ? std::nullopt
+                                                           : std::optional(sqlite3_column_double(row, column));
+  };
+  thread.relative_rmse = number(12);
+  if (const auto l = number(15)) thread.lab = Eigen::Vector3d(*l, *number(16), *number(17));
+  thread.highlight_rad = number(18);
   return thread;
+}
+
+// The condition of a query, with a ? for each of `values`.
+std::string condition_of(const LibraryQuery& query, std::vector<std::string>& values) {
+  std::string condition = "WHERE removed_utc IS NULL";
+  std::istringstream words(query.words);
+  for (std::string word; words >> word;) {
+    condition +=
+        " AND instr(lower(barcode || ' ' || spools.name || ' ' || lot || ' ' || material || ' ' || colour || ' ' || "
+        "note || ' ' || threads.name || ' ' || tags), lower(?)) > 0";
+    values.push_back(word);
+  }
+  const auto between = [&](const char* column, const std::optional<std::array<double, 2>>& range) {
+    if (!range) return;
+    condition += std::string(" AND ") + column + " BETWEEN CAST(? AS REAL) AND CAST(? AS REAL)";
+    for (const double end : *range) values.push_back(shortest_text(end));
+  };
+  between("diameter_mm", query.diameter_mm);
+  between("highlight_rad", query.highlight_rad);
+  between("relative_rmse", query.relative_rmse);
+  return condition;
 }
 
 }  // namespace
@@ -192,13 +234,12 @@ LibraryThread Library::add(const fs::path& session_or_thread, const std::string&
                              "' has no result/thread.json; fit it with threadstation invert first");
   const ThreadFile thread = read_thread(file);
   const std::string content = text_of_file(file), sha256 = sha256_hex(content);
-  for (const LibraryThread& other : list())
-    if (other.sha256 == sha256)
-      throw std::runtime_error("'" + file.string() + "' is in the library already, as number " +
-                               std::to_string(other.number));
-  int taken_out = 0;
-  index_->run("SELECT id FROM threads WHERE sha256 = ?", {sha256},
-              [&](sqlite3_stmt* row) { taken_out = sqlite3_column_int(row, 0); });
+  int there = 0, taken_out = 0;
+  index_->run("SELECT id, removed_utc IS NOT NULL FROM threads WHERE sha256 = ?", {sha256}, [&](sqlite3_stmt* row) {
+    (sqlite3_column_int(row, 1) != 0 ? taken_out : there) = sqlite3_column_int(row, 0);
+  });
+  if (there > 0)
+    throw std::runtime_error("'" + file.string() + "' is in the library already, as number " + std::to_string(there));
   if (taken_out > 0)
     throw std::runtime_error("'" + file.string() + "' was taken out of the library, as number " +
                              std::to_string(taken_out) + "; put it back with threadstation library restore " +
@@ -231,6 +272,7 @@ LibraryThread Library::add(const fs::path& session_or_thread, const std::string&
         {spool, session, thread.name, sha256, utc, nlohmann::json(thread.diameter_mm).dump(), rmse});
     index_->run("SELECT id FROM threads WHERE sha256 = ?", {sha256},
                 [&](sqlite3_stmt* row) { number = sqlite3_column_int(row, 0); });
+    index_->measure(number, thread);
     FileSystem disk;
     store_file(disk, thread_file(number), std::as_bytes(std::span(content)));
     index_->execute("COMMIT");
@@ -241,14 +283,48 @@ LibraryThread Library::add(const fs::path& session_or_thread, const std::string&
   return show(number);
 }
 
-std::vector<LibraryThread> Library::list(const std::string& words) const {
+void Library::measure_all() const {
+  std::vector<int> numbers;
+  index_->run("SELECT id FROM threads WHERE lab_l IS NULL", {},
+              [&](sqlite3_stmt* row) { numbers.push_back(sqlite3_column_int(row, 0)); });
+  if (numbers.empty()) return;
+  index_->execute("BEGIN IMMEDIATE");
+  try {
+    for (const int number : numbers) index_->measure(number, read_thread(thread_file(number)));
+    index_->execute("COMMIT");
+  } catch (...) {
+    index_->run("ROLLBACK", {});
+    throw;
+  }
+}
+
+std::vector<LibraryThread> Library::find(const LibraryQuery& query) const {
+  if (query.near_lab || query.highlight_rad) measure_all();
   std::vector<LibraryThread> threads;
+  std::vector<std::string> values;
+  const std::string condition = condition_of(query, values);
+  if (!query.near_lab) {
+    const std::string most = query.most > 0 ? " LIMIT " + std::to_string(query.most) : "";
+    index_->run(kSelect + condition + " ORDER BY threads.id" + most, values,
+                [&](sqlite3_stmt* row) { threads.push_back(thread_of(row, Index::text)); });
+    return threads;
+  }
+  std::vector<std::pair<double, int>> near;  // with their numbers
   index_->run(
-      std::string(kSelect) +
-          "WHERE instr(lower(barcode || ' ' || spools.name || ' ' || lot || ' ' || material || ' ' || colour || "
-          "' ' || note || ' ' || threads.name || ' ' || tags), lower(?)) > 0 AND removed_utc IS NULL ORDER BY "
-          "threads.id",
-      {words}, [&](sqlite3_stmt* row) { threads.push_back(thread_of(row, Index::text)); });
+      "SELECT threads.id, lab_l, lab_a, lab_b FROM threads JOIN spools ON spools.id = threads.spool " + condition,
+      values, [&](sqlite3_stmt* row) {
+        const Eigen::Vector3d lab(sqlite3_column_double(row, 1), sqlite3_column_double(row, 2),
+                                  sqlite3_column_double(row, 3));
+        const double distance = (lab - *query.near_lab).norm();
+        if (distance <= query.within) near.emplace_back(distance, sqlite3_column_int(row, 0));
+      });
+  std::ranges::sort(near);
+  if (query.most > 0 && near.size() > static_cast<std::size_t>(query.most))
+    near.resize(static_cast<std::size_t>(query.most));
+  for (const auto& [distance, number] : near) {
+    threads.push_back(show(number));
+    threads.back().distance = distance;
+  }
   return threads;
 }
 

@@ -7,6 +7,8 @@
 // Errors: std::runtime_error, one line: the library, what was found and what to do.
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -25,6 +27,20 @@ struct LibraryThread {
   std::optional<double> relative_rmse;         // the fit's
   double diameter_mm = 0;
   std::vector<std::string> tags{};  // words of the lab's own
+  // Nothing where no search has asked for them yet, in a library of an earlier version.
+  std::optional<Eigen::Vector3d> lab{};   // of colour_of (thread_colour.h)
+  std::optional<double> highlight_rad{};  // the width of its highlight along the thread, alpha of R
+  std::optional<double> distance{};       // from the colour that was looked for
+};
+
+// What threads are looked for by; all of it must hold.
+struct LibraryQuery {
+  std::string words;                        // each in one of the thread's texts, case ignored (of ASCII letters)
+  std::optional<Eigen::Vector3d> near_lab;  // the nearest first
+  double within = 10;                       // their largest distance in CIE 1976 Lab, D50
+  // Least and most.
+  std::optional<std::array<double, 2>> diameter_mm, highlight_rad, relative_rmse;
+  int most = 0;  // threads; 0: all
 };
 
 // The tags in a text where they are parted by commas: without empty ones and repetitions. Errors: std::runtime_error
@@ -42,9 +58,9 @@ class Library {
   // Adds a session with result/thread.json, or a thread file, and returns its entry. `utc` is the time now. Errors: as
   // above, also for a thread file that the library has already.
   LibraryThread add(const std::filesystem::path& session_or_thread, const std::string& utc);
-  // The threads in the order of their numbers; with `words`, only those that have this text in one of their texts, case
-  // ignored.
-  std::vector<LibraryThread> list(const std::string& words = {}) const;
+  // The threads in the order of their numbers, or by their distance from a colour.
+  std::vector<LibraryThread> find(const LibraryQuery& query) const;
+  std::vector<LibraryThread> list(const std::string& words = {}) const { return find({.words = words}); }
   LibraryThread show(int number) const;  // one entry
   // What the lab knows of the thread's spool, written anew; other threads of the same spool (barcode, name and lot)
   // share it only as long as these three are the same. Errors: as above, also for a sample without any name.
@@ -61,6 +77,7 @@ class Library {
 
  private:
   class Index;
+  void measure_all() const;  // colours and highlights that are not known yet
   void set_removed(int number, const std::string& utc);
   std::filesystem::path folder_;
   std::unique_ptr<Index> index_;

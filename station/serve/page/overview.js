@@ -1,5 +1,6 @@
 // Start: what the station needs next, in one sentence with one button; what waits; what came out last.
 
+import {showBatches} from "/batches.js";
 import {calibrationVerdict, newestCalibration} from "/calibration.js";
 import {ago, allow, byId, make, percent, show, text} from "/document.js";
 import {go, jobRuns, picture, startJob, state, whyNot} from "/station.js";
@@ -58,4 +59,5 @@ export function showOverview() {
   show(byId("last-threads"), last, () => last.map(thread => make("a", {className: "card", href: "#/library"}, ...threadPicture(thread),
     make("strong", {textContent: thread.name}), make("span", {className: "dim", textContent: [thread.sample.lot, percent(thread.relative_rmse)].filter(Boolean).join(" · ")}))));
   byId("no-threads").hidden = last.length > 0;
+  return showBatches();
 }

@@ -226,6 +226,16 @@ TEST(BatchFile, ReadyPlansAreRead) {
   EXPECT_EQ(plan.step("invert")->needs, std::vector<std::string>{"develop"});
 }
 
+// The batch of an earlier day is done as it was meant.
+TEST_F(BatchTest, APlanOfAnEarlierDayIsDone) {
+  fs::copy(fs::path(FIXTURES_DIR) / "formats" / "2026-11", folder_ / "month", fs::copy_options::recursive);
+  const ProgramResult result =
+      run_threadstation({"batch", folder_ / "month/batch.json", "--out", folder_ / "batch", "--json"});
+  ASSERT_EQ(result.status, 0) << result.error;
+  EXPECT_EQ(count(result, "export", "done"), 2) << "of the session and of the thread file";
+  EXPECT_EQ(count(result, "render", "done"), 1);
+}
+
 TEST(SlurmWords, NumbersBecomeRanges) {
   EXPECT_EQ(station::ranges_text({3, 0, 1, 2, 7, 9, 10}), "0-3,7,9-10");
   EXPECT_EQ(station::ranges_text({5}), "5");

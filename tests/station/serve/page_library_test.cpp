@@ -2,6 +2,7 @@
 #include "station/documents/thread_file.h"
 #include "station/serve/result_document.h"
 #include "station/thread/library.h"
+#include "tests/station/commands/program.h"
 #include "tests/station/serve/technician_page_fixture.h"
 
 namespace station_test {
@@ -56,6 +57,29 @@ TEST_F(TechnicianPage, ADesignIsWovenOfThreadsOfTheLibrary) {
   const HttpResponse packed = asked("/download", {{"of", "design"}, {"name", name}});
   EXPECT_NE(packed.body.find("/weft_thread.json"), std::string::npos);
   EXPECT_NE(packed.body.find("/swatch.exr"), std::string::npos);
+}
+
+TEST_F(TechnicianPage, BatchesInTheWorkspaceAreShownAndStopped) {
+  EXPECT_EQ(get("/api/batches").size(), 0U);
+  std::filesystem::create_directories(folder_ / "bench/batches");
+  const std::string batch = folder_ / "bench/batches/tables";
+  const ProgramResult done =
+      run_threadstation({"batch", std::string(DATA_DIR) + "/batches/ready_threads.json", "--out", batch, "--quiet"});
+  ASSERT_EQ(done.status, 0) << done.error;
+  const json shown = get("/api/batches");
+  ASSERT_EQ(shown.size(), 1U);
+  EXPECT_EQ(shown[0].at("name"), "tables");
+  EXPECT_EQ(shown[0].at("steps")[0].at("done"), shown[0].at("steps")[0].at("tasks"));
+  EXPECT_NE(asked("/batch", {{"name", "tables"}}).body.find("<th>step</th>"), std::string::npos);
+  EXPECT_EQ(asked("/batch", {{"name", "none"}}).status, 404);
+  EXPECT_EQ(asked("/batch", {{"name", "../x"}}).status, 400);
+  EXPECT_EQ(refused_with("/api/batch", {{"client", "me"}, {"name", "tables"}}), 409) << "not in control";
+  post("/api/control", {{"client", "me"}});
+  EXPECT_EQ(json::parse(post("/api/batch", {{"client", "me"}, {"name", "tables"}}).body).at("message"),
+            "nothing of it is running");
+  EXPECT_EQ(refused_with("/api/batch", {{"client", "me"}, {"name", "none"}}), 404);
+  std::ofstream(batch + "/plan.json") << "{";
+  EXPECT_NE(get("/api/batches")[0].at("problem").get<std::string>().find("plan.json"), std::string::npos);
 }
 
 TEST_F(TechnicianPage, AnExportIsDownloadedAsOneFile) {

@@ -5,7 +5,12 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
+#include <random>
+
 #include "station/documents/manifest.h"
+#include "station/documents/reader.h"
+#include "station/documents/thread_file.h"
+#include "station/thread/thread_colour.h"
 #include "tests/places.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
@@ -45,6 +50,52 @@ TEST_F(ThreadLibrary, RefusesWhatItHasAlreadyAndWhatIsNoThread) {
   EXPECT_THAT(message_of([&] { Library(folder / "none", false); }), HasSubstr("no library"));
   write_text(folder / "letter.txt", "not ours");
   EXPECT_THAT(message_of([&] { Library((folder / "letter.txt").parent_path(), true); }), HasSubstr("other files"));
+}
+
+// Threads drawn at random, found by colour, by number and by words, as a plain search through their files finds them.
+TEST_F(ThreadLibrary, FindsByColourAndNumbersWhatASearchThroughAllFilesFinds) {
+  constexpr unsigned kSeed = 20261130;
+  constexpr int kThreads = 60;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<> any(0, 1);
+  Library library(place, true);
+  std::vector<ThreadFile> files;
+  for (int i = 0; i < kThreads; ++i) {
+    ThreadFile one = read_thread(thread("silk_red"));
+    one.fit = nlohmann::json::object();  // its colour is the model's then
+    one.name = i % 3 == 0 ? "Linen " + std::to_string(i) : "cotton " + std::to_string(i);
+    for (double& sigma : one.parameters.sigma_a) sigma = 3 * any(random) * any(random);
+    one.parameters.alpha[0] = 0.1 + 0.4 * any(random);
+    one.diameter_mm = 0.1 + any(random);
+    write_json_file(folder / "one.json", to_json(one));
+    library.add(folder / "one.json", kNow);
+    files.push_back(read_thread(folder / "one.json"));
+  }
+  for (int search = 0; search < 20; ++search) {
+    const Eigen::Vector3d wanted = colour_of(files[static_cast<std::size_t>(search)]).lab + Eigen::Vector3d(3, -2, 4);
+    const LibraryQuery query{.words = search % 2 == 0 ? "linen" : "",
+                             .near_lab = wanted,
+                             .within = 25,
+                             .diameter_mm = std::array{0.3, 0.9},
+                             .highlight_rad = std::array{0.1, 0.4}};
+    std::vector<std::pair<double, int>> expected;
+    for (int i = 0; i < kThreads; ++i) {
+      const ThreadFile& file = files[static_cast<std::size_t>(i)];
+      const double distance = (colour_of(file).lab - wanted).norm();
+      if ((query.words.empty() || i % 3 == 0) && distance <= 25 && file.diameter_mm >= 0.3 && file.diameter_mm <= 0.9 &&
+          file.parameters.alpha[0] <= 0.4)
+        expected.emplace_back(distance, i + 1);
+    }
+    std::ranges::sort(expected);
+    const std::vector<LibraryThread> found = library.find(query);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].number, expected[i].second);
+      EXPECT_NEAR(found[i].distance.value(), expected[i].first, 1e-9);
+    }
+    if (expected.size() > 2) EXPECT_EQ(library.find({.near_lab = wanted, .within = 25, .most = 2}).size(), 2U);
+  }
 }
 
 TEST_F(ThreadLibrary, EditsTheSampleOfOneThreadOnly) {
@@ -93,12 +144,16 @@ TEST_F(ThreadLibrary, TakesOutAndPutsBackWithoutLosingAnything) {
   library.export_thread(1, folder / "out");
 }
 
-// Libraries as they were made before threads could be taken out, and before there were tags.
+// Libraries as they were made before threads could be taken out, before there were tags and before colours.
 TEST_F(ThreadLibrary, ReadsThoseOfTheVersionsBefore) {
-  const std::string kWithoutTags = "ALTER TABLE threads DROP COLUMN tags; ",
-                    kWithoutRemoved = "ALTER TABLE threads DROP COLUMN removed_utc; ";
+  std::string without_measures;
+  for (const char* column : {"lab_l", "lab_a", "lab_b", "highlight_rad"})
+    without_measures += std::string("ALTER TABLE threads DROP COLUMN ") + column + "; ";
+  const std::string without_tags = without_measures + "ALTER TABLE threads DROP COLUMN tags; ",
+                    without_removed = without_tags + "ALTER TABLE threads DROP COLUMN removed_utc; ";
   for (const std::string& before :
-       {kWithoutTags + kWithoutRemoved + "PRAGMA user_version = 1", kWithoutTags + "PRAGMA user_version = 2"}) {
+       {without_removed + "PRAGMA user_version = 1", without_tags + "PRAGMA user_version = 2",
+        without_measures + "PRAGMA user_version = 3"}) {
     fs::remove_all(place);
     Library(place, true).add(thread("silk_blue"), kNow);
     sqlite3* index = nullptr;
@@ -107,6 +162,8 @@ TEST_F(ThreadLibrary, ReadsThoseOfTheVersionsBefore) {
     sqlite3_close(index);
     Library library(place, false);
     ASSERT_EQ(library.list().size(), 1U);
+    const Eigen::Vector3d lab = colour_of(read_thread(thread("silk_blue"))).lab;
+    EXPECT_EQ(library.find({.near_lab = lab, .within = 0.01}).size(), 1U) << "measured when it is asked for";
     EXPECT_EQ(library.tag(1, {"old"}).tags.size(), 1U);
     library.remove(1, kNow);
     EXPECT_EQ(Library(place, false).list().size(), 0U);
