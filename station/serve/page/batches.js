@@ -6,6 +6,7 @@ import {ask, post, whyNot} from "/station.js";
 
 const kStates = ["done", "running", "queued", "ready", "waiting", "stopped", "failed", "died", "held"];
 const kNotOften_ms = 15000;  // each question goes through all records, and to Slurm
+const kMostProblems = 20;    // the report has all of them
 
 let asked = -Infinity, batches = [];
 
@@ -21,7 +22,7 @@ function table(batch) {
 function card(batch) {
   const title = make("h4", {textContent: batch.name});
   if (batch.problem) return make("div", {}, title, make("p", {className: "badly", textContent: said(batch.problem)}));
-  const problems = batch.problems.map(problem => make("li", {textContent: `${problem.task}: ${problem.why}`}));
+  const problems = batch.problems.slice(0, kMostProblems).map(problem => make("li", {textContent: `${problem.task}: ${problem.why}`}));
   const button = make("button", {type: "button", textContent: text("stop_batch"), ariaLabel: `${text("stop_batch")} ${batch.name}`});
   button.onclick = async () => { await post("/api/batch", {name: batch.name}); asked = -Infinity; showBatches(); };
   allow(button, busy(batch) ? whyNot() : text("batch_rests"));
