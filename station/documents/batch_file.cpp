@@ -41,8 +41,8 @@ std::vector<std::string> texts(ObjectReader& reader, const std::string& key) {
 // What the batch gives itself.
 void check_options(ObjectReader& reader, const BatchStep& step) {
   for (const std::string& option : step.options)
-    for (const char* own : {"--out", "--json", "--quiet", "--model", "--spool"})
-      if (option == own || option.starts_with(std::string(own) + "="))
+    for (const std::string own : {"--out", "--json", "--quiet", "--spool", "--model"})
+      if ((option == own || option.starts_with(own + "=")) && !(own == "--model" && step.command == "validate"))
         reader.refuse("options", "found " + option + ", which the batch gives itself (a model by the key \"model\")");
 }
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <thread>
 
+#include "station/batch/batch_state.h"
 #include "station/batch/slurm.h"
 #include "station/documents/batch_file.h"
 #include "station/documents/reader.h"
@@ -21,6 +22,22 @@ using nlohmann::json;
 
 const json kFit{{"do", "invert"}, {"options", {"--paths", "16", "--spp", "1"}}, {"memory_gib", 0.3}};
 const json kTables{{"do", "export"}, {"options", {"--only", "csv"}}, {"memory_gib", 0.3}};
+
+// Whether any two tasks of the step ran at the same time.
+bool any_together(const fs::path& folder, const std::string& step, int items) {
+  const auto seconds = [](const std::string& utc) {
+    return 3600 * std::stod(utc.substr(11, 2)) + 60 * std::stod(utc.substr(14, 2)) + std::stod(utc.substr(17));
+  };
+  std::vector<std::pair<double, double>> runs;  // end, seconds
+  for (int i = 0; i < items; ++i) {
+    const json record = record_in(folder, step, "s0" + std::to_string(i));
+    runs.emplace_back(seconds(record.at("ended_utc")), record.at("seconds"));
+  }
+  std::ranges::sort(runs);
+  for (std::size_t i = 1; i < runs.size(); ++i)
+    if (runs[i].first - runs[i].second < runs[i - 1].first - 0.1) return true;
+  return false;
+}
 
 class BatchTest : public ::testing::Test {
  protected:
@@ -149,21 +166,62 @@ TEST_F(BatchTest, UsesNoMoreCoresThanItMay) {
   make_sessions(folder_.path(), 4, true);
   written_plan(folder_.path(), json::array({kFit}));
   ASSERT_EQ(batch({"--cores", "1"}).status, 0);
-  std::vector<std::pair<std::string, double>> ends;  // with their seconds
-  for (int i = 0; i < 4; ++i) {
-    const json record = record_in(folder_.path(), "invert", "s0" + std::to_string(i));
-    ends.emplace_back(record.at("ended_utc"), record.at("seconds"));
-  }
-  std::ranges::sort(ends);
-  const auto seconds = [](const std::string& utc) {
-    return 3600 * std::stod(utc.substr(11, 2)) + 60 * std::stod(utc.substr(14, 2)) + std::stod(utc.substr(17));
-  };
-  for (std::size_t i = 1; i < ends.size(); ++i)
-    EXPECT_GE(seconds(ends[i].first) - ends[i].second, seconds(ends[i - 1].first) - 0.1) << "one after the other";
+  EXPECT_FALSE(any_together(folder_.path(), "invert", 4)) << "one after the other";
   written_plan(folder_.path(), json::array({{{"do", "invert"}, {"cores", 64}}}));
   const ProgramResult many = batch({"--cores", "1"});
   EXPECT_EQ(many.status, 1);
   EXPECT_NE(many.error.find("is to have 64 cores, and there are 1"), std::string::npos) << many.error;
+}
+
+TEST_F(BatchTest, TakesNoMoreMemoryThanItMay) {
+  make_sessions(folder_.path(), 4, true);
+  json fit = kFit;
+  fit["options"] = {"--paths", "256", "--spp", "1"};
+  written_plan(folder_.path(), json::array({fit}));
+  ASSERT_EQ(batch({"--memory-gib", "0.5"}).status, 0);  // one has 0.3 until it is measured, and much less then
+  const json first = record_in(folder_.path(), "invert", "s00"), second = record_in(folder_.path(), "invert", "s01");
+  EXPECT_LT(first.at("ended_utc").get<std::string>(), second.at("ended_utc").get<std::string>());
+  fit["memory_gib"] = 0.3;
+  fit["options"] = {"--paths", "255", "--spp", "1"};
+  written_plan(folder_.path(), json::array({fit}));
+  const double wanted = 1.3 * first.at("peak_mib").get<double>() + 100;
+  ASSERT_EQ(batch({"--memory-gib", std::to_string(1.5 * wanted / 1024)}).status, 0);
+  EXPECT_FALSE(any_together(folder_.path(), "invert", 4));
+}
+
+// What a task is expected to take: the plan's word, then what others took, and twice as much after each death.
+TEST(BatchNeeds, FollowWhatTasksTookAndDoubleWithEachDeath) {
+  const station::BatchStep step{.name = "fit", .command = "invert", .cores = 2, .memory_gib = 1, .minutes = 30};
+  const station::BatchItem item{.name = "a"};
+  std::vector<station::TaskStatus> states(2);
+  for (station::TaskStatus& status : states) status.task = {&step, &item};
+  const station::TaskNeeds first = station::expected_needs(states, step);
+  EXPECT_EQ(first.cores, 2);
+  EXPECT_EQ(first.memory_mib, 1024);
+  EXPECT_EQ(first.minutes, 30);
+  states[1].record = station::TaskRecord{.done = true, .seconds = 120, .peak_mib = 200};
+  const station::TaskNeeds later = station::expected_needs(states, step),
+                           again = station::expected_needs(states, step, 2);
+  EXPECT_EQ(later.memory_mib, 1.3 * 200 + 100);
+  EXPECT_EQ(later.minutes, 2 + 3 * 2);
+  EXPECT_EQ(again.memory_mib, 4 * later.memory_mib);
+  EXPECT_EQ(again.minutes, 4 * later.minutes);
+  states[1].record->done = false;
+  EXPECT_EQ(station::expected_needs(states, step).memory_mib, 1024) << "a failure tells nothing";
+}
+
+TEST_F(BatchTest, ValidatesSpools) {
+  station::write_json_file(folder_ / "plan.json",
+                           {{"format", "threadstation/batch"},
+                            {"version", 1},
+                            {"spools", json::array({std::string(DATA_DIR) + "/spools/packed_silk_red_20.json"})},
+                            {"steps", json::array({{{"do", "validate"},
+                                                    {"options",
+                                                     {"--rig", std::string(DATA_DIR) + "/rigs/simulated.json",
+                                                      "--folds", "0", "--model", "fiber", "--spp", "1"}}}})}});
+  const ProgramResult result = batch();
+  ASSERT_EQ(result.status, 0) << result.error << result.out;
+  EXPECT_TRUE(fs::exists(folder_ / "batch/results/validate/packed_silk_red_20/validation.json"));
 }
 
 TEST_F(BatchTest, RendersScenesAndWeavesThreadFiles) {
