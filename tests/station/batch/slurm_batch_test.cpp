@@ -161,6 +161,8 @@ TEST_F(SlurmBatchTest, WhatWasTakenBackOrCancelledIsToldOfAndDoneLater) {
   EXPECT_EQ(cancelled.status, 0) << cancelled.error;
   EXPECT_NE(cancelled.out.find("taken back from Slurm: "), std::string::npos) << cancelled.out;
   ASSERT_TRUE(slurm_->wait_until_empty(60));
+  // The command of the killed task is nobody's now (this Slurm tracks processes by their parents) and ends by itself.
+  for (int i = 0; i < 100 && count(status(), "running") > 0; ++i) sleep_s(0.5);
   const json description = status();
   EXPECT_GT(count(description, "done"), 0);
   EXPECT_EQ(count(description, "queued") + count(description, "running"), 0);
