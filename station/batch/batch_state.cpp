@@ -79,7 +79,7 @@ std::vector<TaskStatus> states_of(const BatchWork& work, const QueuedTasks& queu
   return all;
 }
 
-TaskNeeds expected_needs(const std::vector<TaskStatus>& all, const BatchStep& step, int deaths) {
+TaskNeeds expected_needs(const std::vector<TaskStatus>& all, const BatchStep& step) {
   constexpr double kMoreMemory = 1.3, kMoreTime = 3, kLeastMinutes = 2, kOwnMib = 100, kMib = 1024;
   TaskNeeds needs{.cores = step.cores, .memory_mib = step.memory_gib * kMib, .minutes = step.minutes};
   double peak_mib = 0, seconds = 0;
@@ -90,8 +90,13 @@ TaskNeeds expected_needs(const std::vector<TaskStatus>& all, const BatchStep& st
     }
   if (peak_mib > 0) needs.memory_mib = kMoreMemory * peak_mib + kOwnMib;
   if (peak_mib > 0) needs.minutes = kLeastMinutes + kMoreTime * seconds / 60;
-  needs.memory_mib *= std::pow(2, deaths);
-  needs.minutes *= std::pow(2, deaths);
+  return needs;
+}
+
+TaskNeeds after_deaths(TaskNeeds needs, int deaths) {
+  constexpr int kMostDeaths = 3;
+  const double factor = std::pow(2, std::min(deaths, kMostDeaths));
+  needs.memory_mib *= factor, needs.minutes *= factor;
   return needs;
 }
 

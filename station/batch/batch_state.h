@@ -37,12 +37,13 @@ std::vector<TaskStatus> states_of(const BatchWork& work, const QueuedTasks& queu
 // The place of a task in the states, where it stands before `end`: tasks of one item stand together.
 std::size_t place_before(const std::vector<TaskStatus>& states, std::size_t end, const BatchTask& task);
 
-// What one task of the step will take, by those that have ended in this batch, or by the plan while none has. With each
-// death of the task it is expected to take twice as much.
+// What one task of the step will take, by those that have ended in this batch, or by the plan while none has; and one
+// that has died: twice as much with each death, up to the third.
 struct TaskNeeds {
   int cores = 1;
   double memory_mib = 0, minutes = 0;
 };
-TaskNeeds expected_needs(const std::vector<TaskStatus>& all, const BatchStep& step, int deaths = 0);
+TaskNeeds expected_needs(const std::vector<TaskStatus>& all, const BatchStep& step);
+TaskNeeds after_deaths(TaskNeeds needs, int deaths);
 
 }  // namespace station

@@ -8,6 +8,7 @@
 
 #include "station/cloth/render/render_identity.h"
 #include "station/documents/disk/file_name.h"
+#include "station/documents/disk/folder_lock.h"
 #include "station/documents/disk/stored_file.h"
 #include "station/documents/migrations.h"
 #include "station/documents/reader.h"
@@ -52,9 +53,13 @@ void check(const BatchFile& plan, const fs::path& path, BatchItemKind kind) {
                            name_of(kind) + "s\"");
 }
 
-// "silk-red" for .../silk_red.json; a thread or fit that lies in a session is called as the session.
-std::string name_for(const fs::path& path) {
-  return safe_name((path.has_filename() ? path : path.parent_path()).stem().string());
+// "silk_red" for .../silk_red.json; a session's fit is called as the session.
+std::string name_for(const fs::path& path, BatchItemKind kind) {
+  const fs::path whole = path.has_filename() ? path : path.parent_path();
+  if (kind == BatchItemKind::session) return safe_name(whole.filename().string());
+  for (fs::path above = whole.parent_path(); above.has_relative_path(); above = above.parent_path())
+    if (kind == BatchItemKind::thread && is_session(above)) return safe_name(above.filename().string());
+  return safe_name(whole.stem().string());
 }
 
 std::vector<BatchItem> wanted_items(const BatchFile& plan) {
@@ -67,7 +72,7 @@ std::vector<BatchItem> wanted_items(const BatchFile& plan) {
                                  "s\"; check the name, which counts from " + plan.folder.string());
       for (const fs::path& path : paths) {
         check(plan, path, kind);
-        BatchItem item{.kind = kind, .name = name_for(path), .path = path, .planned = true};
+        BatchItem item{.kind = kind, .name = name_for(path, kind), .path = path, .planned = true};
         if (const auto problem = problem_with_name(item.name))
           throw std::runtime_error(plan.source + ": '" + path.string() + "' cannot be called \"" + item.name +
                                    "\": " + *problem + "; rename it");
@@ -79,6 +84,14 @@ std::vector<BatchItem> wanted_items(const BatchFile& plan) {
       }
     }
   return items;
+}
+
+// Anything but the lock of a batch that is about to begin.
+bool holds_other_things(const fs::path& folder) {
+  std::error_code none;
+  for (fs::directory_iterator entry(folder, none), end; !none && entry != end; entry.increment(none))
+    if (entry->path().filename() != kLockFile) return true;
+  return false;
 }
 
 json to_json(const std::vector<BatchItem>& items) {
@@ -152,11 +165,11 @@ void add_inputs(std::vector<fs::path>& files, const BatchTask& task) {
 
 }  // namespace
 
-BatchWork begin_batch(const fs::path& plan, const fs::path& folder) {
+BatchWork planned_batch(const fs::path& plan, const fs::path& folder) {
   BatchWork work{.folder = fs::absolute(folder).lexically_normal(), .plan = read_batch(plan)};
   std::error_code ignored;
   const bool goes_on = fs::exists(items_of(work.folder), ignored);
-  if (!goes_on && fs::exists(work.folder, ignored) && !fs::is_empty(work.folder, ignored))
+  if (!goes_on && holds_other_things(work.folder))
     throw std::runtime_error("'" + folder.string() + "' holds other things than a batch; give --out a new folder");
   const std::vector<BatchItem> wanted = wanted_items(work.plan);
   if (goes_on) work.items = read_items(items_of(work.folder));
@@ -175,10 +188,12 @@ BatchWork begin_batch(const fs::path& plan, const fs::path& folder) {
       throw std::runtime_error(work.plan.source + ": the step \"" + step.name +
                                "\" has nothing that it could be done " +
                                "with; give it sessions, threads, scenes or spools, or take it out");
-  make_folder(work.folder);
+  return work;
+}
+
+void store_batch(const BatchWork& work) {
   write_json_file(plan_of(work.folder), work.plan.document);
   write_json_file(items_of(work.folder), to_json(work.items));
-  return work;
 }
 
 BatchWork read_batch_work(const fs::path& folder) {
@@ -210,7 +225,8 @@ std::vector<BatchTask> needs_of(const BatchWork& work, const BatchTask& task) {
 
 BatchTask task_named(const BatchWork& work, const std::string& step, int item) {
   const BatchStep* found = work.plan.step(step);
-  if (!found || item < 0 || item >= static_cast<int>(work.items.size()))
+  if (!found || item < 0 || item >= static_cast<int>(work.items.size()) ||
+      !work.items[static_cast<std::size_t>(item)].planned)
     throw std::runtime_error("the batch '" + work.folder.string() + "' has no step \"" + step + "\" with an item " +
                              std::to_string(item) + "; its plan has changed: run threadstation batch again");
   return {found, &work.items[static_cast<std::size_t>(item)]};

@@ -37,9 +37,12 @@ struct BatchTask {
   const BatchItem* item = nullptr;
 };
 
-// Begins a batch in a new or empty folder, or goes on with one by a plan that may have changed. Errors: also for names
-// that nothing is found for, a session that is none, two items of one name, and a folder that holds something else.
-BatchWork begin_batch(const std::filesystem::path& plan, const std::filesystem::path& folder);
+// What a batch in a new or empty folder will be, or one that goes on by a plan that may have changed; nothing is
+// written. Errors: also for names that nothing is found for, a session that is none, two items of one name, and a
+// folder that holds something else.
+BatchWork planned_batch(const std::filesystem::path& plan, const std::filesystem::path& folder);
+// Writes plan and items, by whoever holds the folder's lock.
+void store_batch(const BatchWork& work);
 // A batch that has begun. Errors: also for a folder that is none.
 BatchWork read_batch_work(const std::filesystem::path& folder);
 

@@ -9,8 +9,10 @@
 #include <thread>
 
 #include "station/batch/batch_report.h"
+#include "station/batch/slurm.h"
 #include "station/batch/slurm_batch.h"
 #include "station/documents/disk/folder_lock.h"
+#include "station/documents/disk/stored_file.h"
 #include "station/output/interrupt.h"
 
 namespace station {
@@ -26,9 +28,8 @@ std::vector<TaskStatus> known_states(const BatchWork& work) {
   return states;
 }
 
-std::size_t count_bad(const std::vector<TaskStatus>& states) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(states, [](const TaskStatus& status) { return is_bad(status.state); }));
+std::size_t count_of(const std::vector<TaskStatus>& states, TaskState state) {
+  return static_cast<std::size_t>(std::ranges::count(states, state, &TaskStatus::state));
 }
 
 void wait_for_slurm(const BatchWork& work, ProgressStyle style) {
@@ -36,9 +37,7 @@ void wait_for_slurm(const BatchWork& work, ProgressStyle style) {
   watch_interrupts();
   for (;;) {
     const std::vector<TaskStatus> states = known_states(work);
-    const auto of = [&](TaskState state) {
-      return static_cast<int>(std::ranges::count(states, state, &TaskStatus::state));
-    };
+    const auto of = [&](TaskState state) { return static_cast<int>(count_of(states, state)); };
     progress.show(
         of(TaskState::done), static_cast<int>(states.size()),
         std::to_string(of(TaskState::running)) + " running, " + std::to_string(of(TaskState::queued)) + " queued");
@@ -64,7 +63,18 @@ bool does_batches(int process) {
 }  // namespace
 
 BatchOutcome do_batch(const DoBatchRequest& request) {
-  const BatchWork work = begin_batch(request.plan, request.folder);
+  make_folder(planned_batch(request.plan, request.folder).folder);
+  FileSystem disk;
+  std::optional<OpenFile> lock = try_lock_folder(request.folder, disk);
+  if (!lock)
+    throw std::runtime_error("the batch '" + request.folder.string() + "' is done by process " +
+                             std::to_string(holder_of_lock(request.folder)) +
+                             " already; wait until it ends, or stop it with threadstation batch cancel");
+  const BatchWork work = planned_batch(request.plan, request.folder);  // now nobody else numbers items
+  if (request.on == "local" && !jobs_in_slurm(work).empty())
+    throw std::runtime_error("Slurm has tasks of the batch '" + work.folder.string() +
+                             "'; wait for them, or take them back with threadstation batch cancel");
+  store_batch(work);
   BatchOutcome outcome;
   std::vector<TaskStatus> states;
   if (request.on == "slurm") {
@@ -76,17 +86,16 @@ BatchOutcome do_batch(const DoBatchRequest& request) {
                                                      std::to_string(submitted.jobs.size()) + " job array(s): " + jobs;
     if (submitted.queued > 0) outcome.submitted += "; Slurm had " + std::to_string(submitted.queued) + " already";
     outcome.submitted += "; threadstation batch status " + work.folder.string() + " tells how far they are";
+    if (!submitted.refused.empty()) throw std::runtime_error(submitted.refused + " (" + outcome.submitted + ")");
+    lock.reset();
     if (request.wait) wait_for_slurm(work, request.progress_style);
     states = known_states(work);
-    outcome.bad = request.wait ? count_bad(states) : 0;
+    outcome.bad = request.wait ? states.size() - count_of(states, TaskState::done) : 0;
   } else {
     LocalRequest local = request.local;
     local.progress_style = request.progress_style;
-    if (is_in_slurm(work) && !queued_in_slurm(work).empty())
-      throw std::runtime_error("Slurm has tasks of the batch '" + work.folder.string() +
-                               "'; wait for them, or take them back with threadstation batch cancel");
     states = run_batch(work, local);
-    outcome.bad = count_bad(states);
+    outcome.bad = states.size() - count_of(states, TaskState::done);
   }
   outcome.tasks = states.size();
   outcome.description = describe_batch(work, states);
@@ -100,17 +109,23 @@ nlohmann::json batch_status(const fs::path& folder) {
 
 std::string cancel_batch(const fs::path& folder) {
   const BatchWork work = read_batch_work(folder);
-  if (is_in_slurm(work)) {
-    const std::vector<std::string> jobs = cancel_in_slurm(work);
-    if (!jobs.empty()) return "taken back from Slurm: " + std::to_string(jobs.size()) + " job array(s)";
+  std::string done;
+  if (folder_in_use(work.folder)) {
+    const int process = holder_of_lock(work.folder);
+    if (!does_batches(process))
+      throw std::runtime_error("the batch is done by process " + std::to_string(process) +
+                               " of another computer; stop it there, with ctrl-C");
+    kill(process, SIGINT);
+    done = "process " + std::to_string(process) + " was told to stop; what is done stays";
   }
-  if (!folder_in_use(work.folder)) return "nothing of it is running";
-  const int process = holder_of_lock(work.folder);
-  if (!does_batches(process))
-    throw std::runtime_error("the batch is done by process " + std::to_string(process) +
-                             " of another computer; stop it there, with ctrl-C");
-  kill(process, SIGINT);
-  return "process " + std::to_string(process) + " was told to stop; what is done stays";
+  if (!is_in_slurm(work)) return done.empty() ? "nothing of it is running" : done;
+  // What is being submitted at this moment is taken back as well.
+  for (int i = 0; i < 50 && folder_in_use(work.folder); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  const std::vector<std::string> jobs = jobs_in_slurm(work);
+  slurm_cancel(jobs);
+  if (!jobs.empty()) done = "taken back from Slurm: " + std::to_string(jobs.size()) + " job array(s)";
+  return done.empty() ? "nothing of it is running" : done;
 }
 
 }  // namespace station

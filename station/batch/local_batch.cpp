@@ -7,10 +7,10 @@
 #include <csignal>
 #include <fstream>
 #include <list>
+#include <map>
 #include <stdexcept>
 #include <thread>
 
-#include "station/documents/disk/folder_lock.h"
 #include "station/output/child_process.h"
 #include "station/output/interrupt.h"
 
@@ -60,6 +60,7 @@ class LocalBatch {
     // Those that failed, or died, are tried again, and then what was held by them.
     for (TaskStatus& status : states_)
       if (status.state != TaskState::done) status.state = TaskState::waiting;
+    for (const BatchStep& step : work_.plan.steps) expected_[&step] = expected_needs(states_, step);
     for (std::size_t i = 0; i < states_.size(); ++i) {
       needs_.emplace_back();
       for (const BatchTask& need : needs_of(work_, states_[i].task))
@@ -70,7 +71,8 @@ class LocalBatch {
   std::vector<TaskStatus> run() {
     for (int told = 0;;) {
       update();
-      if (!interrupted()) start_what_can_start();
+      if (changed_ && !interrupted()) start_what_can_start();
+      changed_ = false;
       if (running_.empty()) break;
       for (; told < interrupts(); ++told)
         for (const RunningTask& task : running_) task.process.signal(SIGINT);
@@ -89,14 +91,14 @@ class LocalBatch {
     return static_cast<std::size_t>(std::ranges::count(states_, state, &TaskStatus::state));
   }
 
-  // What has ended, and what that lets begin or holds.
+  // What has ended, and what that lets begin or holds. Nothing changes while nothing ends.
   void update() {
     for (auto at = running_.begin(); at != running_.end();) {
       const std::optional<EndedProcess> ended = at->process.ended();
       if (ended) finish(*at, *ended);
       at = ended ? running_.erase(at) : std::next(at);
     }
-    for (std::size_t i = 0; i < states_.size(); ++i)
+    for (std::size_t i = 0; changed_ && i < states_.size(); ++i)
       if (states_[i].state == TaskState::waiting) look_at_needs(i);
   }
 
@@ -118,8 +120,10 @@ class LocalBatch {
     free_mib_ += ran.memory_mib;
     const std::filesystem::path folder = task_folder(work_, status.task);
     status.record = read_record(folder);
+    changed_ = true;
     if (status.record && status.record->done && ended.status == 0) {
       status.state = TaskState::done;
+      expected_[status.task.step] = expected_needs(states_, *status.task.step);
     } else if (status.record && !status.record->done) {
       status.state = TaskState::failed, status.why = status.record->problem;
     } else {
@@ -139,10 +143,11 @@ class LocalBatch {
     for (std::size_t i = 0; i < states_.size() && !free_cores_.empty(); ++i) {
       TaskStatus& status = states_[i];
       if (status.state != TaskState::ready) continue;
-      const TaskNeeds needs = expected_needs(states_, *status.task.step, status.deaths);
-      const auto wanted = static_cast<std::size_t>(needs.cores);
-      if (wanted > free_cores_.size() || (needs.memory_mib > free_mib_ && !running_.empty())) continue;
-      if (work_.plan.at_once > 0 && running_of(*status.task.step) >= work_.plan.at_once) continue;
+      const BatchStep& step = *status.task.step;
+      if (static_cast<std::size_t>(step.cores) > free_cores_.size()) continue;
+      if (work_.plan.at_once > 0 && running_of(step) >= work_.plan.at_once) continue;
+      const TaskNeeds needs = after_deaths(expected_.at(&step), status.deaths);
+      if (needs.memory_mib > free_mib_ && !running_.empty()) continue;
       start(i, needs);
     }
   }
@@ -182,19 +187,15 @@ class LocalBatch {
   int all_cores_ = 0;
   double free_mib_ = 0;
   std::list<RunningTask> running_;
-  std::vector<std::vector<std::size_t>> needs_;  // of each task, by its place in the states
+  std::map<const BatchStep*, TaskNeeds> expected_;  // of one task of each step, as far as is known
+  bool changed_ = true;                             // since tasks were started last
+  std::vector<std::vector<std::size_t>> needs_;     // of each task, by its place in the states
 };
 
 }  // namespace
 
 std::vector<TaskStatus> run_batch(const BatchWork& work, const LocalRequest& request) {
   watch_interrupts(100);
-  FileSystem disk;
-  const std::optional<OpenFile> lock = try_lock_folder(work.folder, disk);
-  if (!lock)
-    throw std::runtime_error("the batch '" + work.folder.string() + "' is done by process " +
-                             std::to_string(holder_of_lock(work.folder)) +
-                             " already; wait until it ends, or stop it with threadstation batch cancel");
   return LocalBatch(work, request).run();
 }
 

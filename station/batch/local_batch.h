@@ -15,8 +15,8 @@ struct LocalRequest {
 };
 
 // Does all tasks that are not done; those that failed before are tried again. What cannot be done is left, and told of
-// in the states that it returns. Errors: std::runtime_error, one line: another process does this batch already; ctrl-C,
-// which is handed on to all tasks, and then the same batch goes on; a task that needs more cores than there are.
+// in the states that it returns. The caller holds the batch's lock. Errors: std::runtime_error, one line: ctrl-C, which
+// is handed on to all tasks, and then the same batch goes on; a task that needs more cores than there are.
 std::vector<TaskStatus> run_batch(const BatchWork& work, const LocalRequest& request);
 
 }  // namespace station

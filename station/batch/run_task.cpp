@@ -13,6 +13,8 @@
 
 #include "rig/devices/clock.h"
 #include "station/batch/task_record.h"
+#include "station/cloth/render/checkpoint.h"
+#include "station/cloth/render/render_scene.h"
 #include "station/documents/disk/folder_lock.h"
 #include "station/documents/disk/sha256.h"
 #include "station/documents/disk/stored_file.h"
@@ -62,13 +64,17 @@ void check_needs(const BatchWork& work, const BatchTask& task) {
   }
 }
 
-// A folder or file that an attempt with other inputs has left. Where they are the same, its command goes on with it, if
-// it can.
+// What an attempt with other inputs has left. Where they are the same, its command goes on with it, if it can.
 void clear_result(const BatchWork& work, const BatchTask& task, bool same_inputs) {
   const fs::path result = result_of(work, task);
   if (result.empty()) return;
   std::error_code ignored;
-  if (!same_inputs || task.step->command == "export") fs::remove_all(result, ignored);
+  if (!same_inputs || task.step->command == "export") {
+    fs::remove_all(result, ignored);
+    fs::remove(checkpoint_of(result), ignored);  // of a rendering
+    fs::remove(preview_of(result), ignored);
+    if (task.step->command == "render") remove_parts(result);
+  }
   make_folder(result.parent_path());
 }
 
@@ -114,14 +120,17 @@ TaskOutcome run_task(const TaskRequest& request) {
 
   TaskRecord record{.arguments = arguments_of(work, task), .software = software_version(), .host = host()};
   record.inputs = stamps_of(inputs_of(work, task), last ? last->inputs : FileStamps{});
-  std::string content = nlohmann::json(record.arguments).dump();
+  std::string content = record.software + nlohmann::json(record.arguments).dump();
   for (const auto& [file, stamp] : record.inputs) content += stamp.sha256;
   const std::optional<TaskBegun> before = read_begun(folder);
+  const std::string job = from_slurm("SLURM_JOB_ID");
+  // Slurm begins the same job again after it gave way to another or lost its node: that tells nothing of what it needs.
+  const bool died = before && !before->stopped && (job.empty() || before->job != job);
   TaskBegun begun{.attempts = before ? before->attempts + 1 : 1,
-                  .deaths = before ? before->deaths + (before->stopped ? 0 : 1) : 0,
+                  .deaths = before ? before->deaths + (died ? 1 : 0) : 0,
                   .inputs_hash = sha256_hex(content),
                   .host = record.host,
-                  .job = from_slurm("SLURM_JOB_ID")};
+                  .job = job};
   begun.said = begun.job.empty() ? own_log_of(folder)
                                  : slurm_log_of(work.folder, task.step->name, from_slurm("SLURM_ARRAY_JOB_ID"),
                                                 from_slurm("SLURM_ARRAY_TASK_ID"));
@@ -131,10 +140,13 @@ TaskOutcome run_task(const TaskRequest& request) {
   const EndedProcess ended = run(work, task, folder, lock);
   if (interrupted() && ended.status != 0) {
     TaskBegun again = begun;
-    again.stopped = true;
+    again.stopped = job.empty();  // Slurm knows why it ended a task (slurm_batch.h)
     write_begun(folder, again);
     throw stop_of(task);
   }
+  if (ended.signal > 0)  // without a record: where memory ended, the next attempt is given more
+    throw std::runtime_error(name_of(task) + " was killed by signal " + std::to_string(ended.signal) +
+                             (ended.signal == SIGKILL ? ", perhaps because memory had ended" : ""));
   record.seconds = ended.seconds, record.processor_s = ended.processor_s, record.peak_mib = ended.peak_mib;
   record.attempts = begun.attempts;
   record.ended_utc = rig::SystemClock().utc();

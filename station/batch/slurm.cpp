@@ -16,8 +16,9 @@ std::string first_line(const std::string& text) {
 std::string said_by(const std::vector<std::string>& words, const std::string& input = {}) {
   const CommandResult result = run_command(words, input);
   if (result.status == 0) return result.out;
-  throw std::runtime_error(words.front() + " refused: " + first_line(result.error.empty() ? result.out : result.error) +
-                           "; ask who runs this Slurm, or put the plan's \"slurm\" options right");
+  throw std::runtime_error(
+      words.front() + " refused: " + first_line(result.error.empty() ? result.out : result.error) +
+      "; put the plan's \"slurm\" options right, or run the same command when Slurm has less to do");
 }
 
 std::vector<std::string> cells_of(const std::string& line) {
@@ -42,7 +43,9 @@ int slurm_array_size() {
   for (std::string line; std::getline(lines, line);) {
     std::istringstream words(line);
     int size = 0;
-    if (words >> key >> equals >> size && key == "MaxArraySize") return size;
+    if (!(words >> key >> equals >> size) || key != "MaxArraySize") continue;
+    if (size < 1) throw std::runtime_error("this Slurm takes no arrays of jobs (MaxArraySize is 0); ask who runs it");
+    return size;
   }
   return kUsual;
 }

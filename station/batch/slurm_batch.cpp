@@ -12,7 +12,6 @@
 #include <stdexcept>
 
 #include "station/batch/slurm.h"
-#include "station/documents/disk/folder_lock.h"
 #include "station/documents/disk/sha256.h"
 #include "station/documents/disk/stored_file.h"
 #include "station/output/child_process.h"
@@ -37,14 +36,14 @@ class Arrays {
   explicit Arrays(const BatchWork& work) : file_(work.folder / "slurm" / "jobs.jsonl") {
     std::ifstream lines(file_);
     for (std::string line; std::getline(lines, line);) {
-      const json said = json::parse(line, nullptr, false);  // a last line may be torn
+      const json said = json::parse(line, nullptr, false);  // a line may be torn
       if (!said.is_object()) continue;
-      if (said.contains("batch")) id_ = said["batch"];
-      if (said.contains("array"))
-        arrays_.push_back({said["array"], said.at("step"), said.at("first"), said.at("items"), ""});
-      if (said.contains("job"))
-        for (Array& array : arrays_)
-          if (array.name == said.at("of")) array.job = said["job"];
+      try {
+        read(said);
+      } catch (const json::exception&) {
+        throw std::runtime_error(file_.string() + ": found " + line.substr(0, 60) +
+                                 ", which is no line of it; restore the file from a copy");
+      }
     }
   }
 
@@ -76,9 +75,18 @@ class Arrays {
   }
 
  private:
+  void read(const json& said) {
+    if (said.contains("batch")) id_ = said["batch"];
+    if (said.contains("array"))
+      arrays_.push_back({said["array"], said.at("step"), said.at("first"), said.at("items"), ""});
+    if (said.contains("job"))
+      for (Array& array : arrays_)
+        if (array.name == said.at("of")) array.job = said["job"];
+  }
+
   // On the disk before anything that follows from it.
   void append(const json& line) const {
-    const std::string text = line.dump() + "\n";
+    const std::string text = (ends_torn() ? "\n" : "") + line.dump() + "\n";
     FileSystem disk;
     try {
       const OpenFile file = disk.open(file_, O_WRONLY | O_CREAT | O_APPEND);
@@ -87,6 +95,13 @@ class Arrays {
     } catch (const std::system_error& error) {
       throw std::runtime_error(write_problem(file_, error.code()));
     }
+  }
+
+  bool ends_torn() const {  // by a full disk
+    std::ifstream stream(file_, std::ios::binary | std::ios::ate);
+    if (!stream || stream.tellg() == 0) return false;
+    stream.seekg(-1, std::ios::end);
+    return stream.get() != '\n';
   }
 
   fs::path file_;
@@ -144,7 +159,9 @@ class Submission {
         arrays_(arrays),
         queue_(queue_of(work, arrays)),
         states_(states_of(work, queue_.states)),
-        array_size_(slurm_array_size()) {}
+        array_size_(slurm_array_size()) {
+    explain_deaths(work, states_);
+  }
 
   Submitted submit() {
     submitted_.queued = queue_.states.size();
@@ -167,7 +184,7 @@ class Submission {
     for (std::size_t i = 0; i < states_.size(); ++i) {
       const TaskStatus& status = states_[i];
       if (status.task.step != &step || status.state == TaskState::done || status.state == TaskState::running ||
-          queue_.jobs.contains(i))
+          queue_.jobs.contains(i) || lacks_a_need(i))
         continue;
       Group group{.first = status.task.item->number / array_size_ * array_size_, .deaths = status.deaths};
       for (const BatchTask& need : needs_of(work_, status.task))
@@ -175,7 +192,23 @@ class Submission {
           group.after.insert(job->second);
       groups[group].push_back(i);
     }
-    for (const auto& [group, tasks] : groups) submit_group(step, group, tasks);
+    for (const auto& [group, tasks] : groups) {
+      try {
+        submit_group(step, group, tasks);
+      } catch (const std::runtime_error& problem) {
+        submitted_.refused = problem.what();
+      }
+    }
+  }
+
+  // What it needs is neither done nor will be: Slurm took no more.
+  bool lacks_a_need(std::size_t number) const {
+    for (const BatchTask& need : needs_of(work_, states_[number].task)) {
+      const std::size_t at = place_before(states_, number, need);
+      const TaskState state = states_[at].state;
+      if (state != TaskState::done && state != TaskState::running && !queue_.jobs.contains(at)) return true;
+    }
+    return false;
   }
 
   void submit_group(const BatchStep& step, const Group& group, const std::vector<std::size_t>& tasks) {
@@ -194,7 +227,7 @@ class Submission {
 
   std::vector<std::string> options_of(const BatchStep& step, const Group& group, const Array& array,
                                       const std::vector<int>& indices) const {
-    const TaskNeeds needs = expected_needs(states_, step, group.deaths);
+    const TaskNeeds needs = after_deaths(expected_needs(states_, step), group.deaths);
     std::vector<std::string> options{
         "--job-name=" + array.name,
         "--array=" + ranges_text(indices) +
@@ -222,10 +255,31 @@ class Submission {
   Submitted submitted_;
 };
 
+void explain(TaskStatus& status, const std::string& job, const std::string& state) {
+  const std::string words = "Slurm ended it as " + state + " (job " + job + ")";
+  const bool for_others = state.starts_with("CANCELLED") || state.starts_with("PREEMPTED") || state == "NODE_FAIL";
+  status.why = words + (for_others ? "" : "; " + status.why);
+  if (!for_others) return;
+  status.state = TaskState::stopped;
+  status.deaths = std::max(0, status.deaths - 1);  // that tells nothing of what it needs
+}
+
 }  // namespace
 
 bool is_in_slurm(const BatchWork& work) {
   return Arrays(work).any();
+}
+
+std::vector<std::string> jobs_in_slurm(const BatchWork& work) {
+  Arrays arrays(work);
+  if (!arrays.any()) return {};
+  const std::vector<SlurmTask> queue = slurm_queue();
+  arrays.find_lost(queue);
+  std::set<std::string> jobs;
+  for (const SlurmTask& task : queue)
+    for (const Array& array : arrays.all())
+      if (array.job == task.job) jobs.insert(task.job);
+  return {jobs.begin(), jobs.end()};
 }
 
 QueuedTasks queued_in_slurm(const BatchWork& work) {
@@ -244,27 +298,12 @@ void explain_deaths(const BatchWork& work, std::vector<TaskStatus>& states) {
   const auto ended = slurm_ended(jobs);
   if (!ended) return;
   for (const auto& [job, state] : *ended)
-    if (const auto status = dead.find(job); status != dead.end())
-      status->second->why = "Slurm ended it as " + state + " (job " + job + "); " + status->second->why;
+    if (const auto status = dead.find(job); status != dead.end()) explain(*status->second, job, state);
 }
 
 Submitted submit_batch(const BatchWork& work) {
-  FileSystem disk;
-  const std::optional<OpenFile> lock = try_lock_folder(work.folder, disk);
-  if (!lock)
-    throw std::runtime_error("the batch '" + work.folder.string() + "' is done or submitted by process " +
-                             std::to_string(holder_of_lock(work.folder)) + " now; wait until it ends");
   Arrays arrays(work);
   return Submission(work, arrays).submit();
-}
-
-std::vector<std::string> cancel_in_slurm(const BatchWork& work) {
-  Arrays arrays(work);
-  std::set<std::string> jobs;
-  for (const auto& [task, job] : queue_of(work, arrays).jobs) jobs.insert(job);
-  const std::vector<std::string> list(jobs.begin(), jobs.end());
-  slurm_cancel(list);
-  return list;
 }
 
 }  // namespace station

@@ -18,19 +18,19 @@ namespace station {
 QueuedTasks queued_in_slurm(const BatchWork& work);
 // Whether the batch was ever given to Slurm.
 bool is_in_slurm(const BatchWork& work);
-// What Slurm's accounts know of tasks that died, into the states.
+// The numbers of all jobs that Slurm still has of it, of steps and items that have left the plan, too.
+std::vector<std::string> jobs_in_slurm(const BatchWork& work);
+// What Slurm knows of tasks that died, into the states. Those that somebody cancelled, or that gave way, are stopped.
 void explain_deaths(const BatchWork& work, std::vector<TaskStatus>& states);
 
 struct Submitted {
   std::vector<std::string> jobs;  // their numbers
   std::size_t tasks = 0;
   std::size_t queued = 0;  // that Slurm had already
+  std::string refused;     // why Slurm took no more, a line; empty: it took all
 };
-// Submits all tasks that are neither done nor with Slurm already. Killed at any moment and called again, it submits
-// what is left.
+// Submits all tasks that are neither done nor with Slurm already, by whoever holds the batch's lock. Killed at any
+// moment and called again, it submits what is left.
 Submitted submit_batch(const BatchWork& work);
-
-// Takes back all that Slurm has of the batch; returns the numbers of the jobs.
-std::vector<std::string> cancel_in_slurm(const BatchWork& work);
 
 }  // namespace station

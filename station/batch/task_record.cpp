@@ -21,14 +21,8 @@ fs::path begun_of(const fs::path& task_folder) {
   return task_folder / "begun.json";
 }
 
-}  // namespace
-
-std::optional<TaskRecord> read_record(const fs::path& task_folder) {
-  const fs::path file = record_of(task_folder);
-  std::error_code ignored;
-  if (!fs::exists(file, ignored)) return std::nullopt;
-  const json document = read_json_file(file);
-  ObjectReader reader(document, file.string(), kRecord);
+TaskRecord parse_record(const json& document, const std::string& source) {
+  ObjectReader reader(document, source, kRecord);
   TaskRecord record{.done = reader.choice("ended", {"well", "badly"}) == "well",
                     .problem = reader.text("problem"),
                     .arguments = reader.raw("arguments").get<std::vector<std::string>>(),
@@ -44,6 +38,24 @@ std::optional<TaskRecord> read_record(const fs::path& task_folder) {
   record.ended_utc = reader.text("ended_utc");
   reader.finish();
   return record;
+}
+
+std::runtime_error damaged(const fs::path& file) {
+  return std::runtime_error(file.string() + ": is damaged; remove it, and the batch does that task again");
+}
+
+}  // namespace
+
+std::optional<TaskRecord> read_record(const fs::path& task_folder) {
+  const fs::path file = record_of(task_folder);
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return std::nullopt;
+  const json document = read_json_file(file);
+  try {
+    return parse_record(document, file.string());
+  } catch (const json::exception&) {
+    throw damaged(file);
+  }
 }
 
 void write_record(const fs::path& task_folder, const TaskRecord& record) {
@@ -72,13 +84,17 @@ std::optional<TaskBegun> read_begun(const fs::path& task_folder) {
   std::error_code ignored;
   if (!fs::exists(begun_of(task_folder), ignored)) return std::nullopt;
   const json document = read_json_file(begun_of(task_folder));
-  return TaskBegun{.attempts = document.value("attempts", 1),
-                   .deaths = document.value("deaths", 0),
-                   .stopped = document.value("stopped", false),
-                   .inputs_hash = document.value("inputs_hash", ""),
-                   .host = document.value("host", ""),
-                   .job = document.value("job", ""),
-                   .said = document.value("said", "")};
+  try {
+    return TaskBegun{.attempts = document.value("attempts", 1),
+                     .deaths = document.value("deaths", 0),
+                     .stopped = document.value("stopped", false),
+                     .inputs_hash = document.value("inputs_hash", ""),
+                     .host = document.value("host", ""),
+                     .job = document.value("job", ""),
+                     .said = document.value("said", "")};
+  } catch (const json::exception&) {
+    throw damaged(begun_of(task_folder));
+  }
 }
 
 void write_begun(const fs::path& task_folder, const TaskBegun& begun) {

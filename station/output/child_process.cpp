@@ -98,6 +98,7 @@ std::optional<EndedProcess> ChildProcess::ended() {
   rusage usage{};
   if (wait4(process_, &status, WNOHANG, &usage) != process_) return std::nullopt;
   ended_ = {.status = status_of(status),
+            .signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0,
             .seconds = now_s() - start_s_,
             .processor_s = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime),
             .peak_mib = static_cast<double>(usage.ru_maxrss) / 1024};

@@ -12,6 +12,7 @@ namespace station {
 
 struct EndedProcess {
   int status = 0;  // exit status; 128 + signal when it was killed
+  int signal = 0;  // that killed it; 0: none
   double seconds = 0, processor_s = 0;
   double peak_mib = 0;  // of its memory
 };

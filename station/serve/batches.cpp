@@ -1,5 +1,6 @@
 #include "station/serve/batches.h"
 
+#include <exception>
 #include <stdexcept>
 
 #include "station/batch/batch_report.h"
@@ -27,7 +28,7 @@ json batches_document(const Workspace& workspace) {
     json batch;
     try {
       batch = batch_status(workspace.batch(name));
-    } catch (const std::runtime_error& problem) {
+    } catch (const std::exception& problem) {
       batch["problem"] = problem.what();
     }
     batch["name"] = name;

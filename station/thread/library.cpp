@@ -285,12 +285,20 @@ LibraryThread Library::add(const fs::path& session_or_thread, const std::string&
 
 void Library::measure_all() const {
   std::vector<int> numbers;
-  index_->run("SELECT id FROM threads WHERE lab_l IS NULL", {},
+  index_->run("SELECT id FROM threads WHERE lab_l IS NULL AND removed_utc IS NULL", {},
               [&](sqlite3_stmt* row) { numbers.push_back(sqlite3_column_int(row, 0)); });
   if (numbers.empty()) return;
+  std::vector<std::pair<int, ThreadFile>> threads;
+  for (const int number : numbers) {
+    try {
+      threads.emplace_back(number, read_thread(thread_file(number)));
+    } catch (const std::runtime_error&) {
+      // Its file is told of by whoever needs it; it is not found by its colour.
+    }
+  }
   index_->execute("BEGIN IMMEDIATE");
   try {
-    for (const int number : numbers) index_->measure(number, read_thread(thread_file(number)));
+    for (const auto& [number, thread] : threads) index_->measure(number, thread);
     index_->execute("COMMIT");
   } catch (...) {
     index_->run("ROLLBACK", {});
@@ -310,14 +318,14 @@ std::vector<LibraryThread> Library::find(const LibraryQuery& query) const {
     return threads;
   }
   std::vector<std::pair<double, int>> near;  // with their numbers
-  index_->run(
-      "SELECT threads.id, lab_l, lab_a, lab_b FROM threads JOIN spools ON spools.id = threads.spool " + condition,
-      values, [&](sqlite3_stmt* row) {
-        const Eigen::Vector3d lab(sqlite3_column_double(row, 1), sqlite3_column_double(row, 2),
-                                  sqlite3_column_double(row, 3));
-        const double distance = (lab - *query.near_lab).norm();
-        if (distance <= query.within) near.emplace_back(distance, sqlite3_column_int(row, 0));
-      });
+  index_->run("SELECT threads.id, lab_l, lab_a, lab_b FROM threads JOIN spools ON spools.id = threads.spool " +
+                  condition + " AND lab_l IS NOT NULL",
+              values, [&](sqlite3_stmt* row) {
+                const Eigen::Vector3d lab(sqlite3_column_double(row, 1), sqlite3_column_double(row, 2),
+                                          sqlite3_column_double(row, 3));
+                const double distance = (lab - *query.near_lab).norm();
+                if (distance <= query.within) near.emplace_back(distance, sqlite3_column_int(row, 0));
+              });
   std::ranges::sort(near);
   if (query.most > 0 && near.size() > static_cast<std::size_t>(query.most))
     near.resize(static_cast<std::size_t>(query.most));

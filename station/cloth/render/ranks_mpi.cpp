@@ -127,6 +127,12 @@ RenderRanks::RenderRanks(std::unique_ptr<Others> others) : others_(std::move(oth
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &share_.number);
   MPI_Comm_size(MPI_COMM_WORLD, &share_.of);
+  if (share_.of == 1) {
+    MPI_Finalize();
+    throw std::runtime_error(
+        "several processes were started that do not find each other; start them by the mpirun of the MPI that this "
+        "threadstation was built with, or by srun --mpi=pmix");
+  }
   others_->uncaught = std::uncaught_exceptions();
   MPI_Comm_dup(MPI_COMM_WORLD, &others_->all);
   MPI_Comm_dup(MPI_COMM_WORLD, &others_->progress);

@@ -162,6 +162,64 @@ TEST_F(BatchTest, InterruptedItGoesOnAndEndsWithTheSameFiles) {
   EXPECT_LE(attempts, 5 + 2 * 2) << "no more than were stopped: two at a time, twice";
 }
 
+// As the kernel does where memory ends: it was no failure of the command's own.
+TEST_F(BatchTest, ACommandThatIsKilledIsToldOfAndTriedAgain) {
+  make_sessions(folder_.path(), 1, true);
+  json fit = kFit;
+  fit["options"] = {"--paths", "1024", "--spp", "1"};
+  written_plan(folder_.path(), json::array({fit}));
+  const std::string invert = "pgrep -f 'inver[t] " + (folder_ / "sessions/s00").string() + "'";
+  const pid_t process = start_threadstation({"batch", folder_ / "plan.json", "--out", folder_ / "batch"});
+  for (int i = 0; i < 300 && run_shell(invert).status != 0; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  run_shell("kill -KILL $(" + invert + ")");
+  EXPECT_EQ(wait_for(process), 1);
+  const json status = json::parse(run_threadstation({"batch", "status", folder_ / "batch", "--json"}).out);
+  EXPECT_EQ(status.at("steps")[0].at("died"), 1) << status.dump(1);
+  EXPECT_NE(status.at("problems").at(0).at("why").get<std::string>().find("was killed by signal 9"), std::string::npos);
+  EXPECT_TRUE(record_in(folder_.path(), "invert", "s00").is_null());
+  written_plan(folder_.path(), json::array({kFit}));
+  EXPECT_EQ(batch().status, 0);
+}
+
+TEST_F(BatchTest, ItemsAreCalledAsTheirSessions) {
+  make_sessions(folder_.path(), 2, true);
+  fs::rename(folder_ / "sessions/s00", folder_ / "sessions/lot.1");
+  fs::rename(folder_ / "sessions/s01", folder_ / "sessions/lot.2");
+  written_plan(folder_.path(), json::array({kFit}));
+  ASSERT_EQ(batch().status, 0);
+  EXPECT_FALSE(record_in(folder_.path(), "invert", "lot-2").is_null());
+  const std::string threads =
+      written_plan(folder_.path(), json::array({kTables}),
+                   {{"sessions", json::array()}, {"threads", json::array({"sessions/*/result/thread.json"})}});
+  const ProgramResult tables = run_threadstation({"batch", threads, "--out", folder_ / "tables", "--quiet"});
+  ASSERT_EQ(tables.status, 0) << tables.error;
+  EXPECT_TRUE(fs::exists(folder_ / "tables/results/export/lot-1/scattering.csv"));
+}
+
+// What a rendering has left that was stopped is not gone on with when it is another.
+TEST_F(BatchTest, ARenderingWithOtherOptionsBeginsAnew) {
+  const auto plan = [&](const std::string& samples) {
+    station::write_json_file(folder_ / "plan.json",
+                             {{"format", "threadstation/batch"},
+                              {"version", 1},
+                              {"scenes", json::array({std::string(DATA_DIR) + "/scenes/plain_swatch.json"})},
+                              {"steps", json::array({{{"do", "render"}, {"options", {"--spp", samples}}}})}});
+  };
+  plan("4096");
+  const pid_t process = start_threadstation({"batch", folder_ / "plan.json", "--out", folder_ / "batch"});
+  const fs::path log = folder_ / "batch/tasks/render/plain_swatch/log.txt";
+  for (int i = 0; i < 300 && (!fs::exists(log) || fs::file_size(log) < 20); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  ::kill(process, SIGINT);
+  EXPECT_EQ(wait_for(process), 1);
+  EXPECT_TRUE(fs::exists(folder_ / "batch/results/render/plain_swatch.exr.checkpoint"));
+  plan("1");
+  const ProgramResult result = batch();
+  EXPECT_EQ(result.status, 0) << result.error << result.out;
+  EXPECT_FALSE(fs::exists(folder_ / "batch/results/render/plain_swatch.exr.checkpoint"));
+}
+
 TEST_F(BatchTest, UsesNoMoreCoresThanItMay) {
   make_sessions(folder_.path(), 4, true);
   written_plan(folder_.path(), json::array({kFit}));
@@ -200,12 +258,12 @@ TEST(BatchNeeds, FollowWhatTasksTookAndDoubleWithEachDeath) {
   EXPECT_EQ(first.memory_mib, 1024);
   EXPECT_EQ(first.minutes, 30);
   states[1].record = station::TaskRecord{.done = true, .seconds = 120, .peak_mib = 200};
-  const station::TaskNeeds later = station::expected_needs(states, step),
-                           again = station::expected_needs(states, step, 2);
+  const station::TaskNeeds later = station::expected_needs(states, step), again = station::after_deaths(later, 2);
   EXPECT_EQ(later.memory_mib, 1.3 * 200 + 100);
   EXPECT_EQ(later.minutes, 2 + 3 * 2);
   EXPECT_EQ(again.memory_mib, 4 * later.memory_mib);
   EXPECT_EQ(again.minutes, 4 * later.minutes);
+  EXPECT_EQ(station::after_deaths(later, 9).minutes, 8 * later.minutes);
   states[1].record->done = false;
   EXPECT_EQ(station::expected_needs(states, step).memory_mib, 1024) << "a failure tells nothing";
 }
