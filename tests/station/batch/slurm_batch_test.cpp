@@ -56,7 +56,7 @@ class SlurmBatchTest : public ::testing::Test {
     for (int i = 0; i < 5 && count(status(), "done") < tasks; ++i) {
       const ProgramResult again = submit();
       ASSERT_EQ(again.status, 0) << again.error;
-      ASSERT_TRUE(slurm_->wait_until_empty(150)) << SlurmHere::said("squeue; sinfo");
+      ASSERT_TRUE(slurm_->wait_until_empty(400)) << SlurmHere::said("squeue; sinfo");
     }
     EXPECT_EQ(count(status(), "done"), tasks) << what_is_wrong();
   }
@@ -105,7 +105,7 @@ TEST_F(SlurmBatchTest, FiftyFitsSurviveKillsAndEndWithWhatThisComputerMakes) {
   lost += SlurmHere::running();
   SlurmHere::said("srun --partition=high --nodes=2 --exclusive --time=1 sleep 1");
   EXPECT_GT(lost, 3) << "the fits have ended too soon for this test";
-  ASSERT_TRUE(slurm_->wait_until_empty(150)) << SlurmHere::said("squeue; sinfo");
+  ASSERT_TRUE(slurm_->wait_until_empty(400)) << SlurmHere::said("squeue; sinfo");
   std::printf("after the kills: %d of %d tasks done, %d had been running\n", count(status(), "done"), 2 * kSessions,
               lost);
   finish(2 * kSessions);
