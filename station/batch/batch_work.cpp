@@ -3,7 +3,6 @@
 #include <glob.h>
 
 #include <algorithm>
-#include <set>
 #include <stdexcept>
 
 #include "station/cloth/render/render_identity.h"
@@ -238,6 +237,11 @@ std::string name_of(const BatchTask& task) {
 
 fs::path task_folder(const BatchWork& work, const BatchTask& task) {
   return work.folder / "tasks" / task.step->name / task.item->name;
+}
+
+void make_task_folder(const BatchWork& work, const BatchTask& task) {
+  const fs::path folder = task_folder(work, task), step = folder.parent_path();
+  for (const fs::path& one : {step.parent_path(), step, folder}) make_folder(one);
 }
 
 fs::path result_of(const BatchWork& work, const BatchTask& task) {

@@ -54,6 +54,7 @@ BatchTask task_named(const BatchWork& work, const std::string& step, int item);
 std::string name_of(const BatchTask& task);  // "invert of silk-red"
 
 std::filesystem::path task_folder(const BatchWork& work, const BatchTask& task);
+void make_task_folder(const BatchWork& work, const BatchTask& task);
 // The words after the program's name.
 std::vector<std::string> arguments_of(const BatchWork& work, const BatchTask& task);
 // The files that it reads, and those that it has made, as they are there now; absolute, sorted.

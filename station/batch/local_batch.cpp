@@ -162,7 +162,7 @@ class LocalBatch {
     const std::vector<int> cores(free_cores_.end() - needs.cores, free_cores_.end());
     std::string list;
     for (const int core : cores) list += (list.empty() ? "" : ",") + std::to_string(core);
-    make_folders(status.task);
+    make_task_folder(work_, status.task);
     ChildProcess process({kOwnProgram, "batch", "task", work_.folder.string(), "--step", status.task.step->name,
                           "--item", std::to_string(status.task.item->number), "--cores", list},
                          own_log_of(task_folder(work_, status.task)), work_.folder);
@@ -171,13 +171,6 @@ class LocalBatch {
     status.state = TaskState::running;
     running_.push_back({number, cores, needs.memory_mib, std::move(process)});
     show(status.task);
-  }
-
-  void make_folders(const BatchTask& task) const {
-    std::error_code problem;
-    const std::filesystem::path folder = task_folder(work_, task);
-    std::filesystem::create_directories(folder, problem);
-    if (problem) throw std::runtime_error("cannot make '" + folder.string() + "': " + problem.message());
   }
 
   const BatchWork& work_;

@@ -110,9 +110,7 @@ TaskOutcome run_task(const TaskRequest& request) {
   const BatchWork work = read_batch_work(request.folder);
   const BatchTask task = task_named(work, request.step, request.item);
   const fs::path folder = task_folder(work, task);
-  make_folder(folder.parent_path().parent_path());
-  make_folder(folder.parent_path());
-  make_folder(folder);
+  make_task_folder(work, task);
   const OpenFile lock = locked(folder, task);
   check_needs(work, task);
   const std::optional<TaskRecord> last = read_record(folder);

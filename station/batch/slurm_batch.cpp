@@ -1,7 +1,6 @@
 #include "station/batch/slurm_batch.h"
 
 #include <fcntl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -10,6 +9,7 @@
 #include <set>
 #include <span>
 #include <stdexcept>
+#include <tuple>
 
 #include "station/batch/slurm.h"
 #include "station/documents/disk/sha256.h"
@@ -161,6 +161,8 @@ class Submission {
         states_(states_of(work, queue_.states)),
         array_size_(slurm_array_size()) {
     explain_deaths(work, states_);
+    for (const TaskStatus& status : states_)
+      if (status.state == TaskState::stopped) remember_stop(status.task);
   }
 
   Submitted submit() {
@@ -199,6 +201,15 @@ class Submission {
         submitted_.refused = problem.what();
       }
     }
+  }
+
+  // That what Slurm took back was no death, for as long as it is tried: the lists of completed jobs forget.
+  void remember_stop(const BatchTask& task) const {
+    const fs::path folder = task_folder(work_, task);
+    std::optional<TaskBegun> begun = read_begun(folder);
+    if (!begun || begun->stopped) return;
+    begun->stopped = true;
+    write_begun(folder, *begun);
   }
 
   // What it needs is neither done nor will be: Slurm took no more.

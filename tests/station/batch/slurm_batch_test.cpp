@@ -168,6 +168,18 @@ TEST_F(SlurmBatchTest, WhatWasTakenBackOrCancelledIsToldOfAndDoneLater) {
   EXPECT_EQ(count(description, "queued") + count(description, "running"), 0);
   EXPECT_NE(description.dump().find("Slurm ended it as "), std::string::npos) << what_is_wrong();
   EXPECT_EQ(run_threadstation({"batch", "cancel", out_}).out, "nothing of it is running\n");
+  // That somebody took tasks back does not double what they are given from now on.
+  EXPECT_EQ(submit().status, 0);
+  int stopped = 0;
+  for (int i = 0; i < kSessions; ++i) {
+    const fs::path begun =
+        fs::path(out_) / "tasks/invert" / ("s" + std::string(i < 10 ? "0" : "") + std::to_string(i)) / "begun.json";
+    stopped += fs::exists(begun) && station::read_json_file(begun).value("stopped", false);
+  }
+  EXPECT_GT(stopped, 0);
+  EXPECT_EQ(run_threadstation({"batch", "cancel", out_}).status, 0);
+  ASSERT_TRUE(slurm_->wait_until_empty(60));
+  for (int i = 0; i < 100 && count(status(), "running") > 0; ++i) sleep_s(0.5);
   const ProgramResult local = run_threadstation({"batch", plan_, "--out", out_, "--quiet"});
   EXPECT_EQ(local.status, 0) << "here goes on where Slurm has ended: " << local.error;
   EXPECT_EQ(count(status(), "done"), 2 * kSessions);
