@@ -147,9 +147,12 @@ TEST_F(BatchTest, InterruptedItGoesOnAndEndsWithTheSameFiles) {
   ASSERT_EQ(run_threadstation({"batch", whole / "plan.json", "--out", whole / "batch", "--quiet"}).status, 0);
   make_sessions(folder_.path(), 5, true);
   written_plan(folder_.path(), {fit, kTables});
-  for (const int signal : {SIGINT, SIGKILL, SIGTERM}) {
+  // Each as soon as the fit of a session has begun, the last while nothing else is left to begin.
+  for (const auto& [signal, item] : {std::pair(SIGINT, "s00"), std::pair(SIGKILL, "s02"), std::pair(SIGTERM, "s04")}) {
+    const fs::path task = folder_ / "batch/tasks/invert" / item;
     const pid_t process = start_threadstation({"batch", folder_ / "plan.json", "--out", folder_ / "batch"});
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    for (int i = 0; i < 60000 && !fs::exists(task / "begun.json") && !fs::exists(task / "record.json"); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
     ::kill(process, signal);
     EXPECT_NE(wait_for(process), 0);
   }

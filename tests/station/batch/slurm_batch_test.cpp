@@ -7,6 +7,7 @@
 #include <chrono>
 #include <csignal>
 #include <fstream>
+#include <functional>
 #include <random>
 #include <thread>
 
@@ -27,8 +28,8 @@ void sleep_s(double seconds) {
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
 }
 
-// A fit of half a second, and tables of what it found.
-const json kSteps{{{"do", "invert"}, {"options", {"--paths", "256", "--spp", "1"}}, {"memory_gib", 0.4}},
+// A fit of a second, and tables of what it found.
+const json kSteps{{{"do", "invert"}, {"options", {"--paths", "256", "--spp", "64"}}, {"memory_gib", 0.4}},
                   {{"do", "export"}, {"options", {"--only", "csv"}}, {"memory_gib", 0.3}}};
 
 class SlurmBatchTest : public ::testing::Test {
@@ -46,6 +47,22 @@ class SlurmBatchTest : public ::testing::Test {
     int sum = 0;
     for (const json& step : description.at("steps")) sum += step.at(state).get<int>();
     return sum;
+  }
+  // Files of this name in the folders of the tasks: those that have ended, or that run.
+  int count_files(const std::string& name) {
+    int files = 0;
+    std::error_code none;  // folders come while they are looked through
+    for (fs::recursive_directory_iterator at(fs::path(out_) / "tasks", none), end; !none && at != end;
+         at.increment(none))
+      files += at->path().filename() == name;
+    return files;
+  }
+  // Until so many tasks have ended, and so many have begun that have not.
+  void wait_until_ended(int wanted, int begun = 2) {
+    const auto so_far = [&] { return count_files("record.json") >= wanted && count_files("begun.json") >= begun; };
+    bool come = so_far();
+    for (int i = 0; i < 2400 && !come; ++i, come = so_far()) sleep_s(0.05);
+    EXPECT_TRUE(come) << what_is_wrong();
   }
   std::string what_is_wrong() {
     return SlurmHere::said("sinfo --list-reasons; squeue; tail -n 3 " + (folder_ / "slurm").string() + "/*.log; " +
@@ -92,22 +109,26 @@ TEST_F(SlurmBatchTest, FiftyFitsSurviveKillsAndEndWithWhatThisComputerMakes) {
   ASSERT_EQ(submitted.status, 0) << submitted.error;
   EXPECT_LE(SlurmHere::queued(), 2 * kSessions) << "nothing is submitted twice";
 
-  int lost = 0;  // tasks that ran when something was done to them
-  sleep_s(3);
-  lost += SlurmHere::running();
-  SlurmHere::said("pkill -KILL -f 'batch task " + out_ + "'");
-  sleep_s(2);
-  lost += SlurmHere::running();
-  slurm_->kill_node(2);
-  sleep_s(7);  // until the controller gives it up
-  slurm_->start_node(2);
-  sleep_s(2);
-  lost += SlurmHere::running();
-  SlurmHere::said("srun --partition=high --nodes=2 --exclusive --time=1 sleep 1");
-  EXPECT_GT(lost, 3) << "the fits have ended too soon for this test";
+  int seen_running = 0, dead = 0;  // dead: that have begun and will not end
+  int disturbances = 0;
+  const auto disturb = [&](int ended, const std::function<void()>& action) {
+    wait_until_ended(ended, dead + 2);
+    seen_running += SlurmHere::running();
+    ++disturbances;
+    action();
+    dead = count_files("begun.json");
+  };
+  disturb(4, [&] { SlurmHere::said("pkill -KILL -f 'batch task " + out_ + "'"); });
+  disturb(12, [&] {
+    slurm_->kill_node(2);
+    sleep_s(7);  // until the controller gives it up
+    slurm_->start_node(2);
+  });
+  disturb(30, [] { SlurmHere::said("srun --partition=high --nodes=2 --exclusive --time=1 sleep 1"); });
+  EXPECT_GT(seen_running, 3) << "the fits have ended too soon for this test";
   ASSERT_TRUE(slurm_->wait_until_empty(400)) << SlurmHere::said("squeue; sinfo");
   std::printf("after the kills: %d of %d tasks done, %d had been running\n", count(status(), "done"), 2 * kSessions,
-              lost);
+              seen_running);
   finish(2 * kSessions);
 
   EXPECT_TRUE(made_in(folder_.path()) == made_here(kSessions));
@@ -117,7 +138,9 @@ TEST_F(SlurmBatchTest, FiftyFitsSurviveKillsAndEndWithWhatThisComputerMakes) {
       const std::string item = "s" + std::string(i < 10 ? "0" : "") + std::to_string(i);
       attempts += record_in(folder_.path(), step, item).at("attempts").get<int>();
     }
-  EXPECT_LE(attempts, 2 * kSessions + lost) << "nothing was computed twice but what was lost";
+  // No more than both nodes have cores, each time.
+  EXPECT_LE(attempts, 2 * kSessions + 2 * SlurmHere::kCores * disturbances)
+      << "nothing was computed twice but what was lost";
   std::printf("%d attempts for %d tasks\n", attempts, 2 * kSessions);
 }
 
@@ -130,7 +153,7 @@ TEST_F(SlurmBatchTest, AFullDiskLosesNothing) {
   constexpr int kSessions = 8;
   begin(kSessions);
   ASSERT_EQ(submit().status, 0);
-  sleep_s(1.5);
+  wait_until_ended(1);
   SlurmHere::said("cat /dev/zero > " + (disk / "fill").string());
   ASSERT_TRUE(slurm_->wait_until_empty(200));
   const json full = status();
@@ -155,8 +178,9 @@ TEST_F(SlurmBatchTest, WhatWasTakenBackOrCancelledIsToldOfAndDoneLater) {
   EXPECT_EQ(json::parse(submitted.out).at("steps")[0].at("tasks"), kSessions);
   EXPECT_EQ(submit().status, 0);
   EXPECT_LE(SlurmHere::queued(), 2 * kSessions);
-  sleep_s(3);
-  SlurmHere::said("pkill -KILL --newest -f 'batch tas[k] " + out_ + "'");
+  wait_until_ended(3);
+  SlurmHere::said("pkill -KILL -f 'batch tas[k] " + out_ + "'");
+  wait_until_ended(4, count_files("begun.json") + 1);  // of the dead, and one that runs
   const ProgramResult cancelled = run_threadstation({"batch", "cancel", out_});
   EXPECT_EQ(cancelled.status, 0) << cancelled.error;
   EXPECT_NE(cancelled.out.find("taken back from Slurm: "), std::string::npos) << cancelled.out;
@@ -169,6 +193,7 @@ TEST_F(SlurmBatchTest, WhatWasTakenBackOrCancelledIsToldOfAndDoneLater) {
   EXPECT_NE(description.dump().find("Slurm ended it as "), std::string::npos) << what_is_wrong();
   EXPECT_EQ(run_threadstation({"batch", "cancel", out_}).out, "nothing of it is running\n");
   // That somebody took tasks back does not double what they are given from now on.
+  SlurmHere::said("scontrol update partitionname=low state=DOWN");  // so that none of them begins again
   EXPECT_EQ(submit().status, 0);
   int stopped = 0;
   for (int i = 0; i < kSessions; ++i) {
