@@ -1,7 +1,5 @@
 #include "renderer/trace/curve_geometry.h"
 
-#include <embree3/rtcore.h>
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -12,26 +10,12 @@ namespace {
 
 using Eigen::Vector3f;
 
-// Embree calls this for each candidate hit of a curve: 0 refuses it.
-void refuse_back_sides_and_what_is_cut_off(const RTCFilterFunctionNArguments* arguments) {
-  const auto* ray = reinterpret_cast<const RTCRay*>(arguments->ray);
-  const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
-  const Vector3f direction(ray->dir_x, ray->dir_y, ray->dir_z);
-  const auto beyond = [&](const Eigen::Vector4f& plane) {
-    const Vector3f place = Vector3f(ray->org_x, ray->org_y, ray->org_z) + ray->tfar * direction;
-    return plane.head<3>().dot(place) > plane.w();
-  };
-  if (Vector3f(hit->Ng_x, hit->Ng_y, hit->Ng_z).dot(direction) > 0 ||
-      std::ranges::any_of(static_cast<const CurveSet*>(arguments->geometryUserPtr)->cut, beyond))
-    arguments->valid[0] = 0;
-}
-
 Vector3f across(const Vector3f& v, const Vector3f& unit_axis) {
   return v - v.dot(unit_axis) * unit_axis;
 }
 
 // The outward normal where a ray, already close to the surface at `point` (relative to the axis), enters the cylinder
-// that touches the curve there. Embree's iteration for round curves stops up to 0.002 radii early; this finishes it.
+// that touches the curve there. The search for hits stops up to 0.0002 radii early; this finishes it.
 std::optional<Vector3f> cylinder_normal(const Vector3f& point, const Vector3f& direction, const Vector3f& axis,
                                         float radius) {
   const Vector3f o = across(point, axis), d = across(direction, axis);
@@ -74,72 +58,7 @@ void set_section(CurvePoint& point, const Vector3f& from_center, const Vector3f&
   point.side = point.out.cross(point.tangent);
 }
 
-// Whether every segment is a short cylinder: it then runs from its second control point to its third. Embree's hits of
-// long ones are too rough: thin threads of one segment had a third less light on one side.
-bool are_short_cylinders(const CurveSet& curves) {
-  constexpr float kBent = 1e-3f;     // of the radius: what rounding of coordinates may bend
-  constexpr float kLongest = 30.0f;  // radii
-  return std::ranges::all_of(curves.segments, [&](std::uint32_t first) {
-    const Eigen::Vector4f* p = &curves.control_points[first];
-    const float most = kBent * p[1].w();
-    return (p[0] - 2 * p[1] + p[2]).cwiseAbs().maxCoeff() <= most &&
-           (p[1] - 2 * p[2] + p[3]).cwiseAbs().maxCoeff() <= most && std::abs(p[2].w() - p[1].w()) <= most &&
-           (p[2] - p[1]).head<3>().norm() <= kLongest * p[1].w();
-  });
-}
-
-void set_spline_segments(RTCGeometry geometry, const CurveSet& curves) {
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, curves.segments.data(), 0,
-                             sizeof(std::uint32_t), curves.segments.size());
-}
-
-// As if every segment had neighbours, which Embree takes from the control points beside it: ends are open, as those of
-// splines are.
-void set_cylinders(RTCGeometry geometry, const CurveSet& curves) {
-  const auto buffer = [&](RTCBufferType type, RTCFormat format, std::size_t bytes) {
-    return rtcSetNewGeometryBuffer(geometry, type, 0, format, bytes, curves.segments.size());
-  };
-  auto* index = static_cast<std::uint32_t*>(buffer(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, sizeof(std::uint32_t)));
-  auto* flags = static_cast<std::uint8_t*>(buffer(RTC_BUFFER_TYPE_FLAGS, RTC_FORMAT_UCHAR, sizeof(std::uint8_t)));
-  if (!index || !flags) return;  // out of memory, which the device then says
-  std::ranges::transform(curves.segments, index, [](std::uint32_t first) { return first + 1; });
-  std::fill_n(flags, curves.segments.size(),
-              std::uint8_t{RTC_CURVE_FLAG_NEIGHBOR_LEFT | RTC_CURVE_FLAG_NEIGHBOR_RIGHT});
-}
-
-// Cylinders' hits are solved for and not searched as those of splines. Their parameter u is that of the splines.
-void add_round_curves(RTCDevice device, RTCScene scene, const CurveSet& curves) {
-  const bool cylinders = are_short_cylinders(curves);
-  const RTCGeometry geometry =
-      rtcNewGeometry(device, cylinders ? RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE : RTC_GEOMETRY_TYPE_ROUND_BSPLINE_CURVE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, curves.control_points.data(), 0,
-                             sizeof(Eigen::Vector4f), curves.control_points.size());
-  (cylinders ? set_cylinders : set_spline_segments)(geometry, curves);
-  rtcSetGeometryUserData(geometry, const_cast<CurveSet*>(&curves));
-  rtcSetGeometryIntersectFilterFunction(geometry, refuse_back_sides_and_what_is_cut_off);
-  rtcSetGeometryOccludedFilterFunction(geometry, refuse_back_sides_and_what_is_cut_off);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene, geometry);
-  rtcReleaseGeometry(geometry);
-}
-
 }  // namespace
-
-void add_curves(RTCDevice device, RTCScene scene, const CurveSet& curves) {
-  if (is_in_place(curves)) return add_round_curves(device, scene, curves);
-  const RTCScene apart = rtcNewScene(device);
-  rtcSetSceneBuildQuality(apart, RTC_BUILD_QUALITY_HIGH);
-  add_round_curves(device, apart, curves);
-  rtcCommitScene(apart);
-  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-  rtcSetGeometryInstancedScene(geometry, apart);
-  const Eigen::Matrix<float, 3, 4> transform = curves.placed.matrix().topRows<3>();
-  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, transform.data());
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcReleaseScene(apart);
-}
 
 std::size_t bytes_of(const CurveSet& curves) {
   return curves.control_points.size() * sizeof(Eigen::Vector4f) + curves.segments.size() * sizeof(std::uint32_t);

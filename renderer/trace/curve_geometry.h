@@ -1,18 +1,10 @@
-// Round curves inside Embree: seen from outside only, with exact normals (ray_scene.h).
+// Points of round curves that rays have met, with exact normals.
 #pragma once
 
 #include "renderer/trace/ray_hit.h"
 #include "renderer/trace/spread.h"
 
-struct RTCDeviceTy;
-struct RTCSceneTy;
-
 namespace renderer {
-
-// Adds the curves to the scene as one geometry. Embree reads the buffers of `curves`, which must outlive the scene and
-// stay where it is. Hits of curves that are placed elsewhere (CurveSet::placed) have the number of the geometry as
-// instID.
-void add_curves(RTCDeviceTy* device, RTCSceneTy* scene, const CurveSet& curves);
 
 // Bytes of the set's control points and segments.
 std::size_t bytes_of(const CurveSet& curves);

@@ -49,21 +49,6 @@ std::vector<std::uint32_t> first_segments(const CurveSet& curves) {
   return first;
 }
 
-// Splines lie among their control points.
-Eigen::AlignedBox3d bounds_of(const CurveSet& curves) {
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector4f& point : curves.control_points) {
-    const Vector3f radius = Vector3f::Constant(point.w());
-    box.extend(point.head<3>() - radius), box.extend(point.head<3>() + radius);
-  }
-  return box.isEmpty() ? Eigen::AlignedBox3d() : box.transformed(curves.placed).cast<double>();
-}
-
-// The number of the geometry that was hit; for curves that are placed elsewhere it is the instance's.
-std::uint32_t geometry_of(const RTCHit& hit) {
-  return hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? hit.geomID : hit.instID[0];
-}
-
 }  // namespace
 
 RayScene::RayScene(Scene scene)
@@ -80,10 +65,8 @@ RayScene::RayScene(Scene scene)
       embree_bytes_.get());
   embree_ = {rtcNewScene(device_.get()), rtcReleaseScene};
   rtcSetSceneBuildQuality(embree_.get(), RTC_BUILD_QUALITY_HIGH);
-  for (const CurveSet& curves : scene_.curves) {
-    add_curves(device_.get(), embree_.get(), curves);
-    first_segments_.push_back(first_segments(curves));
-  }
+  for (const CurveSet& curves : scene_.curves) first_segments_.push_back(first_segments(curves));
+  trees_ = curve_trees(device_.get(), scene_.curves);
   for (const TriangleMesh& mesh : scene_.meshes) add_mesh(mesh);
   auto curve_set = static_cast<std::uint32_t>(scene_.curves.size());
   for (const Cloth& cloth : scene_.cloths) {
@@ -101,7 +84,8 @@ RayScene::RayScene(Scene scene)
   rtcGetSceneBounds(embree_.get(), &b);
   if (b.lower_x <= b.upper_x)
     bounds_ = {Eigen::Vector3d(b.lower_x, b.lower_y, b.lower_z), Eigen::Vector3d(b.upper_x, b.upper_y, b.upper_z)};
-  for (const CurveSet& curves : scene_.curves) curve_bounds_.extend(bounds_of(curves));
+  for (const CurveTree& tree : trees_) curve_bounds_.extend(tree.bounds().cast<double>());
+  bounds_.extend(curve_bounds_);
   if (!cloths_.empty()) curve_bounds_ = bounds_;
 }
 
@@ -118,25 +102,36 @@ void RayScene::add_mesh(const TriangleMesh& mesh) {
   rtcReleaseGeometry(geometry);
 }
 
+std::optional<CurveTree::Hit> RayScene::nearest_curve(const Ray& ray, float distance) const {
+  std::optional<CurveTree::Hit> nearest;
+  for (const CurveTree& tree : trees_)
+    if (const auto hit = tree.nearest(ray, distance)) nearest = hit, distance = hit->distance;
+  return nearest;
+}
+
 std::optional<SurfaceHit> RayScene::intersect(const Ray& ray, float distance) const {
-  ClothQuery query;
-  const RTCRayHit found = nearest(embree_.get(), ray, query, distance);
-  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  const auto first_mesh = static_cast<std::uint32_t>(scene_.curves.size());
-  const auto first_cloth = first_mesh + static_cast<std::uint32_t>(scene_.meshes.size());
-  const std::uint32_t geometry = geometry_of(found.hit);
-  if (geometry >= first_cloth)
-    return SurfaceHit{found.ray.tfar, cloths_[geometry - first_cloth]->point_at(query.cloth)};
-  if (geometry >= first_mesh)
-    return SurfaceHit{found.ray.tfar,
-                      mesh_point(geometry - first_mesh, found.hit.primID, found.hit.u, found.hit.v, ray)};
-  CurvePoint point = point_on_curve(scene_.curves[geometry], found.hit.primID, found.hit.u,
-                                    {found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z}, ray, found.ray.tfar);
-  point.curve_set = geometry;
-  return SurfaceHit{found.ray.tfar, point};
+  const std::optional<CurveTree::Hit> curve = nearest_curve(ray, distance);
+  if (has_surfaces()) {
+    ClothQuery query;
+    const RTCRayHit found = nearest(embree_.get(), ray, query, curve ? curve->distance : distance);
+    const std::uint32_t geometry = found.hit.geomID;
+    const auto first_cloth = static_cast<std::uint32_t>(scene_.meshes.size());
+    if (geometry != RTC_INVALID_GEOMETRY_ID && geometry >= first_cloth)
+      return SurfaceHit{found.ray.tfar, cloths_[geometry - first_cloth]->point_at(query.cloth)};
+    if (geometry != RTC_INVALID_GEOMETRY_ID)
+      return SurfaceHit{found.ray.tfar, mesh_point(geometry, found.hit.primID, found.hit.u, found.hit.v, ray)};
+  }
+  if (!curve) return std::nullopt;
+  CurvePoint point =
+      point_on_curve(scene_.curves[curve->set], curve->segment, curve->u, curve->normal, ray, curve->distance);
+  point.curve_set = curve->set;
+  return SurfaceHit{curve->distance, point};
 }
 
 bool RayScene::occluded(const Ray& ray, float distance) const {
+  for (const CurveTree& tree : trees_)
+    if (tree.occluded(ray, distance)) return true;
+  if (!has_surfaces()) return false;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRay query = embree_ray(ray, distance);
@@ -145,29 +140,33 @@ bool RayScene::occluded(const Ray& ray, float distance) const {
 }
 
 std::optional<YarnPlace> RayScene::yarn_at(const Ray& ray) const {
-  ClothQuery query;
-  const RTCHit hit = nearest(embree_.get(), ray, query).hit;
-  if (hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  const std::uint32_t geometry = geometry_of(hit);
-  const std::size_t first_mesh = scene_.curves.size(), first_cloth = first_mesh + scene_.meshes.size();
-  if (geometry >= first_cloth) {
-    YarnPlace place = cloths_[geometry - first_cloth]->yarn_at(query.cloth);
-    place.group = static_cast<std::uint32_t>(geometry - scene_.meshes.size());
-    return place;
+  const auto curve = nearest_curve(ray, std::numeric_limits<float>::infinity());
+  if (has_surfaces()) {
+    ClothQuery query;
+    const RTCRayHit found =
+        nearest(embree_.get(), ray, query, curve ? curve->distance : std::numeric_limits<float>::infinity());
+    if (const std::uint32_t geometry = found.hit.geomID; geometry != RTC_INVALID_GEOMETRY_ID) {
+      const std::size_t first_cloth = scene_.meshes.size();
+      if (geometry < first_cloth) return std::nullopt;
+      YarnPlace place = cloths_[geometry - first_cloth]->yarn_at(query.cloth);
+      place.group = static_cast<std::uint32_t>(geometry - first_cloth + scene_.curves.size());
+      return place;
+    }
   }
-  if (geometry >= first_mesh) return std::nullopt;
-  const std::vector<std::uint32_t>& first = first_segments_[geometry];
-  const auto after = std::upper_bound(first.begin(), first.end(), hit.primID);
-  return YarnPlace{.group = geometry, .number = static_cast<int>(after - first.begin()) - 1};
+  if (!curve) return std::nullopt;
+  const std::vector<std::uint32_t>& first = first_segments_[curve->set];
+  const auto after = std::upper_bound(first.begin(), first.end(), curve->segment);
+  return YarnPlace{.group = curve->set, .number = static_cast<int>(after - first.begin()) - 1};
 }
 
 bool RayScene::meets_curve_first(const Ray& ray) const {
+  const auto curve = nearest_curve(ray, std::numeric_limits<float>::infinity());
+  if (!has_surfaces()) return curve.has_value();
   ClothQuery query;
-  const RTCRayHit found = nearest(embree_.get(), ray, query);
-  const std::size_t first_mesh = scene_.curves.size(), first_cloth = first_mesh + scene_.meshes.size();
-  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-  const std::uint32_t geometry = geometry_of(found.hit);
-  return geometry < first_mesh || geometry >= first_cloth;
+  const RTCRayHit found =
+      nearest(embree_.get(), ray, query, curve ? curve->distance : std::numeric_limits<float>::infinity());
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return curve.has_value();
+  return found.hit.geomID >= scene_.meshes.size();
 }
 
 std::size_t RayScene::yarn_bytes() const {
@@ -179,6 +178,7 @@ std::size_t RayScene::yarn_bytes() const {
 
 SceneMemory RayScene::memory() const {
   SceneMemory memory{.yarns = yarn_bytes(), .trees = static_cast<std::size_t>(embree_bytes_->load())};
+  for (const CurveTree& tree : trees_) memory.trees += tree.bytes();
   for (const auto& cloth : cloths_) memory.surfaces += cloth->shell_bytes(), memory.trees += cloth->grid_bytes();
   for (const Cloth& cloth : scene_.cloths) {
     const ClothSurface& s = cloth.surface;

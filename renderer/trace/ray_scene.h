@@ -1,4 +1,5 @@
-// A Scene inside Embree: nearest hits and occlusion, with the surface frame at a hit.
+// A Scene for rays: nearest hits and occlusion, with the surface frame at a hit. Curves are in trees of their own
+// (curve_tree.h), everything else is inside Embree.
 //
 // Curves are seen from outside only: a ray that is inside a curve leaves it without a hit, because the scattering
 // models describe everything that happens between entering and leaving a fiber. Cloth (cloth_shell.h) is met as the
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "renderer/scene/scene.h"
+#include "renderer/trace/curve_tree.h"
 #include "renderer/trace/ray_hit.h"
 #include "renderer/trace/yarn_places.h"
 
@@ -28,7 +30,7 @@ class ClothGeometry;
 struct SceneMemory {
   std::size_t yarns = 0;     // control points and segments of cloths and curves, with what hits of them need
   std::size_t surfaces = 0;  // shapes of cloths and bodies, cells of shells
-  std::size_t trees = 0;     // all that Embree has taken for itself
+  std::size_t trees = 0;     // trees of curves, grids of yarns, and all that Embree has taken for itself
   std::size_t all() const { return yarns + surfaces + trees; }
 };
 
@@ -60,12 +62,15 @@ class RayScene {
 
  private:
   void add_mesh(const TriangleMesh& mesh);
+  bool has_surfaces() const { return !scene_.meshes.empty() || !scene_.cloths.empty(); }
+  std::optional<CurveTree::Hit> nearest_curve(const Ray& ray, float distance) const;
   MeshPoint mesh_point(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Ray& ray) const;
 
   Scene scene_;
   std::shared_ptr<std::atomic<std::int64_t>> embree_bytes_;  // outlives the device, which counts them
   std::vector<std::vector<std::uint32_t>> first_segments_;   // first segment of each curve, by curve set
   std::shared_ptr<RTCDeviceTy> device_;
+  std::vector<CurveTree> trees_;
   std::vector<std::shared_ptr<const ClothGeometry>> cloths_;  // outlive the scene, which calls them
   std::shared_ptr<RTCSceneTy> embree_;
   bool yarns_overlap_ = false;

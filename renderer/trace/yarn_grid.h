@@ -60,8 +60,8 @@ class YarnGrid {
   Eigen::Vector2d period_mm_;
   Eigen::Vector2i cells_;
   std::vector<std::uint32_t> first_;
-  std::vector<YarnPieces> pieces_;
-  std::vector<YarnSegment> segments_;
+  std::vector<CurvePieces> pieces_;
+  std::vector<CurveSegment> segments_;
   struct Origin {
     std::uint32_t yarns, segment;
   };

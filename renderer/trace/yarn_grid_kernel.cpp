@@ -1,301 +1,16 @@
-// The intersection of rays with the grid of yarn_grid.h: cells are walked along the ray, the pieces of a cell are
-// tested eight at a time, and those whose cylinder the ray meets are solved for exactly.
-//
-// Where the world is wider than the patch, or narrower, yarns are not. There (`spread`) the place where the ray enters
-// is taken from the patch to the world round the yarn's axis: stretched, and lowered as the surface falls away from its
-// tangent there.
-//
-// A hit is where the ray enters the surface { c(u) + r(u) n : n unit, n . c'(u) = 0 }. At a trial u the ray is
-// intersected with the cone that touches the yarn there; the distance along the axis by which that point misses the
-// disc at u gives the next u by Newton's method. Because the cone touches the yarn, its point moves only in second
-// order with u. [the idea of Reshetov and Luebke 2018, doi 10.1145/3233307]
+// The intersection of rays with the grid of yarn_grid.h: cells are walked along the ray.
 #include "renderer/trace/yarn_grid_kernel.h"
 
-#if defined(__SSE__)
-#include <immintrin.h>
-#endif
-
-#if defined(__AVX2__) && defined(THREADSTATION_KERNEL_AVX2)
-#define KERNEL_NAMESPACE avx2
-#else
-#define KERNEL_NAMESPACE baseline
-#endif
+#include "renderer/trace/piece_solver.h"
 
 namespace renderer::KERNEL_NAMESPACE {
 namespace {
 
-typedef float Float8 __attribute__((vector_size(32)));
-typedef std::int32_t Int8 __attribute__((vector_size(32)));
-typedef float Float4 __attribute__((vector_size(16)));
-
-constexpr float kFar = 1e30f;
-constexpr int kMostSteps = 8;
-// The error along the axis, in radii, at which the search ends. It moves the normal by as much, a quarter of what
-// Embree leaves.
-constexpr float kConverged = 5e-4f;
-constexpr float kOnSurface = 2e-5f;  // in radii squared
-// In radii squared: rays that start deeper than this start inside. Scattered rays start a thousandth of a radius deep,
-// which is 2e-3 here.
-constexpr float kInside = 5e-4f;
-constexpr float kPastEnds = 1e-3f;  // of a segment: neighbours overlap, so that rounding leaves no gap
-
-#define INLINE inline __attribute__((always_inline))
-
-INLINE Float8 load8(const float* from) {
-  return *reinterpret_cast<const Float8*>(from);
-}
-
-INLINE Float8 sqrt8(Float8 a) {
-#if defined(__AVX__)
-  return _mm256_sqrt_ps(a);
-#else
-  Float8 root;
-  for (int i = 0; i < 8; ++i) root[i] = __builtin_sqrtf(a[i]);
-  return root;
-#endif
-}
-
-INLINE unsigned bits8(Int8 mask) {
-#if defined(__AVX__)
-  return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask)));
-#else
-  unsigned bits = 0;
-  for (int i = 0; i < 8; ++i) bits |= mask[i] ? 1u << i : 0u;
-  return bits;
-#endif
-}
-
-INLINE Float8 min8(Float8 a, Float8 b) {
-  return a < b ? a : b;
-}
-INLINE Float8 max8(Float8 a, Float8 b) {
-  return a > b ? a : b;
-}
-
-INLINE float dot3(Float4 a, Float4 b) {
-  const Float4 product = a * b;
-  return product[0] + product[1] + product[2];
-}
-
-// A ray in the space in which the pieces are round; the fourth components are 0.
-struct LocalRay {
-  Float4 origin, direction;
-};
-
-// The spread is `middle` + `growth` z at height z, the surface's curvature growth / middle. Where the yarns are round.
-struct Stretch {
-  Float4 middle, growth, curvature;
-};
-
-INLINE Float4 stretch_at(const Stretch& stretch, float z) {
-  return stretch.middle + z * stretch.growth;
-}
-
-// Takes the ray w + t d, relative to the yarn's axis, from the patch to the world, as it is at t; z: its height there.
-INLINE void spread_ray(const Stretch& stretch, float t, float z, Float4& w, Float4& d) {
-  const Float4 by = stretch_at(stretch, z);
-  w *= by, d *= by;
-  const Float4 at = w + t * d;
-  w[2] -= 0.5f * dot3(stretch.curvature * at, at);
-}
-
-struct Solution {
-  float t, u;
-  Float4 normal;
-};
-
-// Where a ray crosses the plane of the yarn's disc at u: at t, and outside of the disc by |q|^2 - r^2, with the slope
-// of that. It is for rays that run along the yarn.
-struct Crossing {
-  float outside, slope, t, r;
-  Float4 q;
-};
-
-template <bool spread>
-INLINE Crossing cross(const Float4* k, Float4 o, Float4 unstretched, const Stretch& stretch, float u) {
-  const Float4 c = k[0] + u * (k[1] + u * (k[2] + u * k[3]));
-  Float4 c1 = k[1] + u * (2 * k[2] + u * (3 * k[3])), c2 = 2 * k[2] + (6 * u) * k[3];
-  Float4 w = o - c, d = unstretched;
-  if (spread) {
-    const float near = -dot3(w, c1) / dot3(d, c1);
-    spread_ray(stretch, near, o[2] + near * d[2], w, d);
-    c1 *= stretch_at(stretch, c[2]), c2 *= stretch_at(stretch, c[2]);
-  }
-  const float t = -dot3(w, c1) / dot3(d, c1);
-  const Float4 q = w + t * d;
-  const float dt_du = (dot3(c1, c1) - dot3(q, c2)) / dot3(d, c1);
-  return {dot3(q, q) - c[3] * c[3], 2 * (dot3(q, d) * dt_du - c[3] * c1[3]), t, c[3], q};
-}
-
-// The same as solve() for a ray that runs along the yarn within 33 degrees: of eight crossings, the first that lies
-// inside after one that lies outside is made exact.
-template <bool spread>
-INLINE bool solve_along(const Float4* k, Float4 o, Float4 d, const Stretch& stretch, bool forward, float low,
-                        float high, float near, float most, Solution& found) {
-  const Float8 share = {0, 1 / 7.0f, 2 / 7.0f, 3 / 7.0f, 4 / 7.0f, 5 / 7.0f, 6 / 7.0f, 1};
-  const float start = forward ? low : high, span = forward ? high - low : low - high;
-  const Float8 u = start + span * share;
-  Float8 w[3], v[3], c1[3], along = {}, speed = {};
-  for (int i = 0; i < 3; ++i) {
-    w[i] = o[i] - (k[0][i] + u * (k[1][i] + u * (k[2][i] + u * k[3][i])));
-    v[i] = d[i] + Float8{};
-    c1[i] = k[1][i] + u * (2 * k[2][i] + u * (3 * k[3][i]));
-    along += w[i] * c1[i], speed += v[i] * c1[i];
-  }
-  if (spread) {
-    const Float8 at = -along / speed, z = o[2] + at * d[2];
-    Float8 lower = {};
-    const Float8 center_z = o[2] - w[2];
-    for (int i = 0; i < 2; ++i) {
-      const Float8 by = stretch.middle[i] + z * stretch.growth[i];
-      w[i] *= by, v[i] *= by, c1[i] *= stretch.middle[i] + center_z * stretch.growth[i];
-      lower += stretch.curvature[i] * (w[i] + at * v[i]) * (w[i] + at * v[i]);
-    }
-    w[2] -= 0.5f * lower;
-    along = w[0] * c1[0] + w[1] * c1[1] + w[2] * c1[2], speed = v[0] * c1[0] + v[1] * c1[1] + v[2] * c1[2];
-  }
-  const Float8 t = -along / speed, r = k[0][3] + u * (k[1][3] + u * (k[2][3] + u * k[3][3]));
-  Float8 outside = -r * r;
-  for (int i = 0; i < 3; ++i) outside += (w[i] + t * v[i]) * (w[i] + t * v[i]);
-  const unsigned out = bits8(outside > 0.0f);
-  for (unsigned enters = out & ~(out >> 1) & 0x7fu; enters; enters &= enters - 1) {
-    const int i = __builtin_ctz(enters);
-    float before = u[i], after = u[i + 1];
-    float at = before + (after - before) * outside[i] / (outside[i] - outside[i + 1]);
-    for (int step = 0; step < kMostSteps; ++step) {
-      const Crossing x = cross<spread>(k, o, d, stretch, at);
-      if (x.outside * x.outside < kOnSurface * kOnSurface * x.r * x.r * x.r * x.r) {
-        const float distance = near + x.t;
-        if (!(distance > 0) || !(distance <= most)) break;
-        found.t = distance, found.u = at < 0 ? 0 : (at > 1 ? 1 : at), found.normal = x.q;
-        return true;
-      }
-      (x.outside > 0 ? before : after) = at;
-      const float next = at - x.outside / x.slope;
-      at = (next - before) * (next - after) < 0 ? next : 0.5f * (before + after);
-    }
-  }
-  return false;
-}
-
-// Finds where the ray enters the yarn between parameters `from` and `to`, at t > 0 and before `most`. The ray comes
-// near the piece at t = `near` (0: it may start inside), about where the parameter is `guess`.
-template <bool spread>
-INLINE bool solve(const YarnSegment& segment, LocalRay ray, const Stretch& stretch, float from, float to, float guess,
-                  float near, float most, Solution& found) {
-  Float4 k[4];
-  for (int i = 0; i < 4; ++i) k[i] = *reinterpret_cast<const Float4*>(segment.power[i]);
-  const Float4 o = ray.origin + near * ray.direction;
-  Float4 d = ray.direction;
-  float dd = dot3(d, d);
-  const float low = from - kPastEnds, high = to + kPastEnds;
-  const float middle = 0.5f * (from + to);
-  const Float4 axis = k[1] + middle * (2 * k[2] + middle * (3 * k[3]));
-  const float speed = dot3(d, axis);
-  if (speed * speed > 0.7f * dd * dot3(axis, axis))
-    return solve_along<spread>(k, o, d, stretch, speed > 0, low, high, near, most, found);
-  float u = guess, bend = 0, met_at = 0;
-  for (int step = 0; step < kMostSteps; ++step) {
-    const Float4 c = k[0] + u * (k[1] + u * (k[2] + u * k[3]));
-    Float4 c1 = k[1] + u * (2 * k[2] + u * (3 * k[3])), c2 = 2 * k[2] + (6 * u) * k[3];
-    const float r = c[3];
-    Float4 w = o - c;
-    if (spread) {
-      d = ray.direction;
-      spread_ray(stretch, met_at, o[2] + met_at * d[2], w, d);
-      dd = dot3(d, d);
-      c1 *= stretch_at(stretch, c[2]), c2 *= stretch_at(stretch, c[2]);
-    }
-    const float along2 = dot3(c1, c1), inv = 1 / along2;
-    const float wa = dot3(w, c1), da = dot3(d, c1);
-    // The cone's radius at w + t d is r + widening (wa + t da); where the yarn bends towards the ray, the cone widens
-    // more quickly.
-    const float widening = c1[3] / (along2 - bend);
-    const float across = r + widening * wa, widens = widening * da;
-    const float a = dd - da * da * inv - widens * widens;
-    const float b = dot3(w, d) - wa * da * inv - across * widens;
-    const float cc = dot3(w, w) - wa * wa * inv - across * across;
-    // A ray that starts inside leaves the yarn without a hit.
-    if (step == 0 && near == 0 && cc < -kInside * r * r && wa * wa < kInside * r * r * along2) return false;
-    const float disc = b * b - a * cc;
-    const bool met = disc > 0;
-    const float root = met ? __builtin_sqrtf(disc) : 0.0f;
-    // Where the ray enters, (-b - root) / a.
-    if (!(b < 0) && !(a > 1e-9f * dd)) return false;  // along the yarn: met where that bends, in another piece
-    const float t = met && b < 0 ? cc / (root - b) : (-b - root) / a;
-    const Float4 q = w + t * d;
-    met_at = t;
-    const float miss = wa + t * da;
-    bend = dot3(q, c2);
-    if (bend > 0.9f * along2) bend = 0.9f * along2;
-    float slope = bend - along2;
-    if (root * root > 0.01f * r * r * dd) slope -= da * miss * bend * inv / root;
-    if (!(slope < -0.05f * along2)) slope = -0.05f * along2;
-    if (miss * miss < kConverged * kConverged * r * r * along2 && (!spread || step > 0)) {
-      const float distance = near + t;
-      if (!met || u < low || u > high || !(distance > 0) || !(distance <= most)) return false;
-      found.t = distance, found.u = u < 0 ? 0 : (u > 1 ? 1 : u), found.normal = q;
-      return true;
-    }
-    const float next = u - miss / slope;
-    // Clearly beyond either end: the yarn is met in another piece or not at all.
-    const float change = next - u, room = 0.1f * (to - from) + 0.5f * (change < 0 ? -change : change);
-    if (next < from - room || next > to + room) return false;
-    u = next;
-  }
-  return false;
-}
-
-INLINE Stretch stretch_of(const YarnGridRay& ray, const YarnPieces& p) {
+INLINE Stretch stretch_of(const YarnGridRay& ray, const CurvePieces& p) {
   return {.middle = Float4{ray.spread[0], ray.spread[1], 1, 1},
           .growth = Float4{ray.growth[0], ray.growth[1], 0, 0},
           .curvature = Float4{ray.growth[0] / (ray.spread[0] * p.unstretch_x * p.unstretch_x),
                               ray.growth[1] / (ray.spread[1] * p.unstretch_y * p.unstretch_y), 0, 0}};
-}
-
-// The pieces of the batch that the ray may meet before `most`, as bits; `near` is where the ray comes near them,
-// `guess` the parameters there.
-template <bool spread>
-INLINE unsigned candidates(const YarnPieces& p, LocalRay ray, const Stretch& stretch, float most, Float8& near,
-                           Float8& guess) {
-  const Float4 o = ray.origin, d = ray.direction;
-  Float8 ox = o[0] - load8(p.base_x), oy = o[1] - load8(p.base_y);
-  const Float8 oz = o[2] - load8(p.base_z);
-  Float8 ax = load8(p.axis_x), ay = load8(p.axis_y), az = load8(p.axis_z);
-  Float8 dx = d[0] + Float8{}, dy = d[1] + Float8{};
-  Float8 radius2 = load8(p.radius2), low = load8(p.low), high = load8(p.high), inverse_length = load8(p.inverse_length);
-  if (spread) {
-    // The stretch is that of the middle; a little room is for the rest.
-    const Float8 z = load8(p.base_z) + 0.5f * (low + high) * az;
-    const Float8 by_x = stretch.middle[0] + z * stretch.growth[0], by_y = stretch.middle[1] + z * stretch.growth[1];
-    ox *= by_x, dx *= by_x, ax *= by_x, oy *= by_y, dy *= by_y, ay *= by_y;
-    const Float8 longer = sqrt8(ax * ax + ay * ay + az * az), shorter = 1.0f / longer;
-    ax *= shorter, ay *= shorter, az *= shorter;
-    const float growth = __builtin_fabsf(stretch.growth[0]) + __builtin_fabsf(stretch.growth[1]);
-    const Float8 room = growth * (high - low + sqrt8(max8(radius2, Float8{})));
-    radius2 *= 1 + 2 * room;
-    const Float8 lean = room * (high - low);
-    low = low * longer - lean, high = high * longer + lean, inverse_length *= shorter;
-  }
-  const Float8 da = dx * ax + dy * ay + d[2] * az, oa = ox * ax + oy * ay + oz * az;
-  const Float8 dd = spread ? dx * dx + dy * dy + d[2] * d[2] : Float8{} + dot3(d, d);
-  const Float8 px = ox - oa * ax, py = oy - oa * ay, pz = oz - oa * az;  // across the axis: nothing cancels later
-  const Float8 a = max8(dd - da * da, Float8{} + 1e-9f);
-  const Float8 b = px * dx + py * dy + pz * d[2];
-  const Float8 c = px * px + py * py + pz * pz - radius2;
-  const Float8 disc = b * b - a * c;
-  const Float8 size = da < 0.0f ? -da : da;
-  Int8 possible = (disc >= 0.0f) & (b <= load8(p.slack) + load8(p.axial_slack) * size);
-  if (!bits8(possible)) return 0;
-  const Float8 root = sqrt8(max8(disc, Float8{})), inv_a = 1.0f / a;
-  const Float8 speed = da < 0.0f ? min8(da, Float8{} - 1e-20f) : max8(da, Float8{} + 1e-20f), inv_speed = 1.0f / speed;
-  const Float8 t_low = (low - oa) * inv_speed, t_high = (high - oa) * inv_speed;
-  near = max8(max8((-b - root) * inv_a, min8(t_low, t_high)), Float8{});
-  const Float8 end = min8(min8((root - b) * inv_a, max8(t_low, t_high)), Float8{} + most);
-  possible &= near <= end;
-  const Float8 from = load8(p.from), to = load8(p.to), share = (oa + near * da) * inverse_length;
-  guess = from + (to - from) * min8(max8(share, Float8{}), Float8{} + 1.0f);
-  return bits8(possible);
 }
 
 // Walks the cells to the nearest hit, or with `any` to the first that is found.
@@ -321,18 +36,19 @@ INLINE bool walk(const YarnGridData& grid, const YarnGridRay& ray, YarnGridHit* 
     const float leave = leave_x < leave_y ? leave_x : leave_y;
     const std::uint32_t* first = grid.first + iy * grid.cells_x + ix;
     for (std::uint32_t i = first[0]; i < first[1]; ++i) {
-      const YarnPieces& pieces = grid.pieces[i];
+      const CurvePieces& pieces = grid.pieces[i];
       const Float4 unstretch = {pieces.unstretch_x, pieces.unstretch_y, 1, 0};
       const LocalRay local{o * unstretch, d * unstretch};
       const Stretch stretch = stretch_of(ray, pieces);
-      Float8 near, guess;
+      Float8 near, guess, last;
       const float reach = leave + 1e-3f < best ? leave + 1e-3f : best;
-      for (unsigned bits = candidates<spread>(pieces, local, stretch, reach, near, guess); bits; bits &= bits - 1) {
+      for (unsigned bits = candidates<spread>(pieces, local, stretch, reach, near, guess, last); bits;
+           bits &= bits - 1) {
         const int lane = __builtin_ctz(bits);
         if (near[lane] > best) continue;
         Solution solution;
         if (!solve<spread>(grid.segments[pieces.segment[lane]], local, stretch, pieces.from[lane], pieces.to[lane],
-                           guess[lane], near[lane], best, solution))
+                           guess[lane], last[lane], pieces.axial_slack[lane], near[lane], best, solution))
           continue;
         if (any) return true;
         found = true;

@@ -9,8 +9,8 @@
 
 #include "renderer/picture/denoise.h"
 #include "renderer/trace/path_tracer.h"
-#include "tests/bench/bare_embree.h"
 #include "tests/renderer/trace/curve_scenes.h"
+#include "tests/renderer/trace/embree_curves.h"
 
 namespace renderer {
 namespace {
@@ -65,14 +65,14 @@ void smoothing(benchmark::State& state) {
 
 void bare_first_hits(benchmark::State& state, char name) {
   const CurveScene scene = scene_named(name);
-  BareEmbree bare(scene.scene.curves.front());
+  EmbreeCurves bare(scene.scene.curves, true);
   for (auto _ : state) {
     for (int row = 0; row < scene.camera.height; ++row) {
       for (int column = 0; column < scene.camera.width; ++column) {
         const CameraRay ray = ray_through(scene.camera, column + 0.2, row + 0.3);
         const Eigen::Vector3f origin = (ray.origin + 390 * ray.direction).cast<float>();
         const Eigen::Vector3f direction = ray.direction.cast<float>();
-        benchmark::DoNotOptimize(bare.meets(origin, direction));
+        benchmark::DoNotOptimize(bare.nearest({origin, direction}));
       }
     }
   }

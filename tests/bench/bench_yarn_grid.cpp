@@ -1,16 +1,17 @@
-// Rays per second through scene b of fixtures/reference/README.md: bare Embree with every yarn a curve, the patch's own
-// grid alone, and the grid inside the world's scene with the point that was hit (RayScene). All run on one core and on
-// the same rays: those of the camera, and those that scatter from where they meet the cloth.
+// Rays per second through scene b of fixtures/reference/README.md: bare Embree with every yarn a curve, our own tree of
+// them, the patch's own grid alone, and the grid inside the world's scene with the point that was hit (RayScene). All
+// run on one core and on the same rays: those of the camera, and those that scatter from where they meet the cloth.
 #include <benchmark/benchmark.h>
 
 #include <memory>
 
 #include "renderer/scene/patch_curves.h"
+#include "renderer/trace/curve_tree.h"
 #include "renderer/trace/path_vertex.h"
 #include "renderer/trace/ray_scene.h"
 #include "renderer/trace/yarn_grid.h"
-#include "tests/bench/bare_embree.h"
 #include "tests/renderer/trace/curve_scenes.h"
+#include "tests/renderer/trace/embree_curves.h"
 
 namespace renderer {
 namespace {
@@ -55,10 +56,19 @@ void time_rays(benchmark::State& state, const Meet& meet) {
 
 void bare_embree(benchmark::State& state) {
   const CurveScene scene = plain_weave_scene();
-  BareEmbree bare(scene.scene.curves.front());
-  time_rays(state, [&](const Ray& ray) { return bare.meets(ray.origin, ray.direction); });
+  EmbreeCurves bare(scene.scene.curves, true);
+  time_rays(state, [&](const Ray& ray) { return bare.nearest(ray).has_value(); });
 }
 BENCHMARK(bare_embree)->ArgName("scattered")->Arg(0)->Arg(1);
+
+void bare_tree(benchmark::State& state) {
+  const CurveScene scene = plain_weave_scene();
+  const std::unique_ptr<RTCDeviceTy, decltype(&rtcReleaseDevice)> device(rtcNewDevice(nullptr), rtcReleaseDevice);
+  const std::vector<CurveTree> trees = curve_trees(device.get(), scene.scene.curves);
+  time_rays(state, [&](const Ray& ray) { return trees[0].nearest(ray, 1e30f).has_value(); });
+  state.counters["bytes"] = static_cast<double>(trees[0].bytes());
+}
+BENCHMARK(bare_tree)->ArgName("scattered")->Arg(0)->Arg(1);
 
 void bare_grid(benchmark::State& state) {
   const CurveScene scene = plain_weave_cloth();

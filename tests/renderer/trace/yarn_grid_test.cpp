@@ -8,8 +8,9 @@
 #include <random>
 
 #include "renderer/scene/patch_curves.h"
-#include "renderer/trace/ray_scene.h"
+#include "renderer/trace/curve_geometry.h"
 #include "tests/renderer/trace/cloth_scenes.h"
+#include "tests/renderer/trace/embree_curves.h"
 
 namespace renderer {
 namespace {
@@ -50,12 +51,20 @@ struct Both {
   static constexpr int kTiles = 12;
   explicit Both(const YarnPatch& patch)
       : grid(column_of(patch), {patch.period_x_mm, patch.period_y_mm}),
-        embree(brute_force_scene(SwatchShape{kTiles * patch.period_x_mm, kTiles * patch.period_y_mm}, patch,
-                                 {FiberParameters{}})),
+        curves(brute_force_scene(SwatchShape{kTiles * patch.period_x_mm, kTiles * patch.period_y_mm}, patch,
+                                 {FiberParameters{}})
+                   .curves),
+        embree(curves),
         corner(kTiles / 2 * patch.period_x_mm, kTiles / 2 * patch.period_y_mm, 0) {}
   YarnGrid grid;
-  RayScene embree;
+  std::vector<CurveSet> curves;
+  EmbreeCurves embree;
   Vector3d corner;  // of the tiles, from the origin
+
+  // The point of a hit of Embree's.
+  CurvePoint point_of(const EmbreeCurves::Hit& hit, const Ray& ray) const {
+    return point_on_curve(curves[hit.set], hit.segment, hit.u, hit.normal, ray, hit.distance);
+  }
 };
 
 const YarnPatch kPatches[] = {one_thread(plain_patch()), one_thread(satin_patch()),
@@ -68,7 +77,7 @@ Vector3d direction_of(std::mt19937& random) {
 
 TEST(YarnGridTest, RaysMeetWhatTheyMeetOfEmbreesCurves) {
   for (const YarnPatch& patch : kPatches) {
-    const Both both(patch);
+    Both both(patch);
     std::mt19937 random(3);
     std::uniform_real_distribution<double> u(-1, 1);
     int met = 0, different = 0;
@@ -76,8 +85,8 @@ TEST(YarnGridTest, RaysMeetWhatTheyMeetOfEmbreesCurves) {
       const Vector3d origin(1.5 * u(random), 1.5 * u(random), 0.7 * u(random)), direction = direction_of(random);
       const float length = i % 2 ? 3.0f : 0.5f;
       const auto a = both.grid.nearest(both.corner + origin, direction, length);
-      auto b = both.embree.intersect({origin.cast<float>(), direction.cast<float>()});
-      if (b && b->distance > length) b.reset();
+      const Ray ray{origin.cast<float>(), direction.cast<float>()};
+      const auto b = both.embree.nearest(ray, length);
       EXPECT_EQ(both.grid.occluded(both.corner + origin, direction, length), a.has_value());
       if (!a && !b) continue;
       ++met;
@@ -91,7 +100,7 @@ TEST(YarnGridTest, RaysMeetWhatTheyMeetOfEmbreesCurves) {
       const Vector3f normal = a->normal.normalized();
       const bool even = patch.yarns[0].flatness == 1 && patch.yarns[0].thickness.empty();
       if (even && normal.dot(direction.cast<float>()) < -0.1f)
-        different += (normal - std::get<CurvePoint>(b->point).normal).norm() > 2e-2f;
+        different += (normal - both.point_of(*b, ray).normal).norm() > 2e-2f;
     }
     EXPECT_GT(met, 15000);
     EXPECT_LE(different, met / 2000);  // rays that only touch a yarn
@@ -101,20 +110,20 @@ TEST(YarnGridTest, RaysMeetWhatTheyMeetOfEmbreesCurves) {
 
 TEST(YarnGridTest, ARayThatStartsAtAHitMeetsTheNextYarnOnly) {
   for (const YarnPatch& patch : kPatches) {
-    const Both both(patch);
+    Both both(patch);
     std::mt19937 random(5);
     std::uniform_real_distribution<double> u(-1, 1);
     int started = 0, different = 0;
     for (int i = 0; i < 20000; ++i) {
       const Vector3d above(1.5 * u(random), 1.5 * u(random), 2), down(0.3 * u(random), 0.3 * u(random), -1);
-      const auto hit = both.embree.intersect({above.cast<float>(), down.normalized().cast<float>()});
+      const Ray ray{above.cast<float>(), down.normalized().cast<float>()};
+      const auto hit = both.embree.nearest(ray);
       if (!hit) continue;
       ++started;
-      const Vector3f start = std::get<CurvePoint>(hit->point).position;
+      const Vector3f start = both.point_of(*hit, ray).position;
       const Vector3d direction = direction_of(random);
       const auto a = both.grid.nearest(both.corner + start.cast<double>(), direction, 2.0f);
-      auto b = both.embree.intersect({start, direction.cast<float>()});
-      if (b && b->distance > 2) b.reset();
+      const auto b = both.embree.nearest({start, direction.cast<float>()}, 2);
       different += a.has_value() != b.has_value() || (a && std::abs(a->distance - b->distance) > 5e-3f);
     }
     EXPECT_GT(started, 10000);
