@@ -164,6 +164,7 @@ class ThreadModel {
   }
 
   ThreadExit exit() const { return parameters_.exit; }
+  const Vec3<S>& absorption() const { return parameters_.sigma_a; }
 
  private:
   template <class>

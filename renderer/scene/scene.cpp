@@ -42,7 +42,10 @@ double beam_factor(const SphereLight& light, const Eigen::Vector3d& point) {
 std::vector<ScatteringModel> scattering_models(const Scene& scene) {
   std::vector<ScatteringModel> models;
   for (const CurveSet& set : scene.curves) models.push_back(set.scattering);
-  for (const Cloth& cloth : scene.cloths) models.insert(models.end(), cloth.threads.begin(), cloth.threads.end());
+  for (const Cloth& cloth : scene.cloths) {
+    models.insert(models.end(), cloth.threads.begin(), cloth.threads.end());
+    if (cloth.flyaways) models.emplace_back(cloth.flyaways->fiber);
+  }
   return models;
 }
 

@@ -69,6 +69,24 @@ struct AbsorptionTexture {
   Eigen::Vector2i texel_at(const Eigen::Vector2d& patch_mm) const;  // column, row; it repeats without end
 };
 
+// What is seen of the fibers of a cloth's threads close by (fiber_detail.h). Bundles have none: their fibers are there.
+struct FiberDetail {
+  double twist_rad = 0;     // of the fibers on a thread's surface against its axis
+  double spread_rad = 0;    // standard deviation of their directions about that
+  double shade = 0;         // standard deviation of their absorption, as a share of the thread's
+  double width_mm = 0.015;  // of a fiber
+  std::uint64_t seed = 1;
+};
+
+// Fibers that stand out of a cloth's yarns (fiber_detail.h).
+struct Flyaways {
+  double per_mm = 1;     // of yarn
+  double length_mm = 1;  // mean
+  double diameter_mm = 0.015;
+  FiberParameters fiber{};
+  std::uint64_t seed = 1;
+};
+
 // Cloth in two scales: one patch, repeated without end over a surface and ending at its border. Memory does not grow
 // with the number of repeats. Cloth as explicit curves: cloth_shape.h.
 struct Cloth {
@@ -76,6 +94,8 @@ struct Cloth {
   YarnPatch patch{};
   std::vector<ScatteringModel> threads{};         // by thread index of the patch's yarns
   std::optional<AbsorptionTexture> absorption{};  // only where all threads are ThreadParameters
+  std::optional<FiberDetail> fibers{};
+  std::optional<Flyaways> flyaways{};
 };
 
 // An emitting sphere; irradiance at distance d facing it: radiance * beam_factor * pi * radius^2 / d^2.
@@ -113,7 +133,7 @@ struct Scene {
 };
 
 // The models of all curves, in the order in which hits number them (CurvePoint::curve_set): the curve sets, then the
-// threads of each cloth.
+// threads of each cloth with the fiber of its flyaways.
 std::vector<ScatteringModel> scattering_models(const Scene& scene);
 
 }  // namespace renderer

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -17,12 +18,21 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// The heights between which the yarns lie, and a little more, because surface_range() is exact to 1e-4 of a radius
-// only.
-SurfaceRange shell_heights(const YarnPatch& patch) {
-  const SurfaceRange range = surface_range(patch);
+// The heights between which the yarns and their flyaways lie, and a little more, because surface_range() is exact to
+// 1e-4 of a radius only.
+SurfaceRange shell_heights(const Cloth& cloth, const FlyawayCurves& flyaways) {
+  const SurfaceRange range = surface_range(cloth.patch);
   const double more = 2e-3 * (range.high_mm - range.low_mm);
-  return {range.low_mm - more, range.high_mm + more};
+  SurfaceRange heights{range.low_mm - more, range.high_mm + more};
+  for (const Eigen::Vector4f& point : flyaways.curves.control_points) {
+    heights.low_mm = std::min(heights.low_mm, static_cast<double>(point.z() - point.w()));
+    heights.high_mm = std::max(heights.high_mm, static_cast<double>(point.z() + point.w()));
+  }
+  return heights;
+}
+
+FlyawayCurves flyaways_of(const Cloth& cloth) {
+  return cloth.flyaways ? flyaway_curves(cloth.patch, *cloth.flyaways) : FlyawayCurves{};
 }
 
 // How far yarns are kept beyond the cell. Light goes along among a yarn's fibers for a radius or two before it leaves.
@@ -35,7 +45,7 @@ double margin_mm(const Cloth& cloth) {
   return kRadii * thickest;
 }
 
-std::vector<ColumnYarns> yarns_of(const Cloth& cloth) {
+std::vector<ColumnYarns> yarns_of(const Cloth& cloth, const FlyawayCurves& flyaways) {
   check_cloth(cloth.patch, cloth.threads.size());
   std::vector<ColumnYarns> yarns;
   for (const RoundYarns& part : round_yarns_of(cloth.patch))
@@ -43,6 +53,7 @@ std::vector<ColumnYarns> yarns_of(const Cloth& cloth) {
       yarns.push_back({cell_curves_of(part.patch, thread, margin_mm(cloth)), static_cast<std::uint32_t>(thread)});
       yarns.back().curves.placed = Eigen::Scaling(Vector3f(part.stretch.cast<float>()));
     }
+  if (cloth.flyaways) yarns.push_back({flyaways.curves, static_cast<std::uint32_t>(cloth.threads.size())});
   return yarns;
 }
 
@@ -82,12 +93,21 @@ const ClothGeometry& cloth_of(void* user_pointer) {
 }  // namespace
 
 ClothGeometry::ClothGeometry(const Cloth& cloth, std::uint32_t first_curve_set)
-    : shell_(make_shell(cloth.surface, shell_heights(cloth.patch))),
+    : ClothGeometry(cloth, flyaways_of(cloth), first_curve_set) {}
+
+ClothGeometry::ClothGeometry(const Cloth& cloth, const FlyawayCurves& flyaways, std::uint32_t first_curve_set)
+    : shell_(make_shell(cloth.surface, shell_heights(cloth, flyaways))),
       first_curve_set_(first_curve_set),
-      yarns_(yarns_of(cloth)),
+      yarns_(yarns_of(cloth, flyaways)),
       grid_(yarns_, {cloth.patch.period_x_mm, cloth.patch.period_y_mm}, shell_.least_spread),
       places_(cloth.patch, margin_mm(cloth)),
-      absorption_(checked_absorption(cloth)) {}
+      absorption_(checked_absorption(cloth)),
+      fibers_(cloth.fibers) {
+  if (cloth.flyaways) places_.add(flyaways.origins);
+  for (const ScatteringModel& thread : cloth.threads)
+    has_fibers_.push_back(fibers_ && std::holds_alternative<ThreadParameters>(thread));
+  has_fibers_.push_back(false);  // flyaways
+}
 
 void ClothGeometry::attach_to(RTCDevice device, RTCScene scene) const {
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
@@ -148,6 +168,7 @@ CurvePoint ClothGeometry::point_at(const ClothHit& hit) const {
   CurvePoint point =
       point_on_curve(yarns.curves, hit.segment, hit.u, hit.hit_normal, hit.ray, hit.distance, cell.spread);
   const Vector3d patch = point.position.cast<double>() + hit.tile;
+  if (has_fibers_[yarns.thread]) set_fiber(hit, patch, point);
   const Affine3x4 to_world = world_from_patch(cell);
   const Vector3d world = to_world * patch.homogeneous();
   // The section is that of the frame at the yarn's axis.
@@ -166,6 +187,16 @@ CurvePoint ClothGeometry::point_at(const ClothHit& hit) const {
     point.absorption = &absorption_->sigma_a(texel.y(), texel.x());
   }
   return point;
+}
+
+void ClothGeometry::set_fiber(const ClothHit& hit, const Vector3d& place, CurvePoint& point) const {
+  const YarnPlace yarn = yarn_at(hit);
+  const Vector3f across = Vector3f::UnitZ().cross(point.tangent).normalized(), up = point.tangent.cross(across);
+  const double azimuth = static_cast<double>(std::atan2(point.normal.dot(up), point.normal.dot(across)));
+  const auto number = static_cast<std::uint64_t>(2 * static_cast<std::int64_t>(yarn.number) + (yarn.weft ? 1 : 0));
+  const FiberAt fiber =
+      fiber_at(*fibers_, yarn.weft ? place.x() : place.y(), azimuth, static_cast<double>(point.out.norm()), number);
+  point.fiber_turn = fiber.turn_rad, point.fiber_lift = fiber.lift_rad, point.shade = fiber.shade;
 }
 
 std::size_t ClothGeometry::yarn_bytes() const {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "renderer/scene/fiber_detail.h"
 #include "renderer/trace/cloth_shell.h"
 #include "renderer/trace/ray_hit.h"
 #include "renderer/trace/yarn_grid.h"
@@ -39,6 +40,9 @@ class ClothGeometry {
   std::size_t grid_bytes() const { return grid_.bytes(); }
 
  private:
+  ClothGeometry(const Cloth& cloth, const FlyawayCurves& flyaways, std::uint32_t first_curve_set);
+  // Fills in the fiber of a point that is still in the patch's frame, at `place` of the endless patch.
+  void set_fiber(const ClothHit& hit, const Eigen::Vector3d& place, CurvePoint& point) const;
   void intersect(const RTCIntersectFunctionNArguments& arguments) const;
   void occluded(const RTCOccludedFunctionNArguments& arguments) const;
 
@@ -48,6 +52,8 @@ class ClothGeometry {
   YarnGrid grid_;
   YarnPlaces places_;
   std::optional<AbsorptionTexture> absorption_;
+  std::optional<FiberDetail> fibers_;
+  std::vector<bool> has_fibers_;  // by thread
 };
 
 }  // namespace renderer

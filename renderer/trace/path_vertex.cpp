@@ -55,7 +55,12 @@ std::vector<CurveModel> prepare_curve_models(const std::vector<CurveSet>& curves
 }
 
 Matrix3f local_from_world(const CurvePoint& point) {
-  return frame_rows(point.tangent, point.normal.cross(point.tangent), point.normal);
+  const Vector3f across = point.normal.cross(point.tangent);
+  if (point.fiber_turn == 0 && point.fiber_lift == 0) return frame_rows(point.tangent, across, point.normal);
+  const float cosine = std::cos(point.fiber_lift), sine = std::sin(point.fiber_lift);
+  const Vector3f flat = std::cos(point.fiber_turn) * point.tangent + std::sin(point.fiber_turn) * across,
+                 fiber = cosine * flat + sine * point.normal, normal = cosine * point.normal - sine * flat;
+  return frame_rows(fiber, normal.cross(fiber), normal);
 }
 
 float viewing_offset(const Vector3f& wo) {
@@ -73,8 +78,11 @@ CurveLobes<float> lobes_at(const CurveModel& model, const CurvePoint& curve, con
   const Vector3f wo_local = frame * wo;
   const auto* thread = std::get_if<ThreadModel<float>>(&model);
   const float h = thread ? offset_in_section(curve, wo) : viewing_offset(wo_local);
-  if (thread && curve.absorption)
-    return thread->lobes_at(h, wo_local, {(*curve.absorption)[0], (*curve.absorption)[1], (*curve.absorption)[2]});
+  if (thread && (curve.absorption || curve.shade != 1)) {
+    const auto& texel = curve.absorption;
+    const Vector3f own = texel ? Vector3f((*texel)[0], (*texel)[1], (*texel)[2]) : thread->absorption();
+    return thread->lobes_at(h, wo_local, curve.shade * own);
+  }
   return std::visit([&](const auto& of) { return of.lobes_at(h, wo_local); }, model);
 }
 

@@ -26,7 +26,7 @@ using CurveModel = std::variant<FiberModel<float>, ThreadModel<float>, YarnModel
 std::vector<CurveModel> prepare_curve_models(const std::vector<ScatteringModel>& scattering);
 std::vector<CurveModel> prepare_curve_models(const std::vector<CurveSet>& curves);
 
-// The rotation into the scattering models' frame at a point of a curve: x = tangent, z = outward normal.
+// The rotation into the scattering models' frame at a point of a curve: x = tangent or fiber, z = outward normal.
 Eigen::Matrix3f local_from_world(const CurvePoint& point);
 
 // The offset h of the ray along which a curve was hit from outside: the angle from the surface normal (local z) to the

@@ -72,7 +72,7 @@ RayScene::RayScene(Scene scene)
   for (const Cloth& cloth : scene_.cloths) {
     cloths_.push_back(std::make_shared<ClothGeometry>(cloth, curve_set));
     cloths_.back()->attach_to(device_.get(), embree_.get());
-    curve_set += static_cast<std::uint32_t>(cloth.threads.size());
+    curve_set += static_cast<std::uint32_t>(cloth.threads.size() + (cloth.flyaways ? 1 : 0));
     yarns_overlap_ |= overlap_of_yarns(cloth.patch) > kTouching;
   }
   rtcCommitScene(embree_.get());

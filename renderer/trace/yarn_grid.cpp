@@ -22,11 +22,15 @@ const YarnGridKernel& best_kernel() {
   return baseline::kYarnGridKernel;
 }
 
+// Thick yarns count for more than fibers that stand out of them.
 double mean_radius(const std::vector<ColumnYarns>& yarns) {
-  double sum = 0, count = 0;
+  double squares = 0, sum = 0;
   for (const ColumnYarns& part : yarns)
-    for (const Eigen::Vector4f& point : part.curves.control_points) sum += static_cast<double>(point.w()), ++count;
-  return count > 0 ? sum / count : 1;
+    for (const Eigen::Vector4f& point : part.curves.control_points) {
+      const auto radius = static_cast<double>(point.w());
+      squares += radius * radius, sum += radius;
+    }
+  return sum > 0 ? squares / sum : 1;
 }
 
 }  // namespace

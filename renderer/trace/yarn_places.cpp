@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "renderer/scene/patch_curves.h"
-
 namespace renderer {
 
 YarnPlaces::YarnPlaces(const YarnPatch& patch, double margin_mm) : period_mm_(patch.period_x_mm, patch.period_y_mm) {
@@ -13,14 +11,20 @@ YarnPlaces::YarnPlaces(const YarnPatch& patch, double margin_mm) : period_mm_(pa
       std::vector<SegmentOrigin> origins;
       cell_curves_of(part.patch, thread, margin_mm, &origins);
       std::vector<YarnPlace>& places = places_.emplace_back();
-      for (const SegmentOrigin& origin : origins) {
-        const int number = part.numbers[static_cast<std::size_t>(origin.yarn)];
-        const bool weft = number >= ends_;  // warp yarns come first
-        places.push_back(
-            {.weft = weft, .number = weft ? number - ends_ + picks_ * origin.image : number + ends_ * origin.image});
-      }
+      for (const SegmentOrigin& origin : origins)
+        places.push_back(place_of(part.numbers[static_cast<std::size_t>(origin.yarn)], origin.image));
     }
   }
+}
+
+void YarnPlaces::add(const std::vector<SegmentOrigin>& origins) {
+  std::vector<YarnPlace>& places = places_.emplace_back();
+  for (const SegmentOrigin& origin : origins) places.push_back(place_of(origin.yarn, origin.image));
+}
+
+YarnPlace YarnPlaces::place_of(int number, int image) const {
+  const bool weft = number >= ends_;  // warp yarns come first
+  return {.weft = weft, .number = weft ? number - ends_ + picks_ * image : number + ends_ * image};
 }
 
 YarnPlace YarnPlaces::at(std::size_t yarns, std::size_t segment, const Eigen::Vector3d& tile) const {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "renderer/scene/patch_curves.h"
 #include "renderer/weave/patch.h"
 
 namespace renderer {
@@ -23,11 +24,16 @@ class YarnPlaces {
   // threads_of() (patch_curves.h).
   YarnPlaces(const YarnPatch& patch, double margin_mm);
 
+  // Adds curves whose segments come out of these yarns of the patch.
+  void add(const std::vector<SegmentOrigin>& origins);
+
   // The yarn of a segment of curves number `yarns`, when the cell lies at `tile` (mm) in the endless patch; its group
   // is 0.
   YarnPlace at(std::size_t yarns, std::size_t segment, const Eigen::Vector3d& tile) const;
 
  private:
+  YarnPlace place_of(int number, int image) const;
+
   int ends_ = 0, picks_ = 0;  // warp and weft yarns of a period
   Eigen::Vector2d period_mm_;
   std::vector<std::vector<YarnPlace>> places_;  // of each segment, by curves, when the cell lies at 0

@@ -3,6 +3,7 @@
 
 #include "station/cloth/preview/woven_threads.h"
 #include "station/commands/ready_name.h"
+#include "station/documents/cloth_fibers.h"
 
 namespace station {
 
@@ -13,6 +14,10 @@ inline void add_weave_options(CLI::App& command, ThreadsToWeave& cloth) {
   or_ready("threads", command.add_option("--weft", cloth.weft_thread,
                                          "thread or bundle file of the weft, or a ready thread's name; the warp's "
                                          "without it"));
+  command
+      .add_option("--fibers", cloth.fibers,
+                  "what is seen of the fibers close by, for pictures that are looked at; smooth threads without it")
+      ->check(CLI::IsMember(fiber_kinds()));
 }
 
 }  // namespace station

@@ -194,6 +194,10 @@ SceneCloth parse_cloth(ObjectReader reader, const std::filesystem::path& folder,
       reader.refuse("absorption", "is that of threads, and the scene lists a bundle file; list thread files");
     cloth.absorption = parse_absorption(reader.object("absorption"), folder);
   }
+  if (reader.has("fibers")) {
+    if (!cloth.two_scale) reader.refuse("fibers", "are for cloth in two scales; leave the method out");
+    cloth.fibers = parse_cloth_fibers(reader, "fibers");
+  }
   reader.finish();
   return cloth;
 }

@@ -19,6 +19,7 @@
 #include "renderer/scene/garment.h"
 #include "renderer/scene/scene.h"
 #include "renderer/weave/draft.h"
+#include "station/documents/cloth_fibers.h"
 
 namespace station {
 
@@ -32,6 +33,7 @@ using SceneShape = std::variant<renderer::SwatchShape, renderer::CylinderShape, 
 struct SceneCloth {
   std::variant<renderer::Draft, renderer::YarnPatch> weave;
   std::optional<renderer::AbsorptionTexture> absorption{};
+  std::optional<ClothFibers> fibers{};
   SceneShape shape{};
   Eigen::Isometry3d world_from_cloth = Eigen::Isometry3d::Identity();
   bool two_scale = true;  // otherwise brute force: every yarn as curves

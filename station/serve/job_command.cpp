@@ -10,6 +10,7 @@
 
 #include "station/cloth/preview/cloth_stage.h"
 #include "station/data/data_folder.h"
+#include "station/documents/cloth_fibers.h"
 #include "station/documents/disk/file_name.h"
 #include "station/serve/page_answers.h"
 #include "station/session/results.h"
@@ -311,6 +312,11 @@ std::vector<std::string> design_words(const json& fields, const Workspace& works
     const std::vector<std::string> shapes = cloth_shapes();
     if (std::ranges::find(shapes, shape) == shapes.end()) throw Refused(404, "there is no shape " + shape);
     words.insert(words.end(), {"--shape", shape});
+  }
+  if (const std::string fibers = asked.text("fibers"); !fibers.empty()) {
+    const std::vector<std::string> kinds = fiber_kinds();
+    if (std::ranges::find(kinds, fibers) == kinds.end()) throw Refused(404, "there are no fibers " + fibers);
+    words.insert(words.end(), {"--fibers", fibers});
   }
   return words;
 }

@@ -8,6 +8,7 @@
 #include "rig/devices/clock.h"
 #include "station/cloth/preview/cloth_stage.h"
 #include "station/data/data_folder.h"
+#include "station/documents/cloth_fibers.h"
 #include "station/documents/disk/whole_file.h"
 #include "station/documents/reader.h"
 #include "station/serve/batches.h"
@@ -295,6 +296,7 @@ json TechnicianPage::state() {
   document["rig"] = rig_.name;
   document["drafts"] = ready_drafts();
   document["shapes"] = cloth_shapes();
+  document["fibers"] = fiber_kinds();
   document["export_formats"] = export_formats();
   document["simulated_spools"] = rig_.simulation ? simulated_spools() : std::vector<std::string>();
   document["calibration_valid_days"] = rig_.calibration_valid_days;

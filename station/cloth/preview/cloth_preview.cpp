@@ -43,7 +43,7 @@ std::array<double, 3> white_of(const ClothStage& stage, const std::array<std::st
 
 // The scene as somebody wishes to see it, written into the cloth's folder.
 fs::path write_scene(const ClothPreviewRequest& request, const ClothStage& stage, const WovenThreads& woven) {
-  json scene = scene_on_stage(stage, woven.files, request.view, scale_of(request, stage));
+  json scene = scene_on_stage(stage, woven.files, request.view, scale_of(request, stage), woven.fibers);
   if (request.quick) scene["samples_per_pixel"] = stage.samples_per_pixel / kQuickReduction;
   const fs::path file = request.cloth.out / (stage.shape + ".json");
   write_json_file(file, scene);

@@ -100,13 +100,14 @@ std::optional<std::string> problem_of(const ClothView& view) {
 }
 
 json scene_on_stage(const ClothStage& stage, const std::array<std::string, 2>& threads, const ClothView& view,
-                    double scale) {
+                    double scale, const std::string& fibers) {
   json scene = read_json_file(data_folder() / "scenes" / stage.scene);
   scene["name"] = "the thread as a " + stage.shape;
   scene["threads"] = threads;
   for (json& cloth : scene["cloths"]) {
     for (const char* key : {"draft", "warp_threads", "weft_threads"}) cloth.erase(key);
     cloth["patch"] = "patch.json";
+    if (!fibers.empty()) cloth["fibers"] = fibers;
   }
   json& camera = scene["camera"];
   const Turning turning{.middle = vector_of(camera["target_mm"]),

@@ -39,8 +39,8 @@ ClothView cloth_view_of(const nlohmann::json& document);
 std::optional<std::string> problem_of(const ClothView& view);
 
 // The scene of patch.json, beside which it is written, with the threads of warp and weft. `scale`: of the picture's
-// size.
+// size. `fibers`: what is seen of them close by (documents/cloth_fibers.h), or nothing.
 nlohmann::json scene_on_stage(const ClothStage& stage, const std::array<std::string, 2>& threads, const ClothView& view,
-                              double scale);
+                              double scale, const std::string& fibers = {});
 
 }  // namespace station

@@ -110,9 +110,10 @@ WovenThreads weave_threads(const ThreadsToWeave& wanted, ProgressStyle progress_
   const renderer::YarnPatch patch = weave_watched(draft, progress).patch;
   write_json_file(folder / "draft.json", to_json(draft));
   write_json_file(folder / "patch.json", to_json(patch));
-  WovenThreads woven{.linear_srgb_from_camera = thread.linear_srgb_from_camera};
+  WovenThreads woven{.linear_srgb_from_camera = thread.linear_srgb_from_camera, .fibers = wanted.fibers};
   woven.made_of = {{"draft", draft.name}, {"warp", nullptr}, {"weft", nullptr}};
   woven.made_of["model"] = is_bundle_file(own[kWarp]) ? "bundle" : "thread";
+  if (!wanted.fibers.empty()) woven.made_of["fibers"] = wanted.fibers;
   woven.made_of["threads"] = {read_json_file(own[kWarp]).value("name", ""),
                               read_json_file(own[kWeft]).value("name", "")};
   woven.files = write_threads(wanted, own, patch, progress_style, woven.made_of);

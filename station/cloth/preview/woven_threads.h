@@ -20,12 +20,14 @@ struct ThreadsToWeave {
   std::filesystem::path draft;          // each system is scaled to its thread's diameter
   // The colours of warp and weft (cloth_colour.h); a system without one has its digitized thread's own.
   std::optional<Srgb8> warp_colour{}, weft_colour{};
+  std::string fibers{};  // what is seen of them close by, one of fiber_kinds(); empty: nothing
 };
 
 struct WovenThreads {
   std::array<std::string, 2> files;               // of warp and weft, as a scene in the folder names them
   nlohmann::json made_of;                         // session/results.h, without what pictures add
   std::array<double, 9> linear_srgb_from_camera;  // the warp's
+  std::string fibers{};                           // as they were asked for
 };
 
 // Writes draft.json and patch.json, and the threads that are coloured or to be copied. Errors: those of the files read

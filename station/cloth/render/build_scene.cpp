@@ -44,6 +44,22 @@ std::vector<renderer::CurveSet> sewn(const SceneEmbroidery& embroidery, const re
 
 }  // namespace
 
+namespace {
+
+// Flyaways absorb as much on their way as the cloth's first thread does.
+std::optional<renderer::Flyaways> flyaways_of(const SceneCloth& cloth, const renderer::YarnPatch& patch,
+                                              const std::vector<renderer::ScatteringModel>& threads) {
+  if (!cloth.fibers || !cloth.fibers->flyaways) return std::nullopt;
+  renderer::Flyaways flyaways = *cloth.fibers->flyaways;
+  const renderer::Yarn& yarn = patch.yarns.front();
+  const int first = yarn.threads.empty() ? yarn.thread : yarn.threads.front();
+  if (const auto* thread = std::get_if<renderer::ThreadParameters>(&threads.at(static_cast<std::size_t>(first))))
+    flyaways.fiber.sigma_a = thread->sigma_a * (flyaways.diameter_mm / 2 / yarn.radius_mm);
+  return flyaways;
+}
+
+}  // namespace
+
 renderer::YarnPatch woven_cloth(const SceneFile& file, std::size_t cloth, ProgressDisplay& progress) {
   const auto& weave = file.cloths.at(cloth).weave;
   const auto* draft = std::get_if<renderer::Draft>(&weave);
@@ -68,8 +84,12 @@ renderer::Scene build_scene(const SceneFile& file, const std::vector<BuiltCloth>
     const auto& [patch, shape] = cloths.at(i);
     const Eigen::Isometry3d& world_from_cloth = file.cloths[i].world_from_cloth;
     if (file.cloths[i].two_scale) {
-      scene.cloths.push_back(
-          {renderer::surface_of(shape, patch, world_from_cloth), patch, threads, file.cloths[i].absorption});
+      scene.cloths.push_back({.surface = renderer::surface_of(shape, patch, world_from_cloth),
+                              .patch = patch,
+                              .threads = threads,
+                              .absorption = file.cloths[i].absorption,
+                              .flyaways = flyaways_of(file.cloths[i], patch, threads)});
+      if (file.cloths[i].fibers) scene.cloths.back().fibers = file.cloths[i].fibers->detail;
     } else {
       for (renderer::CurveSet& set : renderer::explicit_curves(shape, patch, threads, world_from_cloth))
         scene.curves.push_back(std::move(set));

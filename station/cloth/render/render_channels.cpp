@@ -17,6 +17,8 @@ std::vector<int> threads_of_models(const SceneFile& scene, const std::vector<Bui
       threads.insert(threads.end(), used.begin(), used.end());
     else
       for (std::size_t i = 0; i < scene.threads.size(); ++i) of_cloths.push_back(static_cast<int>(i));
+    if (scene.cloths[cloth].fibers && scene.cloths[cloth].fibers->flyaways)  // counted as the first thread's
+      of_cloths.push_back(used.front());
   }
   threads.insert(threads.end(), of_cloths.begin(), of_cloths.end());
   return threads;

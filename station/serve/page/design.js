@@ -22,7 +22,8 @@ function propose() {
   form.name.value = proposed = `${form.draft.value} ${form.shape.value} ${threads}`;
 }
 
-const clothWanted = form => ({number: Number(form.warp.value), weft: Number(form.weft.value), draft: form.draft.value, shape: form.shape.value});
+const clothWanted = form => ({number: Number(form.warp.value), weft: Number(form.weft.value), draft: form.draft.value, shape: form.shape.value,
+                                fibers: form.fibers.value});
 
 // For other programs: a job makes it, and then it can be taken.
 function exported(design) {
@@ -60,6 +61,7 @@ export function showDesign() {
   wanted = "";
   fill(form.draft, state.drafts);
   fill(form.shape, state.shapes, state.shapes.map(shape => text(`cloth_${shape}`)));
+  fill(form.fibers, ["", ...state.fibers], [text("fibers_none"), ...state.fibers.map(kind => text(`fibers_${kind}`))]);
   fill(form.size, ["", ...kPrinted_cm.map(String)], [text("size_screen"), ...kPrinted_cm.map(cm => text("size_print", {cm}))]);
   if (!byId("design-draft").src && state.drafts.length) showDraft();
   if (numbers.length && document.activeElement !== form.name) propose();

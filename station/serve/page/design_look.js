@@ -10,7 +10,7 @@ const kSoon_ms = 150, kLater_ms = 1000;  // until the station is asked again: wh
 const kDegreesPerPixel = 0.4, kMostZoom = 20, kLeastZoom = 0.25;
 
 let view = {...kRest};
-let cloth = null;     // that is looked at: {number, weft, draft, shape}
+let cloth = null;     // that is looked at: {number, weft, draft, shape, fibers}
 let shape = "";       // that was looked at last, also before the page was left
 let begun = false;    // a look that this page has to end
 let asked = 0;        // the number of the last look that was asked for

@@ -17,9 +17,9 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using Eigen::Vector4f;
 
-constexpr unsigned kSeed = 20261130;
+constexpr unsigned kCurveSeed = 20261130;
 
-Vector3f random_direction(std::mt19937& random) {
+Vector3f any_direction(std::mt19937& random) {
   std::normal_distribution<float> n;
   return Vector3f(n(random), n(random), n(random)).normalized();
 }
@@ -29,7 +29,7 @@ CurveSet random_rings(std::mt19937& random, int count, float reach, Vector3f mid
   std::uniform_real_distribution<float> u(-1, 1);
   CurveSet set;
   for (int ring = 0; ring < count; ++ring) {
-    const Vector3f centre = middle + reach * Vector3f(u(random), u(random), u(random)), x = random_direction(random),
+    const Vector3f centre = middle + reach * Vector3f(u(random), u(random), u(random)), x = any_direction(random),
                    y = x.unitOrthogonal(), z = x.cross(y);
     const float size = 2 + u(random), radius = 0.15f + 0.1f * u(random);
     constexpr int kPoints = 9;
@@ -83,16 +83,16 @@ class Balls {
 };
 
 TEST(CurveTreeTest, RaysEnterRandomRingsWhereTheirBallsAre) {
-  std::mt19937 random(kSeed);
-  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kCurveSeed);
+  std::printf("seed %u\n", kCurveSeed);
   for (const float away : {0.0f, 200.0f}) {  // from the origin: coordinates are rounded
-    const CurveSet rings = random_rings(random, 40, 5, away * random_direction(random));
+    const CurveSet rings = random_rings(random, 40, 5, away * any_direction(random));
     const Balls balls(rings);
     const RayScene scene({.curves = {rings}});
     const Vector3f middle = scene.bounds().center().cast<float>();
     int met = 0, compared = 0, wrong = 0;
     for (int i = 0; i < 1500; ++i) {
-      const Vector3f from = middle + 12 * random_direction(random), to = middle + 4 * random_direction(random);
+      const Vector3f from = middle + 12 * any_direction(random), to = middle + 4 * any_direction(random);
       const Ray ray{from, (to - from).normalized()};
       bool touching = false;
       const double expected = balls.entry(ray, touching);
@@ -134,10 +134,10 @@ Difference difference(const std::vector<CurveSet>& curves, int rays, std::mt1993
   };
   for (int i = 0; i < rays; ++i) {
     const Vector3f from = middle + size.cwiseProduct(Vector3f(u(random), u(random), u(random)));
-    const auto hit = compare({from, random_direction(random)});
+    const auto hit = compare({from, any_direction(random)});
     if (!hit) continue;
     const auto& point = std::get<CurvePoint>(hit->point);
-    Vector3f onwards = random_direction(random);
+    Vector3f onwards = any_direction(random);
     if (onwards.dot(point.normal) < 0.05f) continue;
     compare({point.position, onwards});
   }
@@ -150,7 +150,7 @@ CurveSet random_lines(std::mt19937& random, int count) {
   std::uniform_real_distribution<float> u(-1, 1);
   CurveSet set;
   for (int line = 0; line < count; ++line) {
-    const Vector3f start = 5 * Vector3f(u(random), u(random), u(random)), along = random_direction(random),
+    const Vector3f start = 5 * Vector3f(u(random), u(random), u(random)), along = any_direction(random),
                    side = along.unitOrthogonal();
     const float bend = line % 3 ? 0.5f : 0.0f, step = line % 3 ? 1.0f : 4.0f;
     std::vector<Vector4f> points;
@@ -164,8 +164,8 @@ CurveSet random_lines(std::mt19937& random, int count) {
 }
 
 TEST(CurveTreeTest, RaysMeetWhatTheyMeetOfEmbreesCurves) {
-  std::mt19937 random(kSeed);
-  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kCurveSeed);
+  std::printf("seed %u\n", kCurveSeed);
   const auto expect_alike = [&](const std::vector<CurveSet>& curves, int rays) {
     const Difference d = difference(curves, rays, random, 5e-3f);
     EXPECT_GT(d.met, 10000);
