@@ -2,7 +2,8 @@
 // yet. They are deterministic; z is up.
 //
 // A hanging cloth hardly stretches: rings and rows keep the length that they have in the pattern, and fold where there
-// is less room for them.
+// is less room for them. Folds are laid regularly and then fall into what gravity makes of them, by position-based
+// dynamics [Macklin 2016, doi 10.1145/2994258.2994272]; cloth does not meet itself there.
 #pragma once
 
 #include <functional>
@@ -13,23 +14,23 @@
 namespace renderer {
 
 // A skirt cut as a sector of a ring, sewn along one straight seam, hung from the waist. It falls into folds, because
-// the rings of the pattern grow faster than the skirt gets wider. The axis is z, the hem near z = 0, the face outwards.
+// the rings of the pattern grow faster than the hips that it hangs round. The axis is z, the lowest point of the hem at
+// z = 0, the face outwards.
 struct SkirtShape {
   double waist_radius_mm = 110, length_mm = 600;
   double flare_deg = 300;  // angle of the sector; 360 is a full circle skirt
   int folds = 11;
 };
 
-// A rectangle hung by its upper edge in pleats that lean and open towards the hem: the falling end of a sari. It lies
-// about the plane y = 0, the face towards -y, the hem at z = 0.
+// A rectangle hung by its upper edge in pleats that open towards the hem: the falling end of a sari. It lies about the
+// plane y = 0, the face towards -y, the lowest point of the hem at z = 0.
 struct PleatedShape {
   double width_mm = 900, height_mm = 1100;
   int pleats = 9;
   double gathered = 0.55;  // width as hung over width, at the upper edge
 };
 
-// A square that hangs over a ball, a little off its middle, relaxed by position-based dynamics [Macklin 2016, doi
-// 10.1145/2994258.2994272] to what gravity makes of it; its lowest corner is at z = 0.
+// A square that hangs over a ball, a little off its middle; its lowest corner is at z = 0.
 struct DrapeShape {
   double side_mm = 900;
   double ball_radius_mm = 220;

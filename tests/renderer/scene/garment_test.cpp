@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
+#include <string>
 
 #include "renderer/scene/backdrop.h"
 #include "renderer/trace/cloth_shell.h"
@@ -52,6 +54,35 @@ TEST(GarmentTest, TheReadyOnesAreSurfacesForCloth) {
     double lowest = mesh.vertices.front().z();
     for (const Vector3d& vertex : mesh.vertices) lowest = std::min(lowest, vertex.z());
     EXPECT_NEAR(lowest, 0, 1e-9) << shape.index();
+  }
+}
+
+TEST(GarmentTest, AnyOneIsASurfaceForCloth) {
+  constexpr unsigned kGarmentSeed = 20261130;
+  std::printf("seed %u\n", kGarmentSeed);
+  std::mt19937 random(kGarmentSeed);
+  const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
+  for (int i = 0; i < 3; ++i) {
+    const SkirtShape skirt{.waist_radius_mm = between(60, 160),
+                           .length_mm = between(250, 900),
+                           .flare_deg = between(90, 360),
+                           .folds = static_cast<int>(between(5, 20))};
+    const PleatedShape pleats{.width_mm = between(400, 1500),
+                              .height_mm = between(500, 1600),
+                              .pleats = static_cast<int>(between(4, 14)),
+                              .gathered = between(0.4, 0.85)};
+    for (const GarmentShape& shape : {GarmentShape(skirt), GarmentShape(pleats)}) {
+      const UvMesh mesh = garment_mesh(shape);
+      const std::string which =
+          shape.index() == 0
+              ? "skirt " + std::to_string(skirt.waist_radius_mm) + " " + std::to_string(skirt.length_mm) + " " +
+                    std::to_string(skirt.flare_deg) + " " + std::to_string(skirt.folds)
+              : "pleats " + std::to_string(pleats.width_mm) + " " + std::to_string(pleats.height_mm) + " " +
+                    std::to_string(pleats.pleats) + " " + std::to_string(pleats.gathered);
+      const ClothSurface surface = cloth_surface(mesh, {.uv_mm = 1}, Eigen::Isometry3d::Identity(), "garment");
+      EXPECT_NO_THROW(make_shell(surface, {-0.5, 0.5})) << which;
+      EXPECT_LT(stretch_of(mesh).first, 0.08) << which;
+    }
   }
 }
 
