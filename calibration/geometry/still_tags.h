@@ -20,9 +20,11 @@ StillTags still_tags(const TagLayout& layout, const std::vector<TagObservation>&
 
 struct Shift {
   Eigen::Vector2d mean_px = Eigen::Vector2d::Zero();  // the common shift: median over the tags seen
-  double odd_px = 0.0;                                // the largest shift of a single tag against the common one
-  int odd_id = -1;                                    // that tag
-  int tags = 0;                                       // number of tags seen
+  // The largest shift of a single tag against the common one. Tags whose shape has changed by half as much do not
+  // count: they are partly in the shadow of the holder, which only moves what is found of their corners.
+  double odd_px = 0.0;
+  int odd_id = -1;  // that tag
+  int tags = 0;     // number of tags seen
 };
 
 // The shift of the tags since `reference`; std::nullopt when fewer than two of them are seen.

@@ -54,27 +54,30 @@ INLINE bool is_cut_off(const CurveTreeData& tree, const CurveTreeRay& ray, float
   return false;
 }
 
-// The nearest hit before `best`, or with `any` the first that is found.
+// The nearest hit before `best`, or with `any` the first that is found. The pieces' box is entered at `begin`: from
+// there they are looked for, because what is far away is rounded.
 template <bool any>
 INLINE bool meet_pieces(const CurveTreeData& tree, const CurvePieces& pieces, const CurveTreeRay& ray, LocalRay local,
-                        float& best, CurveTreeHit* hit) {
+                        float begin, float& best, CurveTreeHit* hit) {
   const Stretch none{};
+  local.origin += begin * local.direction;
   Float8 near, guess, last;
   bool found = false;
-  for (unsigned bits = candidates<false>(pieces, local, none, best, near, guess, last); bits; bits &= bits - 1) {
+  for (unsigned bits = candidates<false>(pieces, local, none, best - begin, near, guess, last); bits;
+       bits &= bits - 1) {
     const int lane = __builtin_ctz(bits);
-    if (near[lane] > best) continue;
+    if (near[lane] > best - begin) continue;
     Solution solution;
     if (!solve<false>(tree.segments[pieces.segment[lane]], local, none, pieces.from[lane], pieces.to[lane], guess[lane],
-                      last[lane], pieces.axial_slack[lane], near[lane], best, solution) ||
-        is_cut_off(tree, ray, solution.t))
+                      last[lane], pieces.axial_slack[lane], near[lane], best - begin, solution) ||
+        is_cut_off(tree, ray, begin + solution.t))
       continue;
     if (any) return true;
     found = true;
-    best = solution.t;
+    best = begin + solution.t;
     hit->segment = pieces.segment[lane];
     hit->u = solution.u;
-    hit->distance = solution.t;
+    hit->distance = best;
     for (int k = 0; k < 3; ++k) hit->normal[k] = solution.normal[k];
   }
   return found;
@@ -87,7 +90,7 @@ INLINE bool walk_tree(const CurveTreeData& tree, const CurveTreeRay& ray, CurveT
                        {ray.direction[0], ray.direction[1], ray.direction[2], 0}};
   Waiting waiting[kMostWaiting];
   int count = 0;
-  float best = ray.length;
+  float best = ray.length, begin = 0;
   bool found = false;
   for (std::int32_t at = 0;;) {
     if (at >= 0) {
@@ -104,7 +107,7 @@ INLINE bool walk_tree(const CurveTreeData& tree, const CurveTreeRay& ray, CurveT
           for (; place > before && waiting[place - 1].near < where; --place) waiting[place] = waiting[place - 1];
         waiting[place] = {where, node.child[lane]};
       }
-    } else if (meet_pieces<any>(tree, tree.pieces[-1 - at], ray, local, best, hit)) {
+    } else if (meet_pieces<any>(tree, tree.pieces[-1 - at], ray, local, begin, best, hit)) {
       if (any) return true;
       found = true;
     }
@@ -112,7 +115,7 @@ INLINE bool walk_tree(const CurveTreeData& tree, const CurveTreeRay& ray, CurveT
       if (count == 0) return found;
       --count;
     } while (waiting[count].near > best);
-    at = waiting[count].child;
+    at = waiting[count].child, begin = waiting[count].near;
   }
 }
 

@@ -313,16 +313,19 @@ INLINE unsigned candidates(const CurvePieces& p, LocalRay ray, const Stretch& st
   const Float8 px = ox - oa * ax, py = oy - oa * ay, pz = oz - oa * az;  // across the axis: nothing cancels later
   const Float8 a = max8(dd - da * da, Float8{} + 1e-9f);
   const Float8 b = px * dx + py * dy + pz * d[2];
-  const Float8 c = px * px + py * py + pz * pz - radius2;
-  const Float8 disc = b * b - a * c;
+  // Where the ray passes the axis, and how far from it: b^2 - a c would cancel far away.
+  const Float8 inv_a = 1.0f / a, middle = -b * inv_a;
+  const Float8 qx = px + middle * (dx - da * ax), qy = py + middle * (dy - da * ay),
+               qz = pz + middle * (d[2] - da * az);
+  const Float8 room2 = radius2 - (qx * qx + qy * qy + qz * qz);
   const Float8 size = da < 0.0f ? -da : da;
-  Int8 possible = (disc >= 0.0f) & (b <= load8(p.slack) + load8(p.axial_slack) * size);
+  Int8 possible = (room2 >= 0.0f) & (b <= load8(p.slack) + load8(p.axial_slack) * size);
   if (!bits8(possible)) return 0;
-  const Float8 root = sqrt8(max8(disc, Float8{})), inv_a = 1.0f / a;
+  const Float8 root = sqrt8(max8(room2, Float8{}) * inv_a);
   const Float8 speed = da < 0.0f ? min8(da, Float8{} - 1e-20f) : max8(da, Float8{} + 1e-20f), inv_speed = 1.0f / speed;
   const Float8 t_low = (low - oa) * inv_speed, t_high = (high - oa) * inv_speed;
-  near = max8(max8((-b - root) * inv_a, min8(t_low, t_high)), Float8{});
-  const Float8 end = min8(min8((root - b) * inv_a, max8(t_low, t_high)), Float8{} + most);
+  near = max8(max8(middle - root, min8(t_low, t_high)), Float8{});
+  const Float8 end = min8(min8(middle + root, max8(t_low, t_high)), Float8{} + most);
   possible &= near <= end;
   const Float8 from = load8(p.from), to = load8(p.to), zero = {}, one = zero + 1.0f;
   guess = from + (to - from) * min8(max8((oa + near * da) * inverse_length, zero), one);
