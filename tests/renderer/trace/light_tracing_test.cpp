@@ -38,7 +38,9 @@ void expect_the_means_of(const TracedLight& light, const CurveScene& scene, cons
                 light.standard_error[k][0], light.standard_error[k][1], light.standard_error[k][2]);
     for (int c = 0; c < 3; ++c) {
       const double relative_error = light.standard_error[k][c] / light.mean[k][c];
-      EXPECT_NEAR(mean[c] / light.mean[k][c], 1, kAgreement) << vertices << " vertices, channel " << c;
+      // Where the particles do not know their own mean to half a percent, two of their errors.
+      const double agreement = relative_error < kAgreement ? kAgreement : 2 * relative_error;
+      EXPECT_NEAR(mean[c] / light.mean[k][c], 1, agreement) << vertices << " vertices, channel " << c;
       EXPECT_LT(relative_error, error) << vertices << " vertices, channel " << c;
     }
   }
