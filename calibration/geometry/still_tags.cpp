@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -10,8 +11,9 @@
 namespace calibration {
 namespace {
 
-// Of a tag's shape, over its shift: above it the tag has not moved, but something lies over part of it.
-constexpr double kMostChange = 0.5;
+// Of a tag's shape, over its shift, and more than noise: above them the tag has not moved, but something lies over part
+// of it.
+constexpr double kMostChange = 0.5, kNoise_px = 0.3;
 
 Eigen::Vector2d middle_of(const std::vector<Eigen::Vector2d>& points) {
   std::vector<double> x, y;
@@ -78,7 +80,7 @@ std::optional<Shift> shift_of(const StillTags& reference, const TagObservation& 
   Shift shift{.mean_px = middle_of(shifts), .tags = static_cast<int>(shifts.size())};
   for (std::size_t i = 0; i < shifts.size(); ++i) {
     const double own_px = (shifts[i] - shift.mean_px).norm();
-    if (own_px <= shift.odd_px || changes_px[i] > kMostChange * own_px) continue;
+    if (own_px <= shift.odd_px || changes_px[i] > std::max(kMostChange * own_px, kNoise_px)) continue;
     shift.odd_px = own_px;
     shift.odd_id = ids[i];
   }
