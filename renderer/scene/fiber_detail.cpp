@@ -10,7 +10,6 @@
 namespace renderer {
 namespace {
 
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kTwoPi = 2 * std::numbers::pi;
@@ -56,20 +55,18 @@ Vector3d random_unit(RandomStream& random) {
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
-// The axis of a yarn at t of its period, in the middle image, and its derivative by t (a period is 1).
-struct OnAxis {
-  Vector3d place, along;
-};
-
-// One fiber: it leaves the yarn along its axis and outwards, and keeps its direction for about a third of its length.
-std::vector<Vector3d> walk_of(const OnAxis& axis, double radius_mm, const Flyaways& f, RandomStream& random) {
+// One fiber: it leaves the yarn at t along its axis and outwards, and keeps its direction for about a third of its
+// length.
+std::vector<Vector3d> walk_of(const PeriodicSpline& line, double t, double radius_mm, const Flyaways& f,
+                              RandomStream& random) {
   constexpr int kSteps = 6;
   constexpr double kTurning = 0.55, kWeight = 0.12;
-  const Vector3d tangent = axis.along.normalized(), side = tangent.unitOrthogonal(), up = tangent.cross(side);
+  const Vector3d tangent = spline_value(line, t, 1).normalized(), side = tangent.unitOrthogonal(),
+                 up = tangent.cross(side);
   const double angle = kTwoPi * random.uniform();
   const Vector3d outwards = std::cos(angle) * side + std::sin(angle) * up;
   Vector3d direction = ((random.uniform() < 0.5 ? -1 : 1) * tangent + (0.4 + random.uniform()) * outwards).normalized();
-  std::vector<Vector3d> points{axis.place + 0.6 * radius_mm * outwards};
+  std::vector<Vector3d> points{spline_value(line, t) + 0.6 * radius_mm * outwards};
   // Lengths are spread as those of broken ends are: many short ones.
   const double step_mm = f.length_mm * (0.35 + 1.3 * random.uniform() * random.uniform()) / kSteps;
   for (int k = 0; k < kSteps; ++k) {
@@ -88,7 +85,7 @@ FlyawayCurves flyaway_curves(const YarnPatch& patch, const Flyaways& flyaways) {
   FlyawayCurves made;
   made.curves.scattering = flyaways.fiber;
   const auto radius = static_cast<float>(flyaways.diameter_mm / 2);
-  const Vector2d period(patch.period_x_mm, patch.period_y_mm);
+  const Eigen::Array2d period(patch.period_x_mm, patch.period_y_mm);
   for (std::size_t y = 0; y < patch.yarns.size(); ++y) {
     const Yarn& yarn = patch.yarns[y];
     const PeriodicSpline line = center_line(patch, yarn);
@@ -98,15 +95,13 @@ FlyawayCurves flyaway_curves(const YarnPatch& patch, const Flyaways& flyaways) {
     const int count = static_cast<int>(wanted) + (random.uniform() < wanted - std::floor(wanted) ? 1 : 0);
     for (int i = 0; i < count; ++i) {
       const double t = random.uniform() * static_cast<double>(line.control_points.size());
-      const std::vector<Vector3d> points =
-          walk_of({spline_value(line, t), spline_value(line, t, 1)}, yarn.radius_mm, flyaways, random);
+      const std::vector<Vector3d> points = walk_of(line, t, yarn.radius_mm, flyaways, random);
       Eigen::AlignedBox2d box;
       for (const Vector3d& point : points) box.extend(point.head<2>());
-      const double more = flyaways.diameter_mm;
       // Every image of it whose box meets the cell.
-      const Eigen::Array2i
-          first = ((-box.max().array() - more) / period.array()).ceil().cast<int>(),
-          last = ((period - box.min()).array() + more).matrix().cwiseQuotient(period).array().floor().cast<int>();
+      const double more = flyaways.diameter_mm;
+      const Eigen::Array2i first = ((-box.max().array() - more) / period).ceil().cast<int>(),
+                           last = ((period - box.min().array() + more) / period).floor().cast<int>();
       for (int row = first.y(); row <= last.y(); ++row)
         for (int column = first.x(); column <= last.x(); ++column) {
           std::vector<Eigen::Vector4f> placed;

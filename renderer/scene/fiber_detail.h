@@ -11,12 +11,6 @@
 
 namespace renderer {
 
-// How a fiber on the surface of a thread differs from the thread.
-struct FiberAt {
-  float turn_rad = 0, lift_rad = 0;  // its direction from the thread's axis: about the normal, and towards it
-  float shade = 1;                   // its absorption over the thread's
-};
-
 // The fiber at a place of a yarn's surface: `along_mm` along the yarn, at this azimuth round its axis. Each yarn of the
 // endless cloth has fibers of its own, whose numbers repeat nowhere.
 FiberAt fiber_at(const FiberDetail& detail, double along_mm, double azimuth_rad, double radius_mm, std::uint64_t yarn);

@@ -113,12 +113,12 @@ class HangingSheet {
   };
 
   HangingSheet(const Size& size, const Bending& bending, const Pattern& pattern, std::vector<Vector3d> places)
-      : size_(size), places_(std::move(places)), pinned_(places_.size(), 0) {
+      : size_(size), places_(std::move(places)) {
     add_links(pattern, bending);
   }
 
   void pin_row(int row) {
-    for (int column = 0; column < size_.columns; ++column) pinned_[index(column, row)] = 1;
+    for (int column = 0; column < size_.columns; ++column) pinned_.push_back(index(column, row));
   }
 
   template <class Body>
@@ -132,10 +132,8 @@ class HangingSheet {
         places_[i] += kStep_s * (kKept * speeds[i] + Vector3d(0, 0, kGravity * kStep_s));
       for (int sweep = 0; sweep < sweeps; ++sweep) {
         for (const Link& link : links_) pull(link);
-        for (std::size_t i = 0; i < places_.size(); ++i)
-          if (!pinned_[i]) keep_outside(body, before[i], places_[i]);
-        for (std::size_t i = 0; i < places_.size(); ++i)
-          if (pinned_[i]) places_[i] = before[i];
+        for (std::size_t i = 0; i < places_.size(); ++i) keep_outside(body, before[i], places_[i]);
+        for (const std::uint32_t i : pinned_) places_[i] = before[i];
       }
       for (std::size_t i = 0; i < places_.size(); ++i) speeds[i] = (places_[i] - before[i]) / kStep_s;
     }
@@ -227,7 +225,7 @@ class HangingSheet {
 
   Size size_;
   std::vector<Vector3d> places_;
-  std::vector<char> pinned_;
+  std::vector<std::uint32_t> pinned_{};
   std::vector<Link> links_{};
 };
 

@@ -78,6 +78,12 @@ struct FiberDetail {
   std::uint64_t seed = 1;
 };
 
+// How a fiber on the surface of a thread differs from the thread.
+struct FiberAt {
+  float turn_rad = 0, lift_rad = 0;  // its direction from the thread's axis: about the normal, and towards it
+  float shade = 1;                   // its absorption over the thread's
+};
+
 // Fibers that stand out of a cloth's yarns (fiber_detail.h).
 struct Flyaways {
   double per_mm = 1;     // of yarn

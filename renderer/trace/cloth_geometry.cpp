@@ -168,7 +168,7 @@ CurvePoint ClothGeometry::point_at(const ClothHit& hit) const {
   CurvePoint point =
       point_on_curve(yarns.curves, hit.segment, hit.u, hit.hit_normal, hit.ray, hit.distance, cell.spread);
   const Vector3d patch = point.position.cast<double>() + hit.tile;
-  if (has_fibers_[yarns.thread]) set_fiber(hit, patch, point);
+  if (has_fibers_[yarns.thread]) point.fiber = fiber_of(hit, patch, point);
   const Affine3x4 to_world = world_from_patch(cell);
   const Vector3d world = to_world * patch.homogeneous();
   // The section is that of the frame at the yarn's axis.
@@ -189,14 +189,12 @@ CurvePoint ClothGeometry::point_at(const ClothHit& hit) const {
   return point;
 }
 
-void ClothGeometry::set_fiber(const ClothHit& hit, const Vector3d& place, CurvePoint& point) const {
+FiberAt ClothGeometry::fiber_of(const ClothHit& hit, const Vector3d& place, const CurvePoint& point) const {
   const YarnPlace yarn = yarn_at(hit);
   const Vector3f across = Vector3f::UnitZ().cross(point.tangent).normalized(), up = point.tangent.cross(across);
   const double azimuth = static_cast<double>(std::atan2(point.normal.dot(up), point.normal.dot(across)));
   const auto number = static_cast<std::uint64_t>(2 * static_cast<std::int64_t>(yarn.number) + (yarn.weft ? 1 : 0));
-  const FiberAt fiber =
-      fiber_at(*fibers_, yarn.weft ? place.x() : place.y(), azimuth, static_cast<double>(point.out.norm()), number);
-  point.fiber_turn = fiber.turn_rad, point.fiber_lift = fiber.lift_rad, point.shade = fiber.shade;
+  return fiber_at(*fibers_, yarn.weft ? place.x() : place.y(), azimuth, static_cast<double>(point.out.norm()), number);
 }
 
 std::size_t ClothGeometry::yarn_bytes() const {

@@ -41,8 +41,8 @@ class ClothGeometry {
 
  private:
   ClothGeometry(const Cloth& cloth, const FlyawayCurves& flyaways, std::uint32_t first_curve_set);
-  // Fills in the fiber of a point that is still in the patch's frame, at `place` of the endless patch.
-  void set_fiber(const ClothHit& hit, const Eigen::Vector3d& place, CurvePoint& point) const;
+  // The fiber of a point that is still in the patch's frame, at `place` of the endless patch.
+  FiberAt fiber_of(const ClothHit& hit, const Eigen::Vector3d& place, const CurvePoint& point) const;
   void intersect(const RTCIntersectFunctionNArguments& arguments) const;
   void occluded(const RTCOccludedFunctionNArguments& arguments) const;
 

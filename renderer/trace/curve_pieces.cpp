@@ -33,7 +33,7 @@ struct Cubic {
   double widening(double u) const { return std::abs(derivative(u).w()) / derivative(u).head<3>().norm(); }
 };
 
-CurvePiece piece_of(const Cubic& line, std::uint32_t segment, double from, double to) {
+CurvePiece piece_of_line(const Cubic& line, std::uint32_t segment, double from, double to) {
   constexpr int kSteps = 8;
   CurvePiece piece{.segment = segment, .from = from, .to = to, .base = line.at(from).head<3>()};
   const Vector3d chord = line.at(to).head<3>() - piece.base;
@@ -79,7 +79,7 @@ std::vector<CurvePiece> pieces_of(const Eigen::Vector4f* control, std::uint32_t 
     bool fine = true;
     for (int i = 0; i < parts; ++i) {
       CurvePiece& piece = pieces.emplace_back(
-          piece_of(line, segment, static_cast<double>(i) / parts, static_cast<double>(i + 1) / parts));
+          piece_of_line(line, segment, static_cast<double>(i) / parts, static_cast<double>(i + 1) / parts));
       fine &= piece.deviation <= kMostDeviation * piece.thickest && piece.tilt <= kMostTilt &&
               oblique_length(piece) <= most_oblique * piece.thickest;
     }
@@ -88,7 +88,7 @@ std::vector<CurvePiece> pieces_of(const Eigen::Vector4f* control, std::uint32_t 
 }
 
 CurvePiece piece_of(const Eigen::Vector4f* control, std::uint32_t segment, double from, double to) {
-  return piece_of(Cubic(control), segment, from, to);
+  return piece_of_line(Cubic(control), segment, from, to);
 }
 
 Eigen::AlignedBox3d box_of(const CurvePiece& piece, double wider) {
@@ -99,6 +99,14 @@ Eigen::AlignedBox3d box_of(const CurvePiece& piece, double wider) {
     box.extend(Vector3d(at - half)).extend(Vector3d(at + half));
   }
   return box;
+}
+
+bool runs_newest_kernels() {
+#if defined(__x86_64__)
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+#else
+  return false;
+#endif
 }
 
 CurvePieces no_pieces() {

@@ -38,6 +38,9 @@ CurvePiece piece_of(const Eigen::Vector4f* control, std::uint32_t segment, doubl
 // The box of the piece, its radius multiplied by `wider`.
 Eigen::AlignedBox3d box_of(const CurvePiece& piece, double wider = 1);
 
+// Whether the kernels of the newest processors can run on this one.
+bool runs_newest_kernels();
+
 // Pieces that no ray meets, and one lane of them made a piece.
 CurvePieces no_pieces();
 void put(CurvePieces& group, int lane, const CurvePiece& piece);

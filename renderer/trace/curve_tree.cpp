@@ -20,7 +20,7 @@ constexpr double kMostOblique = 8;  // of pieces (curve_pieces.h), in radii
 
 const CurveTreeKernel& best_tree_kernel() {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return avx2::kCurveTreeKernel;
+  if (runs_newest_kernels()) return avx2::kCurveTreeKernel;
 #endif
   return baseline::kCurveTreeKernel;
 }
@@ -29,10 +29,15 @@ bool is_identity(const Eigen::Affine3f& placed) {
   return placed.matrix() == Eigen::Matrix4f::Identity();
 }
 
-// All that is kept of a piece while the tree is laid out.
-struct PieceRange {
-  std::uint32_t segment;
-  float from, to;
+// Curves while their tree is laid out: all that is kept of each piece, and its box.
+struct Parts {
+  struct Range {
+    std::uint32_t segment;
+    float from, to;
+  };
+  std::vector<const Eigen::Vector4f*> controls;  // of each segment
+  std::vector<Range> ranges;                     // of each piece
+  std::vector<RTCBuildPrimitive> boxes;          // likewise
 };
 
 // What Embree's builder makes: inner nodes and leaves.
@@ -108,6 +113,56 @@ RTCBuildPrimitive box_for_embree(const CurvePiece& piece, std::size_t number) {
   return {low.x(), low.y(), low.z(), 0, high.x(), high.y(), high.z(), static_cast<unsigned>(number)};
 }
 
+// Adds all segments of the set.
+void add_set(const CurveSet& curves, Parts& parts) {
+  for (std::size_t i = 0; i < curves.segments.size(); ++i) {
+    const Eigen::Vector4f* control = &curves.control_points[curves.segments[i]];
+    if (!std::all_of(control, control + 4, [](const Eigen::Vector4f& p) { return p.allFinite(); }))
+      throw std::runtime_error("ray tracing: segment " + std::to_string(i) +
+                               " of a curve has a control point that is no number; check the yarns");
+    const auto number = static_cast<std::uint32_t>(parts.controls.size());
+    parts.controls.push_back(control);
+    for (const CurvePiece& piece : pieces_of(control, number, kMostOblique)) {
+      parts.boxes.push_back(box_for_embree(piece, parts.ranges.size()));
+      parts.ranges.push_back({number, static_cast<float>(piece.from), static_cast<float>(piece.to)});
+    }
+  }
+}
+
+RTCBounds bounds_of(const std::vector<RTCBuildPrimitive>& boxes) {
+  AlignedBox3f all;
+  for (const RTCBuildPrimitive& box : boxes) {
+    all.extend(Vector3f(box.lower_x, box.lower_y, box.lower_z));
+    all.extend(Vector3f(box.upper_x, box.upper_y, box.upper_z));
+  }
+  return {all.min().x(), all.min().y(), all.min().z(), 0, all.max().x(), all.max().y(), all.max().z(), 0};
+}
+
+// Each adds what Embree has built to nodes or pieces and returns its number as CurveTreeNode::child has it.
+std::int32_t add_leaf(const BuiltLeaf& leaf, const Parts& parts, std::vector<CurvePieces>& pieces) {
+  pieces.push_back(no_pieces());
+  for (unsigned i = 0; i < leaf.count; ++i) {
+    const auto& [segment, from, to] = parts.ranges[leaf.pieces[i]];
+    put(pieces.back(), static_cast<int>(i),
+        piece_of(parts.controls[segment], segment, static_cast<double>(from), static_cast<double>(to)));
+  }
+  return -static_cast<std::int32_t>(pieces.size());
+}
+
+std::int32_t add_inner(const BuiltInner& inner, const Parts& parts, std::vector<CurveTreeNode>& nodes,
+                       std::vector<CurvePieces>& pieces) {
+  const std::size_t number = nodes.size();
+  nodes.push_back(empty_node());
+  for (unsigned i = 0; i < inner.count; ++i) {
+    const BuiltNode& child = *inner.child[i];
+    const std::int32_t added = child.is_leaf ? add_leaf(static_cast<const BuiltLeaf&>(child), parts, pieces)
+                                             : add_inner(static_cast<const BuiltInner&>(child), parts, nodes, pieces);
+    set_box(nodes[number], i, inner.bounds[i]);
+    nodes[number].child[i] = added;
+  }
+  return static_cast<std::int32_t>(number);
+}
+
 }  // namespace
 
 CurveTree::CurveTree(RTCDevice device, const std::vector<CurveSet>& curves, const std::vector<std::uint32_t>& sets)
@@ -116,66 +171,26 @@ CurveTree::CurveTree(RTCDevice device, const std::vector<CurveSet>& curves, cons
   if (!is_identity(first.placed)) from_world_ = first.placed.inverse();
   for (const Eigen::Vector4f& plane : first.cut) cuts_.push_back({plane.x(), plane.y(), plane.z(), plane.w()});
 
-  std::vector<const Eigen::Vector4f*> controls;  // of each segment
-  std::vector<PieceRange> ranges;
-  std::vector<RTCBuildPrimitive> boxes;
+  Parts parts;
   for (const std::uint32_t set : sets) {
-    sets_.push_back({set, static_cast<std::uint32_t>(controls.size())});
-    for (const std::uint32_t begin : curves[set].segments) {
-      const Eigen::Vector4f* control = &curves[set].control_points[begin];
-      const auto number = static_cast<std::uint32_t>(controls.size());
-      if (!std::all_of(control, control + 4, [](const Eigen::Vector4f& p) { return p.allFinite(); }))
-        throw std::runtime_error("ray tracing: segment " + std::to_string(number - sets_.back().first) +
-                                 " of a curve has a control point that is no number; check the yarns");
-      controls.push_back(control);
-      segments_.push_back(segment_of(control));
-      for (const CurvePiece& piece : pieces_of(control, number, kMostOblique)) {
-        boxes.push_back(box_for_embree(piece, ranges.size()));
-        ranges.push_back({number, static_cast<float>(piece.from), static_cast<float>(piece.to)});
-      }
-    }
+    sets_.push_back({set, static_cast<std::uint32_t>(parts.controls.size())});
+    add_set(curves[set], parts);
   }
-  nodes_.push_back(empty_node());
-  if (boxes.empty()) return;
-
-  const std::unique_ptr<RTCBVHTy, decltype(&rtcReleaseBVH)> bvh(rtcNewBVH(device), rtcReleaseBVH);
-  const BuiltNode* root = build(bvh.get(), boxes);
-  if (!root) throw std::runtime_error("ray tracing: there is not enough memory for a tree of the curves; free some");
-  const auto add_leaf = [&](const BuiltLeaf& leaf) {
-    pieces_.push_back(no_pieces());
-    for (unsigned i = 0; i < leaf.count; ++i) {
-      const auto& [segment, from, to] = ranges[leaf.pieces[i]];
-      put(pieces_.back(), static_cast<int>(i),
-          piece_of(controls[segment], segment, static_cast<double>(from), static_cast<double>(to)));
-    }
-    return -static_cast<std::int32_t>(pieces_.size());
-  };
-  const auto add_child = [&](const auto& self, std::size_t node, unsigned lane, const RTCBounds& box,
-                             const BuiltNode& child) -> void {
-    set_box(nodes_[node], lane, box);
-    if (child.is_leaf) {
-      nodes_[node].child[lane] = add_leaf(static_cast<const BuiltLeaf&>(child));
-      return;
-    }
-    const std::size_t number = nodes_.size();
-    nodes_[node].child[lane] = static_cast<std::int32_t>(number);
+  for (const Eigen::Vector4f* control : parts.controls) segments_.push_back(segment_of(control));
+  if (parts.boxes.empty()) {
     nodes_.push_back(empty_node());
-    const auto& inner = static_cast<const BuiltInner&>(child);
-    for (unsigned i = 0; i < inner.count; ++i) self(self, number, i, inner.bounds[i], *inner.child[i]);
-  };
-  AlignedBox3f all;
-  for (const RTCBuildPrimitive& box : boxes) {
-    all.extend(Vector3f(box.lower_x, box.lower_y, box.lower_z));
-    all.extend(Vector3f(box.upper_x, box.upper_y, box.upper_z));
-  }
-  bounds_ = all.transformed(first.placed);
-  if (root->is_leaf) {
-    const Vector3f low = all.min(), high = all.max();
-    add_child(add_child, 0, 0, {low.x(), low.y(), low.z(), 0, high.x(), high.y(), high.z(), 0}, *root);
     return;
   }
-  const auto& inner = static_cast<const BuiltInner&>(*root);
-  for (unsigned i = 0; i < inner.count; ++i) add_child(add_child, 0, i, inner.bounds[i], *inner.child[i]);
+  const RTCBounds all = bounds_of(parts.boxes);
+  const AlignedBox3f box(Vector3f(all.lower_x, all.lower_y, all.lower_z),
+                         Vector3f(all.upper_x, all.upper_y, all.upper_z));
+  bounds_ = box.transformed(first.placed);
+  const std::unique_ptr<RTCBVHTy, decltype(&rtcReleaseBVH)> bvh(rtcNewBVH(device), rtcReleaseBVH);
+  BuiltNode* root = build(bvh.get(), parts.boxes);
+  if (!root) throw std::runtime_error("ray tracing: there is not enough memory for a tree of the curves; free some");
+  BuiltInner lone{};  // the root over a single leaf
+  lone.count = 1, lone.child[0] = root, lone.bounds[0] = all;
+  add_inner(root->is_leaf ? lone : static_cast<const BuiltInner&>(*root), parts, nodes_, pieces_);
 }
 
 CurveTreeData CurveTree::data() const {

@@ -2,7 +2,7 @@
 // scene's explicit curves.
 //
 // It finds the surfaces that Embree calls round B-spline curves, to 0.0002 radii where Embree finds them to 0.002, and
-// half again as quickly or more (tests/bench/bench_yarn_grid.cpp). Embree's builder lays it out. Curves are met from
+// about 1.5 times as quickly (tests/bench/bench_yarn_grid.cpp). Embree's builder lays it out. Curves are met from
 // outside only (ray_scene.h).
 #pragma once
 

@@ -61,15 +61,13 @@ INLINE bool meet_pieces(const CurveTreeData& tree, const CurvePieces& pieces, co
                         float begin, float& best, CurveTreeHit* hit) {
   const Stretch none{};
   local.origin += begin * local.direction;
-  Float8 near, guess, last;
+  Approach approach;
   bool found = false;
-  for (unsigned bits = candidates<false>(pieces, local, none, best - begin, near, guess, last); bits;
-       bits &= bits - 1) {
+  for (unsigned bits = candidates<false>(pieces, local, none, best - begin, approach); bits; bits &= bits - 1) {
     const int lane = __builtin_ctz(bits);
-    if (near[lane] > best - begin) continue;
     Solution solution;
-    if (!solve<false>(tree.segments[pieces.segment[lane]], local, none, pieces.from[lane], pieces.to[lane], guess[lane],
-                      last[lane], pieces.axial_slack[lane], near[lane], best - begin, solution) ||
+    if (approach.near[lane] > best - begin ||
+        !solve<false>(tree.segments, pieces, lane, approach, local, none, best - begin, solution) ||
         is_cut_off(tree, ray, begin + solution.t))
       continue;
     if (any) return true;

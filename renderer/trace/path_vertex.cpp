@@ -56,9 +56,10 @@ std::vector<CurveModel> prepare_curve_models(const std::vector<CurveSet>& curves
 
 Matrix3f local_from_world(const CurvePoint& point) {
   const Vector3f across = point.normal.cross(point.tangent);
-  if (point.fiber_turn == 0 && point.fiber_lift == 0) return frame_rows(point.tangent, across, point.normal);
-  const float cosine = std::cos(point.fiber_lift), sine = std::sin(point.fiber_lift);
-  const Vector3f flat = std::cos(point.fiber_turn) * point.tangent + std::sin(point.fiber_turn) * across,
+  const auto [turn, lift, shade] = point.fiber;
+  if (turn == 0 && lift == 0) return frame_rows(point.tangent, across, point.normal);
+  const float cosine = std::cos(lift), sine = std::sin(lift);
+  const Vector3f flat = std::cos(turn) * point.tangent + std::sin(turn) * across,
                  fiber = cosine * flat + sine * point.normal, normal = cosine * point.normal - sine * flat;
   return frame_rows(fiber, normal.cross(fiber), normal);
 }
@@ -78,10 +79,10 @@ CurveLobes<float> lobes_at(const CurveModel& model, const CurvePoint& curve, con
   const Vector3f wo_local = frame * wo;
   const auto* thread = std::get_if<ThreadModel<float>>(&model);
   const float h = thread ? offset_in_section(curve, wo) : viewing_offset(wo_local);
-  if (thread && (curve.absorption || curve.shade != 1)) {
+  if (thread && (curve.absorption || curve.fiber.shade != 1)) {
     const auto& texel = curve.absorption;
     const Vector3f own = texel ? Vector3f((*texel)[0], (*texel)[1], (*texel)[2]) : thread->absorption();
-    return thread->lobes_at(h, wo_local, curve.shade * own);
+    return thread->lobes_at(h, wo_local, curve.fiber.shade * own);
   }
   return std::visit([&](const auto& of) { return of.lobes_at(h, wo_local); }, model);
 }

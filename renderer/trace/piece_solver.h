@@ -138,6 +138,25 @@ INLINE Crossing cross(const Float4* k, Float4 o, Float4 unstretched, const Stret
   return {dot3(q, q) - r * r, 2 * (dot3(q, d) * dt_du - r * c1[3]), t, r, q};
 }
 
+// Makes the place exact where the ray enters between a crossing that lies outside, `before`, and one inside, `after`.
+template <bool spread>
+INLINE bool enter(const Float4* k, Float4 o, Float4 d, const Stretch& stretch, float before, float after, float at,
+                  float near, float most, Solution& found) {
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Crossing x = cross<spread>(k, o, d, stretch, at);
+    if (x.outside * x.outside < kOnSurface * kOnSurface * x.r * x.r * x.r * x.r) {
+      const float distance = near + x.t;
+      if (!(distance > 0) || !(distance <= most)) return false;
+      found.t = distance, found.u = at < 0 ? 0 : (at > 1 ? 1 : at), found.normal = x.q;
+      return true;
+    }
+    (x.outside > 0 ? before : after) = at;
+    const float next = at - x.outside / x.slope;
+    at = (next - before) * (next - after) < 0 ? next : 0.5f * (before + after);
+  }
+  return false;
+}
+
 // The same as solve() for a ray that runs along the yarn within 33 degrees: of eight crossings, the first that lies
 // inside after one that lies outside is made exact. A ray that only grazes the yarn is inside between two of them.
 template <bool spread>
@@ -169,48 +188,40 @@ INLINE bool solve_along(const Float4* k, Float4 o, Float4 d, const Stretch& stre
   Float8 outside = -r * r;
   for (int i = 0; i < 3; ++i) outside += (w[i] + t * v[i]) * (w[i] + t * v[i]);
   const unsigned out = bits8(outside > 0.0f);
-  unsigned enters = out & ~(out >> 1) & 0x7fu;
-  float dip = 0;  // where all eight are outside: the lowest of the parabola through the lowest three
-  int lowest = 1;
   if (out == 0xffu) {
+    // The lowest of the parabola through the lowest three, where all eight are outside.
+    int lowest = 1;
     for (int i = 2; i < 7; ++i) lowest = outside[i] < outside[lowest] ? i : lowest;
     const float slope = outside[lowest + 1] - outside[lowest - 1],
                 bend = outside[lowest + 1] - 2 * outside[lowest] + outside[lowest - 1];
     const bool between = outside[lowest] <= outside[lowest - 1] && outside[lowest] <= outside[lowest + 1];
     if (!between || !(bend > 0) || !(outside[lowest] - slope * slope / (8 * bend) < 0)) return false;
-    dip = u[lowest] - (u[1] - u[0]) * slope / (2 * bend);
-    if (!(cross<spread>(k, o, d, stretch, dip).outside < 0)) return false;
-    enters = 1u << (lowest - 1);
+    const float dip = u[lowest] - (u[1] - u[0]) * slope / (2 * bend), before = u[lowest - 1];
+    return cross<spread>(k, o, d, stretch, dip).outside < 0 &&
+           enter<spread>(k, o, d, stretch, before, dip, 0.5f * (before + dip), near, most, found);
   }
-  for (; enters; enters &= enters - 1) {
+  for (unsigned enters = out & ~(out >> 1) & 0x7fu; enters; enters &= enters - 1) {
     const int i = __builtin_ctz(enters);
-    float before = u[i], after = out == 0xffu ? dip : u[i + 1];
-    float at =
-        out == 0xffu ? 0.5f * (before + after) : before + (after - before) * outside[i] / (outside[i] - outside[i + 1]);
-    for (int step = 0; step < kMostSteps; ++step) {
-      const Crossing x = cross<spread>(k, o, d, stretch, at);
-      if (x.outside * x.outside < kOnSurface * kOnSurface * x.r * x.r * x.r * x.r) {
-        const float distance = near + x.t;
-        if (!(distance > 0) || !(distance <= most)) break;
-        found.t = distance, found.u = at < 0 ? 0 : (at > 1 ? 1 : at), found.normal = x.q;
-        return true;
-      }
-      (x.outside > 0 ? before : after) = at;
-      const float next = at - x.outside / x.slope;
-      at = (next - before) * (next - after) < 0 ? next : 0.5f * (before + after);
-    }
+    const float at = u[i] + (u[i + 1] - u[i]) * outside[i] / (outside[i] - outside[i + 1]);
+    if (enter<spread>(k, o, d, stretch, u[i], u[i + 1], at, near, most, found)) return true;
   }
   return false;
 }
 
-// Finds where the ray enters the yarn between parameters `from` and `to`, at t > 0 and before `most`. The ray comes
-// near the piece at t = `near` (0: it may start inside), about where the parameter is `guess`, and leaves it
-// about where it is `last`; discs reach as far as `lean` along the axis.
+// How a ray comes near the pieces of a batch.
+struct Approach {
+  Float8 near;         // t there; 0: it may start inside
+  Float8 guess, last;  // the parameters there, and where it leaves them
+};
+
+// Finds where the ray enters the piece of this lane, at t > 0 and before `most`.
 template <bool spread>
-INLINE bool solve(const CurveSegment& segment, LocalRay ray, const Stretch& stretch, float from, float to, float guess,
-                  float last, float lean, float near, float most, Solution& found) {
+INLINE bool solve(const CurveSegment* segments, const CurvePieces& p, int lane, const Approach& approach, LocalRay ray,
+                  const Stretch& stretch, float most, Solution& found) {
+  const float from = p.from[lane], to = p.to[lane];
+  const float near = approach.near[lane], guess = approach.guess[lane], last = approach.last[lane];
   Float4 k[4];
-  for (int i = 0; i < 4; ++i) k[i] = *reinterpret_cast<const Float4*>(segment.power[i]);
+  for (int i = 0; i < 4; ++i) k[i] = *reinterpret_cast<const Float4*>(segments[p.segment[lane]].power[i]);
   const Float4 o = ray.origin + near * ray.direction;
   Float4 d = ray.direction;
   float dd = dot3(d, d);
@@ -220,7 +231,7 @@ INLINE bool solve(const CurveSegment& segment, LocalRay ray, const Stretch& stre
   const float speed = dot3(d, axis);
   if (speed * speed > 0.7f * dd * dot3(axis, axis)) {
     // Where the ray is near the yarn, and as much further as discs lean.
-    const float more = lean / __builtin_sqrtf(dot3(axis, axis)) + kPastEnds;
+    const float more = p.axial_slack[lane] / __builtin_sqrtf(dot3(axis, axis)) + kPastEnds;
     const float least = (guess < last ? guess : last) - more, greatest = (guess < last ? last : guess) + more;
     return solve_along<spread>(k, o, d, stretch, speed > 0, low > least ? low : least,
                                high < greatest ? high : greatest, near, most, found);
@@ -284,11 +295,9 @@ INLINE bool solve(const CurveSegment& segment, LocalRay ray, const Stretch& stre
   return false;
 }
 
-// The pieces of the batch that the ray may meet before `most`, as bits; `near` is where the ray comes near them,
-// `guess` the parameters there, `last` those where it leaves them.
+// The pieces of the batch that the ray may meet before `most`, as bits.
 template <bool spread>
-INLINE unsigned candidates(const CurvePieces& p, LocalRay ray, const Stretch& stretch, float most, Float8& near,
-                           Float8& guess, Float8& last) {
+INLINE unsigned candidates(const CurvePieces& p, LocalRay ray, const Stretch& stretch, float most, Approach& approach) {
   const Float4 o = ray.origin, d = ray.direction;
   Float8 ox = o[0] - load8(p.base_x), oy = o[1] - load8(p.base_y);
   const Float8 oz = o[2] - load8(p.base_z);
@@ -324,12 +333,13 @@ INLINE unsigned candidates(const CurvePieces& p, LocalRay ray, const Stretch& st
   const Float8 root = sqrt8(max8(room2, Float8{}) * inv_a);
   const Float8 speed = da < 0.0f ? min8(da, Float8{} - 1e-20f) : max8(da, Float8{} + 1e-20f), inv_speed = 1.0f / speed;
   const Float8 t_low = (low - oa) * inv_speed, t_high = (high - oa) * inv_speed;
-  near = max8(max8(middle - root, min8(t_low, t_high)), Float8{});
+  const Float8 near = max8(max8(middle - root, min8(t_low, t_high)), Float8{});
   const Float8 end = min8(min8(middle + root, max8(t_low, t_high)), Float8{} + most);
   possible &= near <= end;
   const Float8 from = load8(p.from), to = load8(p.to), zero = {}, one = zero + 1.0f;
-  guess = from + (to - from) * min8(max8((oa + near * da) * inverse_length, zero), one);
-  last = from + (to - from) * min8(max8((oa + end * da) * inverse_length, zero), one);
+  approach.near = near;
+  approach.guess = from + (to - from) * min8(max8((oa + near * da) * inverse_length, zero), one);
+  approach.last = from + (to - from) * min8(max8((oa + end * da) * inverse_length, zero), one);
   return bits8(possible);
 }
 

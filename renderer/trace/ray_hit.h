@@ -57,9 +57,7 @@ struct CurvePoint {
   // leads from the axis to `position`, `side` along the surface there. On a round yarn both are as long as the radius.
   Eigen::Vector3f side, out;
   CurveAxis axis{};
-  // The fiber there (scene/fiber_detail.h), where threads have some: its direction from the tangent, about the normal
-  // and towards it, rad, and its absorption over the thread's.
-  float fiber_turn = 0, fiber_lift = 0, shade = 1;
+  FiberAt fiber{};                        // the thread itself, where no fibers are seen
   const cv::Vec3f* absorption = nullptr;  // texel of the cloth's AbsorptionTexture there, if it has one
 };
 

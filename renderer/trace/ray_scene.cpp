@@ -27,8 +27,9 @@ double overlap_of_yarns(const YarnPatch& patch) {
   return -patch.least_gap_mm / thinnest;
 }
 
-RTCRayHit nearest(RTCScene scene, const Ray& ray, ClothQuery& query,
-                  float distance = std::numeric_limits<float>::infinity()) {
+constexpr float kEndless = std::numeric_limits<float>::infinity();
+
+RTCRayHit nearest(RTCScene scene, const Ray& ray, ClothQuery& query, float distance) {
   RTCRayHit found{};
   found.ray = embree_ray(ray, distance);
   found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -109,17 +110,20 @@ std::optional<CurveTree::Hit> RayScene::nearest_curve(const Ray& ray, float dist
   return nearest;
 }
 
+std::optional<RTCRayHit> RayScene::nearest_surface(const Ray& ray, float distance, ClothQuery& query) const {
+  if (!has_surfaces()) return std::nullopt;
+  const RTCRayHit found = nearest(embree_.get(), ray, query, distance);
+  return found.hit.geomID == RTC_INVALID_GEOMETRY_ID ? std::optional<RTCRayHit>() : found;
+}
+
 std::optional<SurfaceHit> RayScene::intersect(const Ray& ray, float distance) const {
   const std::optional<CurveTree::Hit> curve = nearest_curve(ray, distance);
-  if (has_surfaces()) {
-    ClothQuery query;
-    const RTCRayHit found = nearest(embree_.get(), ray, query, curve ? curve->distance : distance);
-    const std::uint32_t geometry = found.hit.geomID;
-    const auto first_cloth = static_cast<std::uint32_t>(scene_.meshes.size());
-    if (geometry != RTC_INVALID_GEOMETRY_ID && geometry >= first_cloth)
-      return SurfaceHit{found.ray.tfar, cloths_[geometry - first_cloth]->point_at(query.cloth)};
-    if (geometry != RTC_INVALID_GEOMETRY_ID)
-      return SurfaceHit{found.ray.tfar, mesh_point(geometry, found.hit.primID, found.hit.u, found.hit.v, ray)};
+  ClothQuery query;
+  if (const auto found = nearest_surface(ray, curve ? curve->distance : distance, query)) {
+    const std::uint32_t geometry = found->hit.geomID;
+    if (is_cloth(geometry))
+      return SurfaceHit{found->ray.tfar, cloths_[number_of_cloth(geometry)]->point_at(query.cloth)};
+    return SurfaceHit{found->ray.tfar, mesh_point(geometry, found->hit.primID, found->hit.u, found->hit.v, ray)};
   }
   if (!curve) return std::nullopt;
   CurvePoint point =
@@ -140,18 +144,14 @@ bool RayScene::occluded(const Ray& ray, float distance) const {
 }
 
 std::optional<YarnPlace> RayScene::yarn_at(const Ray& ray) const {
-  const auto curve = nearest_curve(ray, std::numeric_limits<float>::infinity());
-  if (has_surfaces()) {
-    ClothQuery query;
-    const RTCRayHit found =
-        nearest(embree_.get(), ray, query, curve ? curve->distance : std::numeric_limits<float>::infinity());
-    if (const std::uint32_t geometry = found.hit.geomID; geometry != RTC_INVALID_GEOMETRY_ID) {
-      const std::size_t first_cloth = scene_.meshes.size();
-      if (geometry < first_cloth) return std::nullopt;
-      YarnPlace place = cloths_[geometry - first_cloth]->yarn_at(query.cloth);
-      place.group = static_cast<std::uint32_t>(geometry - first_cloth + scene_.curves.size());
-      return place;
-    }
+  const std::optional<CurveTree::Hit> curve = nearest_curve(ray, kEndless);
+  ClothQuery query;
+  if (const auto found = nearest_surface(ray, curve ? curve->distance : kEndless, query)) {
+    if (!is_cloth(found->hit.geomID)) return std::nullopt;
+    const std::size_t cloth = number_of_cloth(found->hit.geomID);
+    YarnPlace place = cloths_[cloth]->yarn_at(query.cloth);
+    place.group = static_cast<std::uint32_t>(scene_.curves.size() + cloth);
+    return place;
   }
   if (!curve) return std::nullopt;
   const std::vector<std::uint32_t>& first = first_segments_[curve->set];
@@ -160,13 +160,10 @@ std::optional<YarnPlace> RayScene::yarn_at(const Ray& ray) const {
 }
 
 bool RayScene::meets_curve_first(const Ray& ray) const {
-  const auto curve = nearest_curve(ray, std::numeric_limits<float>::infinity());
-  if (!has_surfaces()) return curve.has_value();
+  const std::optional<CurveTree::Hit> curve = nearest_curve(ray, kEndless);
   ClothQuery query;
-  const RTCRayHit found =
-      nearest(embree_.get(), ray, query, curve ? curve->distance : std::numeric_limits<float>::infinity());
-  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return curve.has_value();
-  return found.hit.geomID >= scene_.meshes.size();
+  const auto found = nearest_surface(ray, curve ? curve->distance : kEndless, query);
+  return found ? is_cloth(found->hit.geomID) : curve.has_value();
 }
 
 std::size_t RayScene::yarn_bytes() const {

@@ -20,11 +20,13 @@
 #include "renderer/trace/yarn_places.h"
 
 struct RTCDeviceTy;
+struct RTCRayHit;
 struct RTCSceneTy;
 
 namespace renderer {
 
 class ClothGeometry;
+struct ClothQuery;
 
 // What a scene takes of the memory, in bytes.
 struct SceneMemory {
@@ -63,7 +65,12 @@ class RayScene {
  private:
   void add_mesh(const TriangleMesh& mesh);
   bool has_surfaces() const { return !scene_.meshes.empty() || !scene_.cloths.empty(); }
+  // Embree numbers the meshes, and after them the cloths.
+  bool is_cloth(std::uint32_t geometry) const { return geometry >= scene_.meshes.size(); }
+  std::size_t number_of_cloth(std::uint32_t geometry) const { return geometry - scene_.meshes.size(); }
   std::optional<CurveTree::Hit> nearest_curve(const Ray& ray, float distance) const;
+  // What Embree meets: a mesh or a cloth, whose hit is in `query`.
+  std::optional<RTCRayHit> nearest_surface(const Ray& ray, float distance, ClothQuery& query) const;
   MeshPoint mesh_point(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Ray& ray) const;
 
   Scene scene_;

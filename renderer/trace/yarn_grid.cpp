@@ -17,7 +17,7 @@ constexpr int kMostCells = 512;     // along each side
 
 const YarnGridKernel& best_kernel() {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return avx2::kYarnGridKernel;
+  if (runs_newest_kernels()) return avx2::kYarnGridKernel;
 #endif
   return baseline::kYarnGridKernel;
 }

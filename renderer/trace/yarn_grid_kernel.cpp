@@ -40,15 +40,13 @@ INLINE bool walk(const YarnGridData& grid, const YarnGridRay& ray, YarnGridHit* 
       const Float4 unstretch = {pieces.unstretch_x, pieces.unstretch_y, 1, 0};
       const LocalRay local{o * unstretch, d * unstretch};
       const Stretch stretch = stretch_of(ray, pieces);
-      Float8 near, guess, last;
+      Approach approach;
       const float reach = leave + 1e-3f < best ? leave + 1e-3f : best;
-      for (unsigned bits = candidates<spread>(pieces, local, stretch, reach, near, guess, last); bits;
-           bits &= bits - 1) {
+      for (unsigned bits = candidates<spread>(pieces, local, stretch, reach, approach); bits; bits &= bits - 1) {
         const int lane = __builtin_ctz(bits);
-        if (near[lane] > best) continue;
         Solution solution;
-        if (!solve<spread>(grid.segments[pieces.segment[lane]], local, stretch, pieces.from[lane], pieces.to[lane],
-                           guess[lane], last[lane], pieces.axial_slack[lane], near[lane], best, solution))
+        if (approach.near[lane] > best ||
+            !solve<spread>(grid.segments, pieces, lane, approach, local, stretch, best, solution))
           continue;
         if (any) return true;
         found = true;

@@ -15,8 +15,10 @@ inline void add_weave_options(CLI::App& command, ThreadsToWeave& cloth) {
                                          "thread or bundle file of the weft, or a ready thread's name; the warp's "
                                          "without it"));
   command
-      .add_option("--fibers", cloth.fibers,
-                  "what is seen of the fibers close by, for pictures that are looked at; smooth threads without it")
+      .add_option(
+          "--fibers", cloth.fibers,
+          "what is seen of the fibers close by, for pictures that are looked at (of a bundle only those that stand "
+          "out); smooth threads without it")
       ->check(CLI::IsMember(fiber_kinds()));
 }
 

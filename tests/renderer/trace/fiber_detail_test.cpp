@@ -75,11 +75,11 @@ TEST(FiberDetailTest, AFiberIsMetAgainAlongItsHelixAndNowhereElse) {
 TEST(FiberDetailTest, TheFrameIsThatOfTheFiber) {
   CurvePoint point{};
   point.tangent = Vector3f::UnitX(), point.normal = Vector3f::UnitZ();
-  point.fiber_turn = 0.4f;
+  point.fiber.turn_rad = 0.4f;
   Eigen::Matrix3f frame = local_from_world(point);
   EXPECT_LT((frame.row(0).transpose() - Vector3f(std::cos(0.4f), std::sin(0.4f), 0)).norm(), 1e-6f);
   EXPECT_LT((frame.row(2).transpose() - Vector3f::UnitZ()).norm(), 1e-6f);
-  point.fiber_lift = 0.2f;
+  point.fiber.lift_rad = 0.2f;
   frame = local_from_world(point);
   EXPECT_LT((frame * frame.transpose() - Eigen::Matrix3f::Identity()).norm(), 1e-6f);
   EXPECT_NEAR(frame.row(0).z(), std::sin(0.2f), 1e-6f);

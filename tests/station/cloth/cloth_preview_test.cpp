@@ -151,6 +151,12 @@ TEST_F(ClothPreview, IsOfTheShapeAndTheViewThatAreAskedFor) {
   EXPECT_NEAR(share(behind) / share(ahead), 1, 0.02) << "seen as before";
   EXPECT_GT(std::abs(cv::mean(behind)[0] / cv::mean(ahead)[0] - 1), 0.2) << "lit from behind";
 
+  const ProgramResult spun = design({"--shape", "swatch", "--size", "200", "--fibers", "spun"});
+  ASSERT_EQ(spun.status, 0) << spun.error;
+  EXPECT_EQ(nlohmann::json::parse(spun.out).at("fibers"), "spun");
+  EXPECT_GT(cv::norm(renderer::read_exr(picture), ahead, cv::NORM_L1) / cv::norm(ahead, cv::NORM_L1), 0.05);
+  EXPECT_NE(design({"--fibers", "felt"}).status, 0);
+
   EXPECT_NE(design({"--shape", "cube"}).status, 0);
   const ProgramResult large = design({"--size", "1000000"});
   EXPECT_EQ(large.status, 1);

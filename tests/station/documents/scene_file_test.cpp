@@ -43,6 +43,26 @@ TEST(SceneFile, ADraftIsReadAndNotWoven) {
       << "this draft would have been refused, had it been woven";
 }
 
+TEST(SceneFile, FibersAreAKindOrNumbers) {
+  json document = plain_scene();
+  const auto fibers = [&] { return parse_scene(document, "scene", kScenes).cloths[0].fibers; };
+  EXPECT_FALSE(fibers());
+  document["cloths"][0]["fibers"] = "spun";
+  ASSERT_TRUE(fibers());
+  EXPECT_GT(fibers()->detail.spread_rad, 0);
+  EXPECT_TRUE(fibers()->flyaways);
+  document["cloths"][0]["fibers"] = {{"twist_deg", -20}, {"spread_deg", 5}, {"shade", 0.1}, {"width_mm", 0.02}};
+  EXPECT_NEAR(fibers()->detail.twist_rad, -20 * std::numbers::pi / 180, 1e-12);
+  EXPECT_FALSE(fibers()->flyaways);
+  document["cloths"][0]["fibers"]["flyaways_per_mm"] = 2;
+  EXPECT_NE(refusal(fibers).find("flyaway_length_mm"), std::string::npos);
+  document["cloths"][0]["fibers"] = "felt";
+  EXPECT_NE(refusal(fibers).find("filament"), std::string::npos);
+  document["cloths"][0]["fibers"] = "spun";
+  document["cloths"][0]["method"] = "brute_force";
+  EXPECT_NE(refusal(fibers).find("two scales"), std::string::npos);
+}
+
 TEST(SceneFile, ReadyThreadsAreReadAndWrittenAgainAsTheyAre) {
   int read = 0;
   for (const auto& entry : fs::directory_iterator(kThreads)) {

@@ -203,6 +203,7 @@ TEST_F(TechnicianPage, ADesignIsSeenWhileItIsMade) {
   wanted["draft"] = "satin_5";
   EXPECT_NE(shown(looked()).at("of"), first.at("of"));
   for (const auto& [key, value] : {std::pair<const char*, json>("shape", "cube"),
+                                   {"fibers", "felt"},
                                    {"draft", "../plain"},
                                    {"number", 7},
                                    {"zoom", 100},
