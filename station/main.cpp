@@ -36,19 +36,19 @@ int main(int argc, char** argv) {
   app.formatter(std::make_shared<station::PlainHelp>());
   using namespace station;
   // In the order in which --help lists them (guide.cpp).
-  for (const auto add : {add_demo_command,          add_devices_command,        add_rig_command,
-                         add_target_command,        add_check_command,          add_home_command,
-                         add_preview_command,       add_turntable_command,      add_simulate_hardware_command,
-                         add_calibrate_command,     add_serve_command,          add_plan_command,
-                         add_capture_command,       add_import_command,         add_replay_command,
-                         add_verify_command,        add_develop_command,        add_invert_command,
-                         add_report_command,        add_library_command,        add_weave_command,
-                         add_cloth_command,         add_look_command,           add_render_command,
-                         add_pattern_command,       add_embroider_command,      add_predict_command,
-                         add_compare_command,       add_export_command,         add_scatter_command,
-                         add_validate_command,      add_validate_cloth_command, add_recover_command,
-                         add_batch_command,         add_completion_command,     add_upgrade_command,
-                         add_camera_process_command})
+  for (const auto add : {add_demo_command,      add_devices_command,        add_rig_command,
+                         add_target_command,    add_check_command,          add_home_command,
+                         add_preview_command,   add_turntable_command,      add_simulate_hardware_command,
+                         add_calibrate_command, add_serve_command,          add_plan_command,
+                         add_capture_command,   add_import_command,         add_replay_command,
+                         add_verify_command,    add_develop_command,        add_invert_command,
+                         add_report_command,    add_library_command,        add_weave_command,
+                         add_cloth_command,     add_look_command,           add_render_command,
+                         add_pattern_command,   add_embroider_command,      add_predict_command,
+                         add_compare_command,   add_export_command,         add_scatter_command,
+                         add_validate_command,  add_validate_cloth_command, add_recover_command,
+                         add_reproduce_command, add_batch_command,          add_completion_command,
+                         add_upgrade_command,   add_camera_process_command})
     add(app);
   add_guide(app);
   try {

@@ -1,9 +1,11 @@
-// Line art as stitches, each line in its colour and in the order of drawing.
+// Line art as stitches, each line or shape in its colour and in the order of drawing.
 //
 //   narrower than 0.8 mm | running stitches along the line, up to 2.5 mm long, shorter where it bends, a needle point
 //                        | at every corner
 //   wider                | satin: to and fro across the line, as wide as the stroke, 0.35 mm from one thread to the
 //                        | next
+//   filled shape         | rows of stitches side by side, 0.35 mm apart, up to 4 mm long and offset from row to row,
+//                        | along the direction that was drawn for it, or along its own longer side
 #pragma once
 
 #include <string>

@@ -18,5 +18,7 @@ cv::Mat3f linear_over_white(const cv::Mat4w& rgba);
 cv::Mat3f linear_of_png(const std::string& bytes, const std::filesystem::path& file);
 // 8 or 16 bits (sRGB) or floats (linear), grey or colour, as stored: neither turned nor mirrored.
 cv::Mat3f linear_of_tiff(const std::filesystem::path& file);
+// The same where 16 bits are linear too, up to 1; 8 bits, which cannot be, are refused.
+cv::Mat3f light_of_tiff(const std::filesystem::path& file);
 
 }  // namespace renderer

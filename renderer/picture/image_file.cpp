@@ -19,6 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view kExrBegin = "\x76\x2f\x31\x01";
+
 cv::Mat3f linear_of_jpeg(const std::string& bytes, const fs::path& file) {
   try {
     cv::Mat4b rgba;
@@ -29,7 +31,7 @@ cv::Mat3f linear_of_jpeg(const std::string& bytes, const fs::path& file) {
   }
 }
 
-cv::Mat3f linear_of_exr(const fs::path& file) {
+cv::Mat3f linear_of_exr(const fs::path& file, bool over_white) {
   std::map<std::string, cv::Mat> planes;
   for (const ExrChannel& channel : read_exr_channels(file)) planes[channel.name] = channel.plane;
   const bool grey = planes.contains("Y") && !planes.contains("R");
@@ -42,7 +44,7 @@ cv::Mat3f linear_of_exr(const fs::path& file) {
   }
   cv::Mat3f linear;
   cv::merge(colours, linear);
-  if (planes.contains("A")) {
+  if (over_white && planes.contains("A")) {
     const cv::Mat1f opacity = planes["A"];
     linear.forEach([&](cv::Vec3f& pixel, const int* at) {
       pixel += cv::Vec3f::all(1 - std::clamp(opacity(at[0], at[1]), 0.0f, 1.0f));
@@ -79,7 +81,7 @@ bool is_tiff(std::string_view bytes) {
 cv::Mat3f linear_of(const std::string& bytes, const fs::path& file) {
   if (bytes.starts_with("\x89PNG")) return linear_of_png(bytes, file);
   if (bytes.starts_with("\xff\xd8\xff")) return linear_of_jpeg(bytes, file);
-  if (bytes.starts_with("\x76\x2f\x31\x01")) return linear_of_exr(file);
+  if (bytes.starts_with(kExrBegin)) return linear_of_exr(file, true);
   refuse_picture("reading picture " + file.string(), "it is none of PNG, JPEG and EXR", "give one of these");
 }
 
@@ -107,6 +109,14 @@ cv::Mat3f read_linear_srgb(const fs::path& file) {
 cv::Mat3f read_photograph(const fs::path& file) {
   const std::string bytes = bytes_of_picture(file);
   return is_tiff(bytes) ? linear_of_tiff(file) : linear_of(bytes, file);
+}
+
+cv::Mat3f read_linear(const fs::path& file) {
+  const std::string bytes = bytes_of_picture(file);
+  if (is_tiff(bytes)) return light_of_tiff(file);
+  if (bytes.starts_with(kExrBegin)) return linear_of_exr(file, false);
+  refuse_picture("reading picture " + file.string(), "it is neither EXR nor TIFF",
+                 "give linear pictures, EXR or TIFF of floats or 16 bits");
 }
 
 cv::Mat3b encode_srgb(const cv::Mat3f& linear, double scale, const cv::Matx33f& linear_srgb_from_camera) {

@@ -41,6 +41,8 @@ std::vector<ExrChannel> read_exr_channels(const std::filesystem::path& file);
 cv::Mat3f read_linear_srgb(const std::filesystem::path& file);
 // The same for a photograph, which may also be a TIFF file; as stored: neither turned nor mirrored.
 cv::Mat3f read_photograph(const std::filesystem::path& file);
+// Reads linear light as another program measured it: EXR, or TIFF with floats or with 16 linear bits (up to 1).
+cv::Mat3f read_linear(const std::filesystem::path& file);
 
 // Writes an 8-bit PNG: a mask (grey), display colours (RGB, already encoded), or display colours with an opacity by
 // which they are not multiplied.

@@ -14,6 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Tiff = std::unique_ptr<TIFF, void (*)(TIFF*)>;
+enum class Words { srgb, linear };  // what 16-bit values are
 
 template <class Value>
 Value field(TIFF* tiff, std::uint32_t tag, Value otherwise) {
@@ -23,7 +24,7 @@ Value field(TIFF* tiff, std::uint32_t tag, Value otherwise) {
 
 // Rows of 16-bit or float values, grey or colour, one pixel's channels after the other; nothing for what libtiff only
 // gives as 8 bits.
-std::optional<cv::Mat3f> deep_pixels(TIFF* tiff, const fs::path& file, const cv::Size& size) {
+std::optional<cv::Mat3f> deep_pixels(TIFF* tiff, const fs::path& file, const cv::Size& size, Words encoded) {
   const auto bits = field<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE, 1),
              kind = field<std::uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT),
              channels = field<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL, 1),
@@ -45,28 +46,46 @@ std::optional<cv::Mat3f> deep_pixels(TIFF* tiff, const fs::path& file, const cv:
     for (int column = 0; column < size.width; ++column)
       for (int c = 0; c < 3; ++c) {
         const int at = column * channels + (grey ? 0 : c);
-        linear(row, column)[c] = words ? srgb_decoded(static_cast<float>(as_words[at]) / 65535) : as_floats[at];
+        const float word = words ? static_cast<float>(as_words[at]) / 65535 : 0;
+        linear(row, column)[c] = !words ? as_floats[at] : encoded == Words::srgb ? srgb_decoded(word) : word;
       }
   }
   return linear;
 }
 
-}  // namespace
-
-cv::Mat3f linear_of_tiff(const fs::path& file) {
+Tiff opened(const fs::path& file) {
   TIFFSetWarningHandler(nullptr);  // they would go to standard error
   TIFFSetErrorHandler(nullptr);
-  const Tiff tiff(TIFFOpen(file.c_str(), "r"), TIFFClose);
+  Tiff tiff(TIFFOpen(file.c_str(), "r"), TIFFClose);
   if (!tiff) refuse_damaged_picture(file, "it is no TIFF file");
-  const auto width = field<std::uint32_t>(tiff.get(), TIFFTAG_IMAGEWIDTH, 0),
-             height = field<std::uint32_t>(tiff.get(), TIFFTAG_IMAGELENGTH, 0);
+  return tiff;
+}
+
+cv::Size size_of(TIFF* tiff, const fs::path& file) {
+  const auto width = field<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH, 0),
+             height = field<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH, 0);
   check_size(file, width, height);
-  const cv::Size size(static_cast<int>(width), static_cast<int>(height));
-  if (const auto deep = deep_pixels(tiff.get(), file, size)) return *deep;
+  return {static_cast<int>(width), static_cast<int>(height)};
+}
+
+}  // namespace
+
+cv::Mat3f light_of_tiff(const fs::path& file) {
+  const Tiff tiff = opened(file);
+  if (const auto deep = deep_pixels(tiff.get(), file, size_of(tiff.get(), file), Words::linear)) return *deep;
+  refuse_picture("reading picture " + file.string(), "it has 8 bits, which are too few for linear light",
+                 "save it with 16 bits or as floats, without a gamma curve");
+}
+
+cv::Mat3f linear_of_tiff(const fs::path& file) {
+  const Tiff tiff = opened(file);
+  const cv::Size size = size_of(tiff.get(), file);
+  if (const auto deep = deep_pixels(tiff.get(), file, size, Words::srgb)) return *deep;
   cv::Mat4b rgba(size);
   const int as_stored = field<std::uint16_t>(tiff.get(), TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
-  if (TIFFReadRGBAImageOriented(tiff.get(), width, height, reinterpret_cast<std::uint32_t*>(rgba.data), as_stored, 1) !=
-      1)
+  if (TIFFReadRGBAImageOriented(tiff.get(), static_cast<std::uint32_t>(size.width),
+                                static_cast<std::uint32_t>(size.height), reinterpret_cast<std::uint32_t*>(rgba.data),
+                                as_stored, 1) != 1)
     refuse_damaged_picture(file, "it breaks off, or is of a kind that is not read");
   rgba.forEach([](cv::Vec4b& pixel, const int*) { pixel[3] = 255; });  // opacity is in the colours already
   return linear_over_white(rgba);

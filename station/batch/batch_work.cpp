@@ -135,7 +135,7 @@ std::vector<fs::path> sorted(std::vector<fs::path> files) {
 }
 
 // What the report writes into the folder of results that it reads.
-constexpr const char* kOfReport[] = {"contact_sheet.png", "overview.png", "manifest.json"};
+constexpr const char* kOfReport[] = {"contact_sheet.png", "models.png", "overview.png", "manifest.json"};
 
 fs::path thread_of(const BatchTask& task) {
   return task.item->kind == BatchItemKind::session ? model_file_of(task.item->path, task.step->model) : task.item->path;

@@ -7,11 +7,13 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "calibration/light/colour_chart.h"
 #include "inversion/texture/absorption_curve.h"
 #include "renderer/embroidery/stitch_curves.h"
 #include "renderer/picture/image_file.h"
 #include "renderer/trace/path_tracer.h"
 #include "station/cloth/cloth_colour.h"
+#include "station/cloth/motif_colours.h"
 #include "station/cloth/render/render_scene.h"
 #include "station/documents/matrix_rows.h"
 #include "station/documents/motif_file.h"
@@ -30,10 +32,11 @@ using Eigen::Array3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kSamplesPerPixel = 64;   // per pixel, of the curves and without a scene
-constexpr double kEye_mm = 1000;       // above the cloth
-constexpr double kCurveShare = 30;     // of the work, %
-constexpr double kSatinPitch = 0.875;  // of the diameter: stitches side by side
+constexpr int kSamplesPerPixel = 64;                // per pixel, of the curves and without a scene
+constexpr double kEye_mm = 1000;                    // above the cloth
+constexpr double kInGamut = 0.1;                    // CIEDE2000
+constexpr double kCurveShare = 20, kFitShare = 30;  // of the work, %
+constexpr double kSatinPitch = 0.875;               // of the diameter: stitches side by side
 
 Vector3d linear_of(const Srgb8& colour) {
   const cv::Vec3f decoded = renderer::linear_of_srgb({colour[0], colour[1], colour[2]});
@@ -115,7 +118,8 @@ EmbroideredThread dyed_thread(const std::optional<Srgb8>& wanted, const ThreadFi
   const ColouredThread coloured = coloured_thread(digitized, curves, *wanted);
   for (int c = 0; c < 3; ++c) made.sigma_a[static_cast<std::size_t>(c)] = coloured.parameters.sigma_a[c];
   made.wanted = *wanted;
-  made.delta_e_2000 = coloured.delta_e_2000;
+  made.delta_e_2000 = made.by_curve_delta_e_2000 = coloured.delta_e_2000;
+  made.out_of_gamut = coloured.delta_e_2000 > kInGamut;
   return made;
 }
 
@@ -193,6 +197,42 @@ std::vector<renderer::ThreadParameters> scattering_of(const std::vector<Embroide
   return scattering;
 }
 
+// Moves the threads' absorptions to what shows their colours on the motif.
+void fit_on_motif(std::vector<EmbroideredThread>& threads, const renderer::Motif& motif, const ThreadFile& digitized,
+                  const AbsorptionCurves& curves, const EmbroiderRequest& request, const renderer::Camera& camera,
+                  const Array3d& ground, const std::function<void(double)>& done) {
+  const Eigen::Matrix3d to_srgb = matrix_of(digitized.linear_srgb_from_camera);
+  MotifColourRequest fit{.threads = scattering_of(threads, digitized),
+                         .wanted = {},
+                         .scene =
+                             [&](const std::vector<renderer::ThreadParameters>& coloured) {
+                               return scene_of(motif, coloured, request.diameter_mm, ground);
+                             },
+                         .thread_of_set = {},
+                         .camera = camera,
+                         .seed = request.seed,
+                         .done = done};
+  const renderer::StitchCurves stitches = renderer::stitch_curves(motif, request.diameter_mm);
+  for (std::size_t k = 0; k < threads.size(); ++k) {
+    fit.wanted.emplace_back();
+    if (const auto wanted = wanted_colour(motif, k, request))
+      fit.wanted[k] = (to_srgb.inverse() * linear_of(*wanted)).array();
+    if (!stitches.threads[k].segments.empty()) fit.thread_of_set.push_back(k);
+  }
+  const MotifColours found = fit_motif_colours(fit, curves);
+  for (std::size_t k = 0; k < threads.size(); ++k) {
+    if (!fit.wanted[k] || !found.seen[k]) continue;
+    EmbroideredThread& thread = threads[k];
+    for (int c = 0; c < 3; ++c) thread.sigma_a[static_cast<std::size_t>(c)] = found.threads[k].sigma_a[c];
+    const Vector3d wanted = calibration::lab_of_linear_srgb(linear_of(thread.wanted));
+    const auto off = [&](const Array3d& seen) {
+      return calibration::delta_e_2000(wanted, calibration::lab_of_linear_srgb((to_srgb * seen.matrix()).cwiseMax(0)));
+    };
+    thread.delta_e_2000 = off(*found.seen[k]);
+    thread.by_curve_delta_e_2000 = off(*found.by_curve[k]);
+  }
+}
+
 void write_reflectance(const std::filesystem::path& file, const cv::Mat3f& image, const std::string& motif,
                        const ThreadFile& digitized) {
   if (file.extension() == ".exr")
@@ -231,6 +271,9 @@ Embroidery embroider(const EmbroiderRequest& request) {
                         .height_mm = measures.high.y() - measures.low.y(),
                         .threads = embroidered_threads(motif, measures, digitized, curves, request),
                         .image = request.out.string()};
+  if (!request.by_curve_only)
+    fit_on_motif(embroidery.threads, motif, digitized, curves, request, camera, ground,
+                 [&](double share) { show(kCurveShare + kFitShare * share, "the motif's colours"); });
   if (!request.scene.empty()) {
     progress.finish("sewing on " + request.scene.string());
     render_on_scene(request, embroidery, std::move(scene));
@@ -242,7 +285,8 @@ Embroidery embroider(const EmbroiderRequest& request) {
       tracer.render(camera, {.samples_per_pixel = request.samples_per_pixel.value_or(kSamplesPerPixel),
                              .seed = request.seed,
                              .progress = [&](double share) {
-                               show(kCurveShare + (100 - kCurveShare) * share, "rendering");
+                               constexpr double kBegun = kCurveShare + kFitShare;
+                               show(kBegun + (100 - kBegun) * share, "rendering");
                                return !interrupted();
                              }});
   write_reflectance(request.out, image, motif.name, digitized);
@@ -254,14 +298,14 @@ std::string describe(const Embroidery& embroidery) {
   char line[200];
   std::snprintf(line, sizeof line,
                 "\"%s\", %.1f x %.1f mm\nthread                 colour   stitches   length m   sigma_a"
-                "                 CIEDE2000\n",
+                "                 CIEDE2000  by curve\n",
                 embroidery.name.c_str(), embroidery.width_mm, embroidery.height_mm);
   std::string text = line;
   for (const EmbroideredThread& of : embroidery.threads) {
-    std::snprintf(line, sizeof line, "%-22s #%02x%02x%02x  %8d   %8.2f   %6.3f %6.3f %6.3f   %9.2f%s\n",
+    std::snprintf(line, sizeof line, "%-22s #%02x%02x%02x  %8d   %8.2f   %6.3f %6.3f %6.3f   %9.2f  %8.2f%s\n",
                   of.name.c_str(), of.wanted[0], of.wanted[1], of.wanted[2], of.stitches, of.length_mm / 1000,
-                  of.sigma_a[0], of.sigma_a[1], of.sigma_a[2], of.delta_e_2000,
-                  of.delta_e_2000 > 0.1 ? "  (out of gamut)" : "");
+                  of.sigma_a[0], of.sigma_a[1], of.sigma_a[2], of.delta_e_2000, of.by_curve_delta_e_2000,
+                  of.out_of_gamut ? "  (out of gamut)" : "");
     text += line;
   }
   return text;
@@ -274,6 +318,8 @@ nlohmann::json to_json(const Embroidery& embroidery) {
                        {"srgb", of.wanted},
                        {"sigma_a", of.sigma_a},
                        {"delta_e_2000", of.delta_e_2000},
+                       {"by_curve_delta_e_2000", of.by_curve_delta_e_2000},
+                       {"out_of_gamut", of.out_of_gamut},
                        {"stitches", of.stitches},
                        {"length_mm", of.length_mm}});
   return {{"motif", embroidery.name},

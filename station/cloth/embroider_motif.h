@@ -1,5 +1,5 @@
 // A motif embroidered in a digitized thread: each colour keeps all of the thread but its absorption [Xia 2025, section
-// 6, figure 13], and is rendered on plain cloth under even light.
+// 6, figure 13], which is found where it is sewn, and is rendered on plain cloth under even light.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,6 +28,7 @@ struct EmbroiderRequest {
   // Where in the patch of that cloth the motif's middle lies; else in the middle of the cloth.
   std::optional<Eigen::Vector2d> at_mm{};
   double turn_deg = 0;
+  bool by_curve_only = false;  // absorptions as if each colour were alone
   std::uint64_t seed = 1;
   ProgressStyle progress_style = ProgressStyle::automatic;
 };
@@ -35,8 +36,10 @@ struct EmbroiderRequest {
 struct EmbroideredThread {
   std::string name;
   Srgb8 wanted{};
-  std::array<double, 3> sigma_a{};  // per thread radius, camera RGB
-  double delta_e_2000 = 0;          // of what that absorption should look like: above 0 out of gamut
+  std::array<double, 3> sigma_a{};   // per thread radius, camera RGB
+  double delta_e_2000 = 0;           // of what that absorption looks like, where it can be seen on the motif
+  double by_curve_delta_e_2000 = 0;  // the same before its neighbours were looked at (motif_colours.h)
+  bool out_of_gamut = false;         // no absorption has the colour on satin stitches
   int stitches = 0;
   double length_mm = 0;
 };

@@ -11,6 +11,8 @@
 #include "renderer/scene/patch_curves.h"
 #include "renderer/trace/ray_scene.h"
 #include "station/documents/draft_drawing.h"
+#include "station/documents/reader.h"
+#include "station/thread/thread_colour.h"
 
 namespace station {
 namespace {
@@ -23,8 +25,8 @@ using renderer::YarnPatch;
 constexpr int kSubpixels = 3, kLeastYarns = 8;
 constexpr float kAmbient = 0.2f, kShadow = 0.4f;  // shares of the light
 
-cv::Vec3f color_of(int thread) {
-  return renderer::linear_of_srgb(thread_color(thread));
+cv::Vec3f color_of(int thread, const ThreadColours& colours) {
+  return renderer::linear_of_srgb(thread_color(thread, colours));
 }
 
 YarnPatch with_two_threads(YarnPatch patch) {
@@ -43,7 +45,8 @@ double shown_mm(const YarnPatch& patch) {
 
 class ShadedCloth {
  public:
-  ShadedCloth(const YarnPatch& patch, double side_mm) : scene_(cloth_scene(patch, side_mm)) {}
+  ShadedCloth(const YarnPatch& patch, double side_mm, const ThreadColours& colours)
+      : scene_(cloth_scene(patch, side_mm)), colours_(colours) {}
 
   cv::Vec3f seen_along(const Vector3d& origin, const Vector3d& direction) const {
     const auto hit = scene_.intersect({origin.cast<float>(), direction.cast<float>()});
@@ -52,7 +55,8 @@ class ShadedCloth {
     const Eigen::Vector3f light = Eigen::Vector3f(-0.45f, 0.45f, 0.9f).normalized();
     const float facing = std::max(0.0f, point.normal.dot(light));
     const bool shaded = facing > 0 && scene_.occluded({point.position, light}, 1e3f);
-    return (kAmbient + (1 - kAmbient) * facing * (shaded ? kShadow : 1)) * color_of(static_cast<int>(point.curve_set));
+    return (kAmbient + (1 - kAmbient) * facing * (shaded ? kShadow : 1)) *
+           color_of(static_cast<int>(point.curve_set), colours_);
   }
 
   template <typename RayAt>
@@ -82,10 +86,11 @@ class ShadedCloth {
   }
 
   renderer::RayScene scene_;
+  const ThreadColours& colours_;
 };
 
 // The cut surfaces of all yarns at the height y of the first pick: each yarn is the union of ellipsoids along its line.
-cv::Mat3f section(const YarnPatch& patch, double width_mm, int width_px) {
+cv::Mat3f section(const YarnPatch& patch, double width_mm, int width_px, const ThreadColours& colours) {
   const double scale = width_px / width_mm,
                cut_mm = center_line(patch, *std::find_if(patch.yarns.begin(), patch.yarns.end(),
                                                          [](const Yarn&yarn) { return !yarn.warp; }))
@@ -109,7 +114,8 @@ cv::Mat3f section(const YarnPatch& patch, double width_mm, int width_px) {
         const auto fixed = [](double px) { return static_cast<int>(std::lround(px * (1 << kShift))); };
         cv::ellipse(picture, cv::Point(fixed(x * scale), fixed(height_px / 2.0 - at.z() * scale)),
                     cv::Size(fixed(along_cut * share * scale), fixed(high * share * scale)), 0, 0, 360,
-                    color_of(thread_of_segment(yarn, static_cast<int>(i) / kSteps)), cv::FILLED, cv::LINE_8, kShift);
+                    color_of(thread_of_segment(yarn, static_cast<int>(i) / kSteps), colours), cv::FILLED, cv::LINE_8,
+                    kShift);
       }
     }
   }
@@ -118,10 +124,10 @@ cv::Mat3f section(const YarnPatch& patch, double width_mm, int width_px) {
 
 }  // namespace
 
-cv::Mat3f draw_patch(const YarnPatch& original, int panel_px) {
+cv::Mat3f draw_patch(const YarnPatch& original, const ThreadColours& colours, int panel_px) {
   const YarnPatch patch = with_two_threads(original);
   const double side = shown_mm(patch), up = patch.thickness_mm + side;
-  const ShadedCloth cloth(patch, side);
+  const ShadedCloth cloth(patch, side, colours);
   const cv::Mat3f above = cloth.picture(panel_px, [&](double x, double y) {
     return renderer::CameraRay{{(x - 0.5) * side, (0.5 - y) * side, up}, -Vector3d::UnitZ()};
   });
@@ -133,22 +139,38 @@ cv::Mat3f draw_patch(const YarnPatch& original, int panel_px) {
       cloth.picture(panel_px, [&](double x, double y) { return renderer::ray_through(camera, x, y); });
   cv::Mat3f both, all;
   cv::hconcat(above, perspective, both);
-  const cv::Mat3f fine = section(patch, 2 * side, 2 * panel_px * kSubpixels);
+  const cv::Mat3f fine = section(patch, 2 * side, 2 * panel_px * kSubpixels, colours);
   cv::Mat3f cut;
   cv::resize(fine, cut, {2 * panel_px, fine.rows / kSubpixels}, 0, 0, cv::INTER_AREA);
   cv::vconcat(both, cut, all);
   return all;
 }
 
-void write_patch_picture(const std::filesystem::path& file, const YarnPatch& patch) {
+void write_patch_picture(const std::filesystem::path& file, const renderer::YarnPatch& patch,
+                         const ThreadColours& colours) {
   const std::string kind = file.extension().string();
   if (kind != ".png" && kind != ".exr")
     throw std::runtime_error(file.string() + ": a view is a .png or an .exr file; change the name");
-  const cv::Mat3f picture = draw_patch(patch);
+  const cv::Mat3f picture = draw_patch(patch, colours);
   if (kind == ".exr")
     renderer::write_exr(file, picture, {{"threadstation/content", "linear sRGB, plain shading"}});
   else
     renderer::write_png(file, renderer::encode_srgb(picture, 1));
+}
+
+ThreadColours colours_of_threads(const std::vector<std::filesystem::path>& files) {
+  ThreadColours colours;
+  for (const std::filesystem::path& file : files) {
+    const bool bundle = read_json_file(file).value("format", "") == "threadstation/bundle";
+    if (bundle) {
+      colours.push_back(thread_color(static_cast<int>(colours.size())));
+      continue;
+    }
+    const Eigen::Vector3f linear = colour_of(read_thread(file)).linear_srgb.cast<float>();
+    const cv::Mat3f one(1, 1, cv::Vec3f(linear[0], linear[1], linear[2]));
+    colours.push_back(renderer::encode_srgb(one, 1)(0, 0));
+  }
+  return colours;
 }
 
 }  // namespace station

@@ -16,6 +16,10 @@ namespace station {
 struct PredictRequest {
   std::filesystem::path session;   // a developed session of a cloth on the cylinder
   std::filesystem::path fabric{};  // fabric file of the weave; empty: the session's own
+  // What its warp and weft are digitized as, both or neither: sessions with a fitted `model`, or model files. Empty:
+  // the weave's own threads, which are a thread model's.
+  std::filesystem::path warp{}, weft{};
+  std::string model = "thread";  // or "bundle", "fiber", "yarn": of the sessions
   int samples_per_pixel = 64;
   std::uint64_t seed = 1;
   bool fit_scale = false;  // compare after a scale that makes it as bright as its photograph
@@ -32,8 +36,9 @@ struct PredictedView {
 
 nlohmann::json to_json(const PredictedView& view);
 
-// Predicts all views and writes result/fabric/<view>.exr and .png. Errors: std::runtime_error for a session of a
-// wrapped thread, one that is not developed, or a fabric without a weave.
+// Predicts all views and writes result/fabric/<view>.exr and .png, by another model than a thread's in
+// result/fabric/<model>. Errors: std::runtime_error for a session of a wrapped thread, one that is not developed, a
+// fabric without a weave, threads that are not fitted so, or another model than a thread's without warp and weft.
 std::vector<PredictedView> predict_fabric(const PredictRequest& request);
 
 }  // namespace station

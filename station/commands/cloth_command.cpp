@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <iostream>
+#include <stdexcept>
 
 #include "station/cloth/preview/cloth_preview.h"
 #include "station/commands/commands.h"
@@ -12,7 +13,7 @@ namespace station {
 void add_cloth_command(CLI::App& app) {
   struct ClothArguments {
     ClothPreviewRequest request;
-    std::filesystem::path of;
+    std::filesystem::path of, warp;
     std::string model = "thread", warp_colour, weft_colour;
     OutputOptions output;
   };
@@ -22,7 +23,9 @@ void add_cloth_command(CLI::App& app) {
   or_ready("threads", command->add_option("session", arguments->of,
                                           "session folder with a fitted thread or bundle, or, with --out, a thread or "
                                           "bundle file or a ready thread's name"))
-      ->required();
+      ->excludes(or_ready("threads", command->add_option("--warp", arguments->warp,
+                                                         "thread or bundle file of the warp, or a ready thread's name; "
+                                                         "with --weft, instead of a session")));
   add_weave_options(*command, request.cloth);
   command->add_option("--out", request.cloth.out,
                       "folder for a cloth that belongs to no session, with copies of its threads");
@@ -33,8 +36,24 @@ void add_cloth_command(CLI::App& app) {
       "--warp-colour", arguments->warp_colour,
       "like #c01830, crimson or \"lab(40 60 30)\": only the thread's absorption changes; its own without it");
   command->add_option("--weft-colour", arguments->weft_colour, "likewise");
-  command->add_option("--shape", request.shapes, "what the cloth is made into, one or several")
-      ->check(CLI::IsMember(cloth_shapes()))
+  std::string shapes;
+  for (const std::string& shape : cloth_shapes()) shapes += shape + ", ";
+  command
+      ->add_option(
+          "--shape", request.shapes,
+          "what the cloth is made into, one or several: " + shapes + "or a mesh with uv (.obj, .ply, .gltf, .glb)")
+      ->check(CLI::IsMember(cloth_shapes()) | CLI::ExistingFile)
+      ->capture_default_str();
+  command
+      ->add_option("--mesh-unit", request.mesh_unit_mm,
+                   "millimetres that one unit of the mesh's coordinates is; 1, or 1000 for glTF, without it")
+      ->check(CLI::Range(1e-6, 1e6));
+  std::string lights;
+  for (const std::string& one : cloth_lights()) lights += one + ", ";
+  command
+      ->add_option("--lights", request.lights,
+                   "where light comes from: " + lights + "or a picture of all surroundings (EXR)")
+      ->check(CLI::IsMember(cloth_lights()) | CLI::ExistingFile)
       ->capture_default_str();
   command->add_option("--turn", request.view.turn_deg, "degrees by which the camera goes round the cloth")
       ->capture_default_str();
@@ -51,6 +70,9 @@ void add_cloth_command(CLI::App& app) {
     if (!arguments->warp_colour.empty()) asked.cloth.warp_colour = parse_colour(arguments->warp_colour);
     if (!arguments->weft_colour.empty()) asked.cloth.weft_colour = parse_colour(arguments->weft_colour);
     asked.progress_style = arguments->output.progress_style();
+    if (!arguments->warp.empty()) arguments->of = arguments->warp;
+    if (arguments->of.empty())
+      throw std::runtime_error("no thread was given; give a session, a thread's file or name, or --warp (and --weft)");
     weave_thread_of(asked.cloth, arguments->of, arguments->model);
     const nlohmann::json made_of = preview_cloth(asked);
     if (arguments->output.json) {

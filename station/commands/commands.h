@@ -30,6 +30,7 @@ void add_import_command(CLI::App& app);
 void add_invert_command(CLI::App& app);
 void add_replay_command(CLI::App& app);
 void add_report_command(CLI::App& app);
+void add_reproduce_command(CLI::App& app);
 void add_rig_command(CLI::App& app);
 void add_serve_command(CLI::App& app);
 void add_scatter_command(CLI::App& app);

@@ -55,6 +55,8 @@ void add_embroider_command(CLI::App& app) {
       ->needs(scene);
   command->add_option("--spp", request.samples_per_pixel, "samples per pixel; 64, or the scene's")
       ->check(CLI::Range(1, kMostSamples));
+  command->add_flag("--curves-only", request.by_curve_only,
+                    "without looking at the motif: each colour as if its stitches were alone");
   command->add_option("--seed", request.seed, "of the paths")->capture_default_str();
   arguments->output.add_to(*command);
   command->callback([arguments] {

@@ -45,7 +45,9 @@ void add_invert_command(CLI::App& app) {
   command->add_option("--out", arguments->out, "write the model's file here as well");
   std::map<std::string, inversion::ModelKind> models = names_of_models();
   models.erase(name_of(inversion::ModelKind::paper));
-  command->add_option("--model", arguments->request.fit.model, "scattering model: the thread's, or a baseline")
+  command
+      ->add_option("--model", arguments->request.fit.model,
+                   "scattering model: the thread's, or a baseline (the yarn is a reconstruction)")
       ->transform(CLI::CheckedTransformer(models));
   command->add_option("--solver", arguments->solver, "lm: Levenberg-Marquardt on recorded paths; adam: the paper's")
       ->check(CLI::IsMember({"lm", "adam"}));

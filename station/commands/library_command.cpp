@@ -6,6 +6,7 @@
 #include "renderer/picture/image_file.h"
 #include "rig/devices/clock.h"
 #include "station/commands/commands.h"
+#include "station/commands/ready_name.h"
 #include "station/documents/srgb.h"
 #include "station/thread/library.h"
 
@@ -121,7 +122,9 @@ void add_library_command(CLI::App& app) {
     return sub;
   };
   CLI::App* added = add("add", "take in a session's thread, or a thread file");
-  added->add_option("what", arguments->what, "session folder or thread file")->required();
+  or_ready("threads",
+           added->add_option("what", arguments->what, "session folder, thread file or a ready thread's name"))
+      ->required();
   added->add_flag("--json", arguments->json, "as JSON, for machines");
   added->callback([arguments] {
     rig::SystemClock clock;

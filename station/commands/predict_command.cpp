@@ -5,6 +5,7 @@
 #include "station/cloth/predict_fabric.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
+#include "station/commands/ready_name.h"
 #include "station/documents/number_text.h"
 
 namespace station {
@@ -37,6 +38,13 @@ void add_predict_command(CLI::App& app) {
       app.add_subcommand("predict", "what a cloth on the cylinder should look like, beside its photographs");
   command->add_option("session", request.session, "developed session of a cloth (capture --spool FABRIC)")->required();
   command->add_option("--fabric", request.fabric, "fabric file whose weave is predicted instead of the session's own");
+  or_ready("threads", command->add_option("--warp", request.warp,
+                                          "session of the warp's thread, a file of its model or a ready thread's name, "
+                                          "instead of what the fabric says"));
+  or_ready("threads", command->add_option("--weft", request.weft, "likewise, of the weft"));
+  command->add_option("--model", request.model, "which of the sessions' fitted models")
+      ->check(CLI::IsMember({"thread", "bundle", "fiber", "yarn"}))
+      ->capture_default_str();
   command->add_option("--spp", request.samples_per_pixel, "samples per pixel")
       ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str();

@@ -1,5 +1,5 @@
 // Options that take a file, or the bare name of one that comes with the program: `plain` for the draft
-// DATA/drafts/plain.json.
+// DATA/drafts/plain.json, `silk_red` for the thread DATA/library/threads/silk_red.json.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -12,7 +12,7 @@ void add_scatter_fit_command(CLI::App& scatter) {
     OutputOptions output;
   };
   auto arguments = std::make_shared<ScatterFitArguments>();
-  CLI::App* command = scatter.add_subcommand("fit", "thread model and yarn baseline to simulated distributions");
+  CLI::App* command = scatter.add_subcommand("fit", "thread model and yarn reconstruction to simulated distributions");
   command->add_option("--in", arguments->request.in, "distributions of one thread (CSV of scatter simulate)")
       ->required();
   command->add_option("--out", arguments->request.out, "fits to write (JSON)")->required();

@@ -24,7 +24,8 @@ void add_validate_cloth_command(CLI::App& app) {
   command->add_option("--draft", request.drafts, "draft files, one or more; all ends are warp, all picks weft")
       ->required();
   command->add_option("--out", request.out, "folder of photographs, pictures and results")->required();
-  command->add_option("--model", request.models, "models to fit; thread, fiber and yarn without this")
+  command
+      ->add_option("--model", request.models, "models to fit; thread, fiber and yarn (a reconstruction) without this")
       ->transform(CLI::CheckedTransformer(names_of_models()));
   command->add_flag("--true-fibers", request.true_fibers,
                     "predict with the spools' own fibers as bundles, too: what is not the fit's error");

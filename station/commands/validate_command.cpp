@@ -33,7 +33,8 @@ void add_validate_command(CLI::App& app) {
   command->add_option("--rig", request.rig, "rig file with a simulation part: lens, lamps and sensor")->required();
   command->add_option("--spool", request.spools, "spool files with simulated fibers, one or more")->required();
   command->add_option("--out", request.out, "folder of photographs and results")->required();
-  command->add_option("--model", request.models, "models to fit; thread, fiber and yarn without this")
+  command
+      ->add_option("--model", request.models, "models to fit; thread, fiber and yarn (a reconstruction) without this")
       ->transform(CLI::CheckedTransformer(names_of_models()));
   command->add_option("--folds", request.folds, "how often two views are left out; 0: no such fits")
       ->check(CLI::Range(0, 3));

@@ -104,12 +104,12 @@ const KeyOption<std::uint64_t> kSeeds[] = {
     {"--seed", [](Draft& d) -> std::uint64_t& { return d.unevenness.seed; }, "of all that is uneven"},
 };
 
-void write_drawing(const std::string& file, const Draft& draft) {
+void write_drawing(const std::string& file, const Draft& draft, const ThreadColours& colours) {
   const std::string kind = std::filesystem::path(file).extension().string();
   if (kind == ".svg")
-    write_text_file(file, draw_draft_svg(draft));
+    write_text_file(file, draw_draft_svg(draft, colours));
   else if (kind == ".png")
-    renderer::write_png(file, draw_draft(draft));
+    renderer::write_png(file, draw_draft(draft, colours));
   else
     throw std::runtime_error(file + ": a drawing is a .png or a .svg file; change the name");
 }
@@ -119,6 +119,7 @@ void write_drawing(const std::string& file, const Draft& draft) {
 void add_weave_command(CLI::App& app) {
   struct WeaveArguments {
     std::string draft, out, drawing, view;
+    std::vector<std::filesystem::path> threads;
     std::vector<std::function<void(Draft&)>> changes;
     OutputOptions output;
   };
@@ -129,6 +130,9 @@ void add_weave_command(CLI::App& app) {
   command->add_option("--out", arguments->out, "patch file to write")->required();
   command->add_option("--drawing", arguments->drawing, "the draft as weavers draw it, PNG or SVG");
   command->add_option("--view", arguments->view, "the patch from above, in perspective and in section, PNG or EXR");
+  or_ready("threads", command->add_option("--threads", arguments->threads,
+                                          "thread files or ready threads' names, in the order of the draft's threads: "
+                                          "drawing and view have their colours"));
   const auto add_keys = [&](const auto& options) {
     for (const auto& option : options)
       command->add_option_function<std::decay_t<decltype(option.key(std::declval<Draft&>()))>>(
@@ -144,14 +148,15 @@ void add_weave_command(CLI::App& app) {
     Draft draft = read_draft(arguments->draft);
     for (const auto& change_key : arguments->changes) change_key(draft);
     if (const auto problem = check_draft(draft)) throw std::runtime_error(arguments->draft + ": " + *problem);
-    if (!arguments->drawing.empty()) write_drawing(arguments->drawing, draft);
+    const ThreadColours colours = colours_of_threads(arguments->threads);
+    if (!arguments->drawing.empty()) write_drawing(arguments->drawing, draft, colours);
     ProgressDisplay progress("weave", arguments->output.progress_style());
     watch_interrupts();
     const RelaxedPatch relaxed = weave_watched(draft, progress);
     const YarnPatch& patch = relaxed.patch;
     const json document = to_json(patch);
     write_json_file(arguments->out, document);
-    if (!arguments->view.empty()) write_patch_picture(arguments->view, patch);
+    if (!arguments->view.empty()) write_patch_picture(arguments->view, patch, colours);
     if (arguments->output.json)
       std::cout << json{{"patch", arguments->out},
                         {"name", patch.name},

@@ -1,9 +1,11 @@
 #include "station/documents/bundle_file.h"
 
 #include "station/documents/digitized_thread.h"
+#include "station/documents/fiber_file.h"
 #include "station/documents/number_text.h"
 #include "station/documents/parameter_ranges.h"
 #include "station/documents/reader.h"
+#include "station/documents/yarn_file.h"
 
 namespace station {
 namespace {
@@ -69,6 +71,14 @@ ClothThread read_cloth_thread(const std::filesystem::path& file) {
   const bool bundle = document.is_object() && document.value("format", json()) == "threadstation/bundle";
   return bundle ? cloth_thread(parse_bundle(document, file.string()))
                 : cloth_thread(parse_thread(document, file.string()));
+}
+
+renderer::ScatteringModel read_model(const std::filesystem::path& file) {
+  const json document = read_json_file(file);
+  const json format = document.is_object() ? document.value("format", json()) : json();
+  if (format == "threadstation/fiber") return parse_fiber(document, file.string());
+  if (format == "threadstation/yarn") return parse_yarn(document, file.string());
+  return read_cloth_thread(file).scattering;
 }
 
 }  // namespace station

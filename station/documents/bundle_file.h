@@ -29,5 +29,7 @@ struct ClothThread {
 };
 // A thread file or a bundle file.
 ClothThread read_cloth_thread(const std::filesystem::path& file);
+// A file of any fitted model: a thread, a bundle, or a baseline's fiber or yarn.
+renderer::ScatteringModel read_model(const std::filesystem::path& file);
 
 }  // namespace station

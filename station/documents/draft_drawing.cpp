@@ -27,14 +27,14 @@ struct Drawing {
   std::vector<Square> squares;
 };
 
-Drawing squares_of(const renderer::Draft& draft) {
+Drawing squares_of(const renderer::Draft& draft, const ThreadColours& colours) {
   const int ends = ends_in_patch(draft), picks = picks_in_patch(draft);
   int most = 0;
   for (const auto* system : {&draft.warp, &draft.weft})
     for (const int thread : system->threads) most = std::max(most, thread);
   const auto color = [&](const renderer::YarnSystem& system, int yarn, bool warp) {
     const int thread = system.threads[static_cast<std::size_t>(yarn) % system.threads.size()];
-    return thread_color(most == 0 ? (warp ? 0 : 1) : thread);
+    return thread_color(most == 0 ? (warp ? 0 : 1) : thread, colours);
   };
   Drawing drawing{ends + kMargin, picks + kMargin, {}};
   const auto& rows = draft.warp_over;
@@ -58,8 +58,12 @@ cv::Vec3b thread_color(int thread) {
   return kPalette[static_cast<std::size_t>(thread) % kPalette.size()];
 }
 
-cv::Mat3b draw_draft(const renderer::Draft& draft, int square_px) {
-  const Drawing drawing = squares_of(draft);
+cv::Vec3b thread_color(int thread, const ThreadColours& colours) {
+  return colours.empty() ? thread_color(thread) : colours[static_cast<std::size_t>(thread) % colours.size()];
+}
+
+cv::Mat3b draw_draft(const renderer::Draft& draft, const ThreadColours& colours, int square_px) {
+  const Drawing drawing = squares_of(draft, colours);
   cv::Mat3b picture(drawing.rows * square_px, drawing.columns * square_px, cv::Vec3b(255, 255, 255));
   for (const Square& square : drawing.squares)  // a line of the ground stays between squares
     picture(cv::Rect(square.column * square_px, square.row * square_px, square_px - 1, square_px - 1))
@@ -67,8 +71,8 @@ cv::Mat3b draw_draft(const renderer::Draft& draft, int square_px) {
   return picture;
 }
 
-std::string draw_draft_svg(const renderer::Draft& draft) {
-  const Drawing drawing = squares_of(draft);
+std::string draw_draft_svg(const renderer::Draft& draft, const ThreadColours& colours) {
+  const Drawing drawing = squares_of(draft, colours);
   char line[160];
   std::snprintf(line, sizeof line, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\">\n",
                 drawing.columns, drawing.rows);

@@ -10,6 +10,8 @@ namespace station {
 
 namespace {
 
+constexpr std::size_t kFewestPlies = 2, kMostPlies = 6;
+
 inversion::WrappedSpool parse_wrapping(ObjectReader& spool) {
   inversion::WrappedSpool wrapping;
   read_holder(spool.object("holder"), wrapping);
@@ -22,13 +24,31 @@ inversion::WrappedSpool parse_wrapping(ObjectReader& spool) {
   return wrapping;
 }
 
+void read_plies(ObjectReader& fibers, SimulatedPlies& plies) {
+  for (ObjectReader& ply : fibers.objects("plies")) {
+    plies.sigma_a.push_back(ply.vector3("sigma_a", kAbsorption));
+    ply.finish();
+  }
+  if (plies.sigma_a.size() < kFewestPlies || plies.sigma_a.size() > kMostPlies)
+    fibers.refuse("plies", std::to_string(plies.sigma_a.size()) + " are listed; a thread of plies has " +
+                               std::to_string(kFewestPlies) + " to " + std::to_string(kMostPlies));
+  plies.turn_mm = fibers.number("ply_turn_mm", 0.5, 1000);
+}
+
 SimulatedFibers parse_fibers(ObjectReader fibers) {
   SimulatedFibers result;
   result.fibers_per_thread = fibers.integer("fibers_per_thread", 1, 2000);
   result.fiber_radius_mm = fibers.number("fiber_radius_mm", 0.0005, 10);
   result.min_gap_mm = fibers.number("min_gap_mm", 0, 10);
-  result.scattering.eta = fibers.number("eta", kRefractiveIndex);
-  result.scattering.sigma_a = fibers.vector3("sigma_a", kAbsorption);
+  if (fibers.has("reflectance")) {
+    result.reflectance = fibers.vector3("reflectance", {0, 1});
+  } else {
+    result.scattering.eta = fibers.number("eta", kRefractiveIndex);
+    if (fibers.has("plies"))
+      read_plies(fibers, result.plies.emplace());
+    else
+      result.scattering.sigma_a = fibers.vector3("sigma_a", kAbsorption);
+  }
   result.scattering.beta_m = fibers.number("beta_m", kRoughness);
   result.scattering.beta_n = fibers.number("beta_n", kRoughness);
   result.seed = static_cast<std::uint64_t>(fibers.integer("seed", 0, 1 << 30));

@@ -17,12 +17,20 @@
 
 namespace station {
 
+// Round plies that touch and turn about the thread's axis, each a bundle of fibers with an absorption of its own.
+struct SimulatedPlies {
+  std::vector<Eigen::Vector3d> sigma_a{};  // of each ply, per fiber radius, RGB
+  double turn_mm = 5;                      // length of one turn along the thread
+};
+
 // The fibers that the simulated bench draws: every thread is a bundle of them, placed at random in its cross-section.
 struct SimulatedFibers {
-  int fibers_per_thread = 12;
+  int fibers_per_thread = 12;  // of all plies together
   double fiber_radius_mm = 0.06;
   double min_gap_mm = 0.002;
   renderer::FiberParameters scattering;
+  std::optional<Eigen::Vector3d> reflectance{};  // of metal, RGB, in place of eta and absorption: nothing goes through
+  std::optional<SimulatedPlies> plies{};
   std::uint64_t seed = 1;
 };
 

@@ -26,6 +26,7 @@ using Eigen::Vector2d;
 
 constexpr double kPixel_mm = 25.4 / 96;
 constexpr double kFarthest_mm = 1e4;
+constexpr double kShortestDirection_mm = 0.01, kSmallestArea_mm2 = 0.02;  // the latter twice the area
 constexpr int kDeepest = 200;
 
 // Numbers of a list, apart by spaces and commas; none where something else stands between.
@@ -63,6 +64,10 @@ class SvgReader {
 
  private:
   using Style = std::map<std::string, std::string>;  // what is inherited
+  struct Direction {
+    Vector2d middle;
+    double along_rad;
+  };
 
   [[noreturn]] void fail(const std::string& what) const { throw std::runtime_error(source_ + ": " + what); }
 
@@ -135,7 +140,7 @@ class SvgReader {
 
   Style style_of(const pugi::xml_node& node, Style style) const {
     style.erase("display");  // is not inherited, but a group that is not shown is not walked
-    for (const char* name : {"stroke", "stroke-width", "fill", "color", "display", "visibility"})
+    for (const char* name : {"stroke", "stroke-width", "fill", "fill-rule", "color", "display", "visibility"})
       if (node.attribute(name)) style[name] = trimmed(node.attribute(name).value());
     std::string_view classes = node.attribute("class").value();
     for (std::size_t at = 0; at < classes.size();) {
@@ -264,36 +269,82 @@ class SvgReader {
     if (without_lines.contains(kind)) fail_at(node, "has no lines of its own; convert it to paths");
     if (groups.contains(kind)) {
       const Geom::Affine mm = transform_of(node) * outer;
-      for (const pugi::xml_node& child : node.children()) walk(child, style, mm);
+      const std::vector<Direction> of_outer_group = directions_;
+      std::vector<Direction> own;
+      for (const pugi::xml_node& child : node.children())
+        if (is_direction(child)) own.push_back(direction_of(child, transform_of(child) * mm));
+      if (!own.empty()) directions_ = own;
+      for (const pugi::xml_node& child : node.children())
+        if (!is_direction(child)) walk(child, style, mm);
+      directions_ = of_outer_group;
     } else if (shapes.contains(kind)) {
       const auto visible = style.find("visibility");
       if (visible == style.end() || visible->second == "visible") draw(node, style, transform_of(node) * outer);
     }
   }
 
-  void draw(const pugi::xml_node& node, const Style& style, const Geom::Affine& mm) {
-    const std::optional<Srgb8> stroke = colour_of(node, style, "stroke");
-    const std::optional<Srgb8> colour = stroke ? stroke : colour_of(node, style, "fill");
-    if (!colour) return;
-    double width_mm = 0;
-    if (stroke) {
-      const auto given = style.find("stroke-width");
-      const auto width = given == style.end() ? std::optional(kPixel_mm) : length_mm(given->second);
-      if (!width || !(*width >= 0))
-        fail_at(node, "found the stroke-width \"" + given->second + "\", expected a length");
-      width_mm = *width / kPixel_mm * std::sqrt(std::abs(mm.det()));
+  static bool is_direction(const pugi::xml_node& node) {
+    const std::string classes = " " + std::string(node.attribute("class").value()) + " ";
+    return classes.find(" direction ") != classes.npos;
+  }
+
+  Direction direction_of(const pugi::xml_node& node, const Geom::Affine& mm) {
+    for (const Geom::Path& path : paths_of(node, mm)) {
+      const std::vector<Vector2d> line = followed(node, path);
+      if (line.size() < 2 || (line.back() - line.front()).norm() < kShortestDirection_mm) continue;
+      const Vector2d along = line.back() - line.front();
+      return {.middle = line[line.size() / 2], .along_rad = std::atan2(along.y(), along.x())};
     }
+    fail_at(node, "is to be a direction and leads nowhere; draw it as a line");
+  }
+
+  Geom::PathVector paths_of(const pugi::xml_node& node, const Geom::Affine& mm) const {
     const std::string data = data_of(node);
-    Geom::PathVector paths;
     try {
-      paths = Geom::parse_svg_path(data.c_str()) * mm;
+      return Geom::parse_svg_path(data.c_str()) * mm;
     } catch (const std::exception&) {  // those of lib2geom have no other base in common
       fail_at(node, "its path data cannot be read; export the drawing again");
     }
-    for (const Geom::Path& path : paths) {
-      std::vector<Vector2d> line = followed(node, path);
-      if (line.size() >= 2) art_.lines.push_back({.srgb = *colour, .width_mm = width_mm, .points = std::move(line)});
+  }
+
+  // A shape is filled first, then its outline is drawn.
+  void draw(const pugi::xml_node& node, const Style& style, const Geom::Affine& mm) {
+    const std::optional<Srgb8> stroke = colour_of(node, style, "stroke"), fill = colour_of(node, style, "fill");
+    if (!stroke && !fill) return;
+    std::vector<std::vector<Vector2d>> lines;
+    for (const Geom::Path& path : paths_of(node, mm))
+      if (std::vector<Vector2d> line = followed(node, path); line.size() >= 2) lines.push_back(std::move(line));
+    if (fill) add_shape(*fill, style, lines);
+    if (!stroke) return;
+    const auto given = style.find("stroke-width");
+    const auto width = given == style.end() ? std::optional(kPixel_mm) : length_mm(given->second);
+    if (!width || !(*width >= 0)) fail_at(node, "found the stroke-width \"" + given->second + "\", expected a length");
+    const double width_mm = *width / kPixel_mm * std::sqrt(std::abs(mm.det()));
+    for (std::vector<Vector2d>& line : lines)
+      art_.lines.push_back({.srgb = *stroke, .width_mm = width_mm, .points = std::move(line)});
+  }
+
+  // Lines that hold no place between them, such as a straight one, have nothing to fill.
+  void add_shape(const Srgb8& colour, const Style& style, const std::vector<std::vector<Vector2d>>& lines) {
+    renderer::ArtLine shape{.srgb = colour};
+    Vector2d low = Vector2d::Constant(kFarthest_mm), high = -low;
+    for (const std::vector<Vector2d>& line : lines) {
+      double twice_mm2 = 0;
+      for (std::size_t i = 0; i < line.size(); ++i) {
+        const Vector2d &a = line[i] - line[0], &b = line[(i + 1) % line.size()] - line[0];
+        twice_mm2 += a.x() * b.y() - a.y() * b.x();
+        low = low.cwiseMin(line[i]), high = high.cwiseMax(line[i]);
+      }
+      if (std::abs(twice_mm2) > kSmallestArea_mm2) shape.area.push_back(line);
     }
+    if (shape.area.empty()) return;
+    const auto rule = style.find("fill-rule");
+    shape.even_odd = rule != style.end() && rule->second == "evenodd";
+    const Vector2d middle = (low + high) / 2;
+    const auto nearest = std::ranges::min_element(
+        directions_, {}, [&](const Direction& direction) { return (direction.middle - middle).norm(); });
+    if (nearest != directions_.end()) shape.along_rad = nearest->along_rad;
+    art_.lines.push_back(std::move(shape));
   }
 
   // Points of the path close by each other, y up.
@@ -329,6 +380,7 @@ class SvgReader {
   std::string source_;
   renderer::LineArt art_;
   std::map<std::string, Style> rules_;
+  std::vector<Direction> directions_;  // those of the group that is walked
   std::size_t followed_ = 0;
 };
 

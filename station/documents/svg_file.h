@@ -1,5 +1,7 @@
-// Drawings (SVG) as line art: what a drawing strokes in its stroke's colour, or what it only fills as the outline in
-// the fill's colour, in the drawing's order.
+// Drawings (SVG) as line art: what a drawing strokes as lines, what it fills as shapes, each in its colour and in the
+// drawing's order. An element of class "direction" is not sewn: it is the direction, from its first point to its last,
+// of the stitches that fill shapes of its group and of the groups within that have none of their own; of several the
+// one that is nearest to the middle of a shape.
 //
 // Sizes are those of the page (width and height with their unit over the viewBox; without a unit 96 to the inch). Read
 // are path, line, polyline, polygon, rect, circle, ellipse in groups with transforms; presentation attributes, style

@@ -99,10 +99,8 @@ json to_json(const DevelopedViews& views) {
   return document;
 }
 
-DevelopedViews read_views(const std::filesystem::path& session) {
-  const std::filesystem::path file = session / "linear" / "views.json";
-  const json document = read_json_file(file);
-  ObjectReader reader(document, file.string(), "views");
+DevelopedViews parse_views(const json& document, const std::string& source) {
+  ObjectReader reader(document, source, "views");
   DevelopedViews result;
   const auto colour = reader.numbers("linear_srgb_from_camera", 9);
   std::copy(colour.begin(), colour.end(), result.linear_srgb_from_camera.begin());
@@ -110,6 +108,11 @@ DevelopedViews read_views(const std::filesystem::path& session) {
   for (const ObjectReader& view : reader.objects("views")) result.views.push_back(parse_view(view));
   reader.finish();
   return result;
+}
+
+DevelopedViews read_views(const std::filesystem::path& session) {
+  const std::filesystem::path file = session / "linear" / "views.json";
+  return parse_views(read_json_file(file), file.string());
 }
 
 void read_view_pictures(const std::filesystem::path& session, DevelopedViews& views) {

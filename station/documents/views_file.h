@@ -38,6 +38,7 @@ struct DevelopedViews {
 
 // Write and read the document, without the pictures. Errors: those of reader.h.
 nlohmann::json to_json(const DevelopedViews& views);
+DevelopedViews parse_views(const nlohmann::json& document, const std::string& source);
 DevelopedViews read_views(const std::filesystem::path& session);
 // Reads each view's image and mask. The images, and the law of their noise, are divided by the views' lamp strengths.
 // Errors: std::runtime_error for a picture that is missing or has not the size of its view's camera.

@@ -19,6 +19,7 @@ renderer::YarnParameters parse_yarn(const nlohmann::json& document, const std::s
     reader.refuse("radius_ratio",
                   "the fibers' cross sections together are larger than the yarn's; take fewer or "
                   "thinner fibers");
+  if (reader.has("origin")) reader.text("origin");
   reader.finish();
   return yarn;
 }
@@ -30,6 +31,7 @@ renderer::YarnParameters read_yarn(const std::filesystem::path& file) {
 nlohmann::json to_json(const renderer::YarnParameters& yarn) {
   return {{"format", "threadstation/yarn"},
           {"version", 1},
+          {"origin", "reconstruction in the manner of Zhu et al. 2023"},
           {"fiber_count", yarn.fiber_count},
           {"radius_ratio", yarn.radius_ratio},
           {"eta", yarn.eta},

@@ -68,7 +68,7 @@ std::string write_spool(const json& form, const Workspace& workspace, const fs::
   const json document = spool_of(form, sample, rig);
   try {
     const Spool spool = parse_spool(document, "the spool");
-    if (spool.simulation) fiber_centres(spool, spool.simulation->seed);
+    if (spool.simulation) spool_fibers(spool);
   } catch (const std::runtime_error& problem) {
     throw Refused(400, problem.what());
   }

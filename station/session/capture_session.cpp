@@ -165,6 +165,7 @@ RunState begin_session(const CaptureRequest& request, const NewSession& made_of)
 
 RunState resume_session(const CaptureRequest& request) {
   const SessionFile asked = read_session_file(request.session);
+  require_captured(asked, request.session, "there is nothing to go on with");
   steps_to_reshoot(asked.plan, request.reshoot);  // before any device is asked
   const RigCalibration calibration = read_calibration(request.session / "calibration");
   RigDevices devices = open_rig(asked.rig, asked.spool, request.asked);

@@ -9,12 +9,16 @@
 namespace station {
 namespace {
 
-constexpr std::array<const char*, 5> kClothPictures{"swatch", "cylinder", "skirt", "pleats", "drape"};
+constexpr std::array<const char*, 6> kClothPictures{"swatch", "cylinder", "skirt", "pleats", "drape", "mesh"};
 
 }  // namespace
 
 std::filesystem::path results_of(const std::filesystem::path& session, const std::string& model) {
   return model == "thread" ? session / "result" : session / "result" / model;
+}
+
+std::string shown_model(const std::string& model) {
+  return model == "yarn" ? "yarn reconstruction" : model;
 }
 
 std::filesystem::path baseline_fit_of(const std::filesystem::path& session, const std::string& model) {

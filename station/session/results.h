@@ -11,6 +11,8 @@ namespace station {
 // The folder of what a fit of `model` ("thread", "bundle", "fiber", "yarn", "paper") found. Neither it nor any file
 // that these functions name needs to be there.
 std::filesystem::path results_of(const std::filesystem::path& session, const std::string& model);
+// The model's name for people, in tables, plots and reports: the yarn is a reconstruction (renderer/scattering/yarn.h).
+std::string shown_model(const std::string& model);
 // The report of the fit of a baseline; that of a thread is part of its thread file.
 std::filesystem::path baseline_fit_of(const std::filesystem::path& session, const std::string& model);
 // The fitted model, and the thread among them.

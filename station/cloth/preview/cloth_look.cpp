@@ -114,7 +114,7 @@ class Studio {
 
  private:
   SceneFile scene_of(const ClothView& view) const {
-    return parse_scene(scene_on_stage(stage_, woven_.files, view, scale_, woven_.fibers), stage_.scene, folder_);
+    return parse_scene(scene_on_stage(stage_, {woven_.files, woven_.fibers}, view, scale_), stage_.scene, folder_);
   }
 
   fs::path folder_;

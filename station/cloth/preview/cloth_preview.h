@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,9 @@ namespace station {
 
 struct ClothPreviewRequest {
   ThreadsToWeave cloth;
-  std::vector<std::string> shapes{"swatch", "cylinder"};  // cloth_shapes()
+  std::vector<std::string> shapes{"swatch", "cylinder"};  // of cloth_shapes(), or mesh files (renderer::read_mesh)
+  std::optional<double> mesh_unit_mm{};                   // of the meshes; nothing: glTF's metres, others' millimetres
+  std::string lights = "studio";                          // of cloth_lights(), or a picture of surroundings (EXR)
   ClothView view{};
   int size_px = 0;     // the longer side of each picture; 0: as a screen shows it
   bool quick = false;  // smaller pictures of fewer samples

@@ -40,6 +40,65 @@ struct Turning {
   }
 };
 
+// All lengths of the stage times `factor`, about the origin; what is lit stays as bright.
+void enlarge(json& scene, double factor) {
+  const auto times = [](json& part, const char* key, double by) {
+    if (!part.contains(key)) return;
+    json& value = part[key];
+    if (value.is_number()) value = value.get<double>() * by;
+    if (value.is_array())
+      for (json& number : value) number = number.get<double>() * by;
+  };
+  for (const char* key : {"eye_mm", "target_mm", "aperture_mm", "focus_mm"}) times(scene["camera"], key, factor);
+  for (json& lamp : scene["lights"]) {
+    for (const char* key : {"position_mm", "target_mm", "radius_mm", "width_mm", "height_mm"}) times(lamp, key, factor);
+    times(lamp, "intensity_mm2", factor * factor);
+  }
+  for (json& object : scene["objects"])
+    for (const char* key : {"radius_mm", "height_mm", "bend_mm", "width_mm"}) times(object, key, factor);
+  times(scene["white_card"], "position_mm", factor);
+}
+
+void put_mesh(json& scene, const StagedMesh& mesh) {
+  constexpr double kOwn_mm = 1000;  // the diagonal of the cloth that the stage was made for
+  const Vector3d middle = mesh.box_mm.center();
+  enlarge(scene, mesh.box_mm.diagonal().norm() / kOwn_mm);
+  json& cloth = scene["cloths"].at(0);
+  cloth["shape"] = {{"kind", "mesh"}, {"file", mesh.file}, {"unit_mm", mesh.unit_mm}};
+  Eigen::Isometry3d on_floor = Eigen::Isometry3d::Identity();
+  on_floor.translation() = Vector3d(-middle.x(), -middle.y(), -mesh.box_mm.min().z());
+  cloth["world_from_cloth"] = to_json(on_floor);
+  scene["camera"]["target_mm"] = to_json(Vector3d(0, 0, mesh.box_mm.sizes().z() / 2));
+}
+
+// The scene's first lamp alone, moved to where it lights from the asked side; or none but the surroundings.
+void light(json& scene, const std::string& lights) {
+  json& lamps = scene["lights"];
+  if (lights == "even") {
+    lamps = {{{"kind", "environment"}, {"radiance", 1}, {"visible", false}}};
+    return;
+  }
+  if (!std::ranges::count(cloth_lights(), lights)) {
+    lamps = {{{"kind", "environment"}, {"file", lights}}};
+    return;
+  }
+  const json& camera = scene["camera"];
+  const Vector3d middle = vector_of(camera["target_mm"]),
+                 up = vector_of(camera.value("up", json{0, 0, 1})).normalized(),
+                 towards_eye = (vector_of(camera["eye_mm"]) - middle).normalized(),
+                 right = up.cross(towards_eye).normalized();
+  const auto placed = std::ranges::find_if(lamps, [](const json& lamp) { return lamp.contains("position_mm"); });
+  json lamp = placed == lamps.end() ? json() : *placed;
+  if (lamp.is_null()) throw std::logic_error("a stage without a lamp that stands somewhere");
+  const double distance = (vector_of(lamp["position_mm"]) - middle).norm();
+  Vector3d direction = towards_eye + 0.3 * up;
+  if (lights == "side") direction = right + 0.25 * towards_eye + 0.2 * up;
+  if (lights == "behind") direction = -towards_eye + 0.5 * up;
+  lamp["position_mm"] = to_json(Vector3d(middle + distance * direction.normalized()));
+  lamp["visible"] = false;
+  lamps = json::array({lamp});
+}
+
 bool is_floor(const json& object) {
   return object["kind"] == "plane" || object["kind"] == "backdrop";
 }
@@ -62,6 +121,8 @@ std::vector<std::string> cloth_shapes() {
 }
 
 const ClothStage& cloth_stage(const std::string& shape) {
+  static const ClothStage of_meshes{kMeshShape, "satin_drape.json", 720, 540, 64};
+  if (shape == kMeshShape) return of_meshes;
   const auto found = std::ranges::find(cloth_stages(), shape, &ClothStage::shape);
   if (found == cloth_stages().end())
     throw std::runtime_error("there is no shape '" + shape +
@@ -99,15 +160,21 @@ std::optional<std::string> problem_of(const ClothView& view) {
   return std::nullopt;
 }
 
-json scene_on_stage(const ClothStage& stage, const std::array<std::string, 2>& threads, const ClothView& view,
-                    double scale, const std::string& fibers) {
+const std::vector<std::string>& cloth_lights() {
+  static const std::vector<std::string> lights{"studio", "front", "side", "behind", "even"};
+  return lights;
+}
+
+json scene_on_stage(const ClothStage& stage, const OnStage& shown, const ClothView& view, double scale) {
   json scene = read_json_file(data_folder() / "scenes" / stage.scene);
   scene["name"] = "the thread as a " + stage.shape;
-  scene["threads"] = threads;
+  scene["threads"] = shown.threads;
+  if (shown.mesh) put_mesh(scene, *shown.mesh);
+  if (shown.lights != "studio") light(scene, shown.lights);
   for (json& cloth : scene["cloths"]) {
     for (const char* key : {"draft", "warp_threads", "weft_threads"}) cloth.erase(key);
     cloth["patch"] = "patch.json";
-    if (!fibers.empty()) cloth["fibers"] = fibers;
+    if (!shown.fibers.empty()) cloth["fibers"] = shown.fibers;
   }
   json& camera = scene["camera"];
   const Turning turning{.middle = vector_of(camera["target_mm"]),

@@ -2,6 +2,7 @@
 // are replaced, and the camera and the lamps are turned about the middle of the picture.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -18,7 +19,8 @@ struct ClothStage {
 };
 
 const std::vector<ClothStage>& cloth_stages();
-std::vector<std::string> cloth_shapes();  // the stages' names
+std::vector<std::string> cloth_shapes();           // the stages' names
+inline constexpr const char* kMeshShape = "mesh";  // a stage for meshes, which is none of these
 // Errors: std::runtime_error, one line, for a shape that is none of them.
 const ClothStage& cloth_stage(const std::string& shape);
 double scale_to(const ClothStage& stage, int longer_side_px);
@@ -38,9 +40,27 @@ ClothView cloth_view_of(const nlohmann::json& document);
 // The line that refuses a view beyond 360 degrees or a zoom outside 0.25 to 20; nothing for a view that can be shown.
 std::optional<std::string> problem_of(const ClothView& view);
 
-// The scene of patch.json, beside which it is written, with the threads of warp and weft. `scale`: of the picture's
-// size. `fibers`: what is seen of them close by (documents/cloth_fibers.h), or nothing.
-nlohmann::json scene_on_stage(const ClothStage& stage, const std::array<std::string, 2>& threads, const ClothView& view,
-                              double scale, const std::string& fibers = {});
+// Where the light comes from: "studio" (the ready scene's lamps), "front", "side", "behind" (its first lamp alone,
+// moved) or "even" (from everywhere); besides, a picture of all surroundings (EXR; scenes/README.md).
+const std::vector<std::string>& cloth_lights();
+
+// A mesh in the place of a stage's own cloth: the stage is as much larger as the mesh is larger than that, and its
+// lowest point stands on the floor.
+struct StagedMesh {
+  std::string file;  // as the scene names it
+  double unit_mm = 1;
+  Eigen::AlignedBox3d box_mm{};
+};
+
+// What is put on a stage.
+struct OnStage {
+  std::array<std::string, 2> threads;  // of warp and weft
+  std::string fibers{};                // what is seen of them close by (documents/cloth_fibers.h), or nothing
+  std::string lights = "studio";       // one of cloth_lights(), or a picture, as the scene names it
+  std::optional<StagedMesh> mesh{};
+};
+
+// The scene of patch.json, beside which it is written. `scale`: of the picture's size.
+nlohmann::json scene_on_stage(const ClothStage& stage, const OnStage& shown, const ClothView& view, double scale);
 
 }  // namespace station

@@ -6,6 +6,7 @@
 
 #include "station/cloth/cloth_colour.h"
 #include "station/cloth/draft_of_one_thread.h"
+#include "station/cloth/patch_picture.h"
 #include "station/documents/bundle_file.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/patch_file.h"
@@ -117,6 +118,10 @@ WovenThreads weave_threads(const ThreadsToWeave& wanted, ProgressStyle progress_
   woven.made_of["threads"] = {read_json_file(own[kWarp]).value("name", ""),
                               read_json_file(own[kWeft]).value("name", "")};
   woven.files = write_threads(wanted, own, patch, progress_style, woven.made_of);
+  ThreadColours colours = colours_of_threads({own[kWarp], own[kWeft]});
+  for (const auto& [colour, system] : {std::pair{wanted.warp_colour, kWarp}, {wanted.weft_colour, kWeft}})
+    if (colour) colours[system] = {(*colour)[0], (*colour)[1], (*colour)[2]};
+  write_text_file(folder / "drawing.svg", draw_draft_svg(draft, colours));
   return woven;
 }
 

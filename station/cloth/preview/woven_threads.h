@@ -30,9 +30,9 @@ struct WovenThreads {
   std::string fibers{};                           // as they were asked for
 };
 
-// Writes draft.json and patch.json, and the threads that are coloured or to be copied. Errors: those of the files read
-// and of weave_watched; std::runtime_error, one line, when a bundle is to be coloured, the threads' colours are those
-// of different cameras, or the folder cannot be made.
+// Writes draft.json, patch.json, drawing.svg (the draft in the threads' colours), and the threads that are coloured or
+// to be copied. Errors: those of the files read and of weave_watched; std::runtime_error, one line, when a bundle is to
+// be coloured, the threads' colours are those of different cameras, or the folder cannot be made.
 WovenThreads weave_threads(const ThreadsToWeave& wanted, ProgressStyle progress_style);
 
 }  // namespace station

@@ -35,6 +35,8 @@ namespace {
 
 constexpr double kMostSaturated = 0.05, kSomeSaturated = 0.005, kUnderExposed = 0.02;
 constexpr double kLeastSharpness = 0.4, kLittleSharpness = 0.6;  // of the median of the views before
+constexpr double kLeastBesideEdges = 0.15;                       // the same where printed edges are as sharp as before
+constexpr double kSofter = 1.2;                                  // blur of printed edges over that of the views before
 constexpr std::size_t kFewestCompared = 3;
 constexpr double kShadowsPercentile = 10;
 constexpr double kMostMotion_px = 0.2;
@@ -279,12 +281,31 @@ class CaptureChecks::Work {
     if (before.size() >= kFewestCompared) {
       ratio = here / calibration::median(before);
       grade = ratio < kLeastSharpness ? Grade::bad : ratio < kLittleSharpness ? Grade::doubtful : Grade::good;
+      if (grade != Grade::good && edges_are_as_sharp(seen))
+        grade = ratio < kLeastBesideEdges ? Grade::doubtful : Grade::good;
     }
     found("focus", grade, here,
           "'" + seen.step.id + "' shows " + percent_text(ratio) + " of the detail of the views before it; " +
               (grade == Grade::bad ? "see that nothing touched the lens or stands before it, then resume"
                                    : "look at it, and take it again with --reshoot if it is soft"));
     if (grade != Grade::bad) before.push_back(here);
+  }
+
+  // Threads that face the lamp shade each other less, and thin or glossy ones then have a third of the detail that they
+  // have elsewhere. Printed edges beside them have not.
+  bool edges_are_as_sharp(const Seen& seen) const {
+    const std::optional<double> here = edge_blur_px(seen.grey, seen.tags);
+    if (!here) return false;
+    std::vector<double> before;
+    for (const auto& [id, record] : taken_pictures(session_.records())) {
+      if (before.size() == kFewestCompared) break;
+      if (record.kind != StepKind::view || record.lamp != seen.step.lamp || record.mounting != seen.step.mounting ||
+          id == seen.step.id)
+        continue;
+      const cv::Mat1f grey = calibration::linear_grey(calibration::read_sensor_file(session_.path() / record.file));
+      if (const auto blur = edge_blur_px(grey, calibration::detect_tags(grey))) before.push_back(*blur);
+    }
+    return !before.empty() && *here < kSofter * calibration::median(before);
   }
 
   void remember_sharpness(rig::Lamp lamp, rig::Mounting mounting, const Verdict& verdict) {

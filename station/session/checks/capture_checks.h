@@ -24,7 +24,8 @@ namespace station {
 //   tags         number of tags seen; in pose pictures the holder's, doubtful below 2
 //   focus        pose pictures: px of blur of printed edges, doubtful above 2, bad above 3; views: detail of the
 //                threads (sharpness(), picture_measures.h), doubtful below 60 %, bad below 40 % of the median of three
-//                or more earlier views under the same lamp and mounting
+//                or more earlier views under the same lamp and mounting; good down to 15 %, and never bad, where the
+//                edges of printed tags are as sharp as in those
 //   saturation   % of the window's pixels; doubtful above 0.5, bad above 5
 //   exposure     % of the range that the brightest threads reach; bad below 2
 //   shadows      % of the range below which a tenth of the window lies; never bad

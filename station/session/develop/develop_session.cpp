@@ -34,13 +34,17 @@
 #include "station/documents/session_file.h"
 #include "station/output/display.h"
 #include "station/session/checks/capture_checks.h"
+#include "station/session/develop/develop_measured.h"
 #include "station/session/develop/sheet_width.h"
+#include "station/session/develop/view_files.h"
 #include "station/session/record/bracket.h"
 #include "station/session/record/picture_record.h"
 
 namespace station {
 namespace {
-constexpr int kMaskSamples = 8;
+constexpr const char* kDeveloped =
+    "linear camera RGB, radiance unit (full scale per second); dark subtracted, exposures merged and divided by their "
+    "times, flat-fielded, distortion removed; to be divided by the view's lamp_strength in views.json";
 constexpr double kBytesPerPixel = 75;  // of a view while it is developed: its planes counted, not measured
 
 using Pictures = std::map<std::string, PictureRecord>;
@@ -73,8 +77,8 @@ DevelopedView place_view(const PlanStep& step, const PictureRecord& picture, con
   const Eigen::Isometry3d holder_from_world = world_from_holder.inverse();
   developed.mounting = step.mounting;
   developed.pose_rms_px = mounted.rms_px;
-  developed.image_file = "linear/" + step.id + ".exr";
-  developed.mask_file = "masks/" + step.id + ".png";
+  developed.image_file = image_file_of(step.id);
+  developed.mask_file = mask_file_of(step.id);
   inversion::View& view = developed.view;
   view.id = step.id;
   view.transmission = is_transmission(step);
@@ -140,18 +144,6 @@ void note_lamp_changes(const std::vector<ChipView>& chips, std::vector<Developed
   for (std::size_t i = 0; i < views.size(); ++i) views[i].lamp_strength = strengths.at(i);
 }
 
-void write_view(const std::filesystem::path& session, const DevelopedView& developed) {
-  const renderer::ImageHeader header{
-      {"threadstation/content",
-       "linear camera RGB, radiance unit (full scale per second); dark subtracted, "
-       "exposures merged and divided by their times, flat-fielded, distortion removed; to be divided by "
-       "the view's lamp_strength in views.json"},
-      {"threadstation/view", developed.view.id}};
-  // Zip would make noisy pictures only 6 % smaller and take seconds for each of 24 MP.
-  renderer::write_exr(session / developed.image_file, developed.view.image, header, renderer::ExrCompression::none);
-  renderer::write_png(session / developed.mask_file, developed.view.mask);
-}
-
 // How far the threads may be from where the calibration puts them, in pixels: two standard errors.
 int edge_px(const RigCalibration& calibration, const MountedHolder& mounted) {
   double lens_px = 0;
@@ -167,22 +159,6 @@ cv::Mat1b eroded(const cv::Mat1b& mask, int edge) {
   cv::erode(mask, smaller, cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * edge + 1, 2 * edge + 1}), {-1, -1}, 1,
             cv::BORDER_CONSTANT, cv::Scalar(0));
   return smaller;
-}
-
-// The mask's outline on the photograph, at most 1200 pixels wide.
-cv::Mat3b overlay(const inversion::View& view, const std::array<double, 9>& colour) {
-  constexpr int kMargin_px = 24, kWidest_px = 1200;
-  const cv::Rect box = threads_box(view.mask, kMargin_px);
-  cv::Mat3f part = view.image(box).clone();
-  cv::Mat1b mask = view.mask(box).clone();
-  if (box.width > kWidest_px) {
-    const cv::Size size(kWidest_px, std::max(1, box.height * kWidest_px / box.width));
-    cv::resize(part, part, size, 0, 0, cv::INTER_AREA);
-    cv::resize(mask, mask, size, 0, 0, cv::INTER_NEAREST);
-  }
-  cv::Mat3b picture = display(part, display_scale(part, mask), colour);
-  draw_outline(picture, mask);
-  return picture;
 }
 
 struct DevelopedPicture {
@@ -229,9 +205,7 @@ DevelopedPicture develop_view(const std::filesystem::path& session, const Sessio
   developed.saturated_fraction =
       static_cast<double>(cv::countNonZero(picture.saturated & view.mask)) / developed.masked_pixels;
   if (!view.transmission && !asked.spool.fabric) result.sheet_width_mm = sheet_width_mm(view.image, view.camera, spool);
-  write_view(session, developed);
-  renderer::write_png(session / "masks" / (view.id + "-overlay.png"),
-                      overlay(view, calibration.linear_srgb_from_camera));
+  write_view(session, developed, kDeveloped, calibration.linear_srgb_from_camera);
   view.image.release();
   view.mask.release();
   return result;
@@ -305,14 +279,8 @@ void note_what_views_share(const SessionFile& asked, const std::vector<Developed
   if (developed.sheet_width_mm) require_expected_width(*developed.sheet_width_mm, asked.spool);
 }
 
-}  // namespace
-
-DevelopedViews develop_session(const std::filesystem::path& session, ProgressStyle progress_style) {
-  const SessionFile asked = read_session_file(session);
-  FileSystem disk;
-  const OpenFile lock = lock_folder(session, disk);  // nobody captures into it meanwhile
-  make_folder(session / "linear");
-  make_folder(session / "masks");
+DevelopedViews develop_captured(const std::filesystem::path& session, const SessionFile& asked,
+                                ProgressStyle progress_style) {
   RigCalibration calibration = read_calibration(session / "calibration");
   fill_in_sensor_maps(session / "calibration", calibration);
   const Pictures pictures = taken_pictures(read_journal(session / "journal.jsonl").records);
@@ -334,10 +302,23 @@ DevelopedViews develop_session(const std::filesystem::path& session, ProgressSty
     ++done;
   });
   note_what_views_share(asked, found, developed);
+  progress.finish(std::to_string(views.size()) + " views");
+  return developed;
+}
+
+}  // namespace
+
+DevelopedViews develop_session(const std::filesystem::path& session, ProgressStyle progress_style) {
+  const SessionFile asked = read_session_file(session);
+  FileSystem disk;
+  const OpenFile lock = lock_folder(session, disk);  // nobody captures into it meanwhile
+  make_folder(session / "linear");
+  make_folder(session / "masks");
+  const DevelopedViews developed = asked.measured ? develop_measured(session, asked, progress_style)
+                                                  : develop_captured(session, asked, progress_style);
   write_json_file(session / "linear" / "views.json", to_json(developed));
   write_manifest(session / "linear", disk);
   write_manifest(session / "masks", disk);
-  progress.finish(std::to_string(views.size()) + " views");
   return developed;
 }
 

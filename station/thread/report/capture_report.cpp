@@ -123,7 +123,7 @@ std::string plots(const std::vector<PictureRecord>& pictures, const std::string&
 }  // namespace
 
 std::string capture_facts(const std::filesystem::path& session, const SessionFile& asked,
-                          const RigCalibration& calibration) {
+                          const RigCalibration* calibration) {
   const Records records = records_of(session);
   std::vector<std::pair<std::string, std::string>> facts = {
       {"state", state_name(state_of(records, folder_in_use(session)))},
@@ -154,9 +154,10 @@ std::string capture_facts(const std::filesystem::path& session, const SessionFil
                                      std::to_string(1 + count_of(records, "resume")) + " run(s), " +
                                      std::to_string(count_of(records, "refused")) + " picture(s) refused, " +
                                      std::to_string(count_of(records, "discarded")) + " withdrawn");
-  facts.emplace_back("calibration", calibration.utc + ", " + number_text(days_between(calibration.utc, asked.utc), 1) +
-                                        " days old, SHA-256 " +
-                                        sha256_of_file(session / "calibration" / "calibration.json"));
+  if (calibration)
+    facts.emplace_back("calibration",
+                       calibration->utc + ", " + number_text(days_between(calibration->utc, asked.utc), 1) +
+                           " days old, SHA-256 " + sha256_of_file(session / "calibration" / "calibration.json"));
   facts.emplace_back("software", asked.software);
   return kStyle + fact_table(facts);
 }

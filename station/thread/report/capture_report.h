@@ -11,8 +11,9 @@
 namespace station {
 
 // Three sections as HTML, made from session.json and the journal alone; checks that were not made are left out.
+// `calibration`: of the session's rig; null where its views were measured elsewhere.
 std::string capture_facts(const std::filesystem::path& session, const SessionFile& asked,
-                          const RigCalibration& calibration);
+                          const RigCalibration* calibration);
 std::string verdict_section(const std::filesystem::path& session, const SessionFile& asked);
 std::string checksum_section(const std::filesystem::path& session);
 

@@ -1,6 +1,7 @@
 #include "station/thread/report/session_report.h"
 
 #include <map>
+#include <optional>
 
 #include "renderer/picture/image_file.h"
 #include "station/bench/calibrate/calibration_report.h"
@@ -71,8 +72,9 @@ std::string view_tiles(const DevelopedViews& developed, const Pictures& pictures
 
 std::filesystem::path write_session_report(const std::filesystem::path& session) {
   const SessionFile asked = read_session_file(session);
-  const RigCalibration calibration = read_calibration(session / "calibration");
-  std::string body = capture_facts(session, asked, calibration);
+  std::optional<RigCalibration> calibration;
+  if (!asked.measured) calibration = read_calibration(session / "calibration");
+  std::string body = capture_facts(session, asked, calibration ? &*calibration : nullptr);
   if (std::filesystem::exists(session / "linear" / "views.json")) {
     make_folder(session / "result");
     DevelopedViews developed = read_views(session);
@@ -81,6 +83,8 @@ std::filesystem::path write_session_report(const std::filesystem::path& session)
     const Pictures pictures = taken_pictures(read_journal(session / "journal.jsonl").records);
     body += view_tiles(developed, pictures, false) + view_tiles(developed, pictures, true);
     renderer::write_png(session / "result" / "contact_sheet.png", contact_sheet(developed));
+    if (const cv::Mat3b models = models_picture(session, developed); !models.empty())
+      renderer::write_png(session / "result" / "models.png", models);
     if (const cv::Mat3b overview = overview_picture(session, developed); !overview.empty())
       renderer::write_png(session / "result" / "overview.png", overview);
     FileSystem disk;
@@ -89,7 +93,7 @@ std::filesystem::path write_session_report(const std::filesystem::path& session)
     body += "<p>The views have not been developed yet: threadstation develop makes their pictures and masks.</p>\n";
   }
   body += verdict_section(session, asked);
-  body += "<h2>Calibration</h2>\n" + calibration_section(calibration);
+  if (calibration) body += "<h2>Calibration</h2>\n" + calibration_section(*calibration);
   body += checksum_section(session);
   const std::filesystem::path file = session / "report.html";
   write_text_file(file, html_page("Thread session: " + asked.spool.name, body));

@@ -6,7 +6,8 @@
 
 namespace station {
 
-// Writes <session>/report.html, self-contained, and <session>/result/contact_sheet.png; returns the report's path. A
+// Writes <session>/report.html, self-contained, <session>/result/contact_sheet.png, and of a fitted session
+// <session>/result/models.png (thread_report.h); returns the report's path. A
 // session that has not been developed yet has no contact sheet. Errors: std::runtime_error when a file of the session
 // is missing.
 std::filesystem::path write_session_report(const std::filesystem::path& session);

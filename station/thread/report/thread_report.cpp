@@ -79,7 +79,7 @@ std::string model_table(const std::vector<FittedModel>& models) {
       "<th>reflection</th><th>transmission</th><th>held-out views</th></tr>\n";
   std::string differing;
   for (const FittedModel& model : models) {
-    table += "<tr><th>" + model.name + "</th>";
+    table += "<tr><th>" + shown_model(model.name) + "</th>";
     for (const char* key :
          {"relative_rmse", "relative_rmse_reflection", "relative_rmse_transmission", "relative_rmse_held_out"}) {
       const auto found = model.fit.find(key);
@@ -89,7 +89,7 @@ std::string model_table(const std::vector<FittedModel>& models) {
     }
     table += "</tr>\n";
     if (held_out_of(model) != held_out)
-      differing += "<p class=\"doubt\">The " + model.name +
+      differing += "<p class=\"doubt\">The " + shown_model(model.name) +
                    " was fitted with other views held out than the thread: fit both with the same --hold-out to "
                    "compare them.</p>\n";
   }
@@ -113,7 +113,7 @@ std::string view_figures(const std::filesystem::path& session, const DevelopedVi
   for (const FittedModel& model : models) {
     // A baseline may have been fitted before the session was developed again with other views.
     if (model.name != "thread" && !std::filesystem::exists(fitted_file_of(session, view.id, model.name))) {
-      figures += "<figure><figcaption>" + model.name + ": not fitted to this view</figcaption></figure>\n";
+      figures += "<figure><figcaption>" + shown_model(model.name) + ": not fitted to this view</figcaption></figure>\n";
       continue;
     }
     const FittedTwins twins = read_twins(session, view, model.name);
@@ -125,7 +125,7 @@ std::string view_figures(const std::filesystem::path& session, const DevelopedVi
                 ": photographed<br>" + describe(twins.exposure) + "</figcaption></figure>\n";
     figures += "<figure>" + shown(twins.fitted, model.name) +
                shown(residual_picture(view, twins, model.fit.at("block_px").get<int>()), model.name + " residual") +
-               "<figcaption>" + model.name + ", and minus photographed (grey is none)<br>" +
+               "<figcaption>" + shown_model(model.name) + ", and minus photographed (grey is none)<br>" +
                figures_of(model, view.id) + "</figcaption></figure>\n";
   }
   return figures;
@@ -166,6 +166,42 @@ std::string cloth_section(const std::filesystem::path& session, const DevelopedV
     html += "<figure>" + embedded_image(shown_cloth(file, 0, developed.linear_srgb_from_camera), file.stem().string()) +
             "<figcaption>" + escaped(file.stem().string()) + "</figcaption></figure>\n";
   return html.empty() ? html : "<h2>Predicted cloth</h2>\n<div class=\"sheet\">\n" + html + "</div>\n";
+}
+
+std::vector<std::string> fitted_model_names(const std::filesystem::path& session) {
+  std::vector<std::string> names;
+  if (!std::filesystem::exists(thread_file_of(session))) return names;
+  for (const FittedModel& model : fitted_models(session, read_thread(thread_file_of(session))))
+    names.push_back(model.name);
+  return names;
+}
+
+cv::Mat3b models_picture(const std::filesystem::path& session, const DevelopedViews& developed) {
+  const cv::Size kTile(180, 120);
+  constexpr int kGap_px = 8;
+  constexpr std::size_t kViewsPerRow = 6;
+  const std::vector<std::string> models = fitted_model_names(session);
+  if (models.empty()) return {};
+  const auto tiles = static_cast<int>(models.size() + 1), views = static_cast<int>(developed.views.size()),
+             per_row = static_cast<int>(kViewsPerRow), rows = (views + per_row - 1) / per_row;
+  const int row_px = tiles * kTile.height + kGap_px;
+  cv::Mat3b sheet(rows * row_px - kGap_px, std::min(views, per_row) * kTile.width, cv::Vec3b(255, 255, 255));
+  for (int i = 0; i < views; ++i) {
+    const inversion::View& view = developed.views[static_cast<std::size_t>(i)].view;
+    const int left = i % per_row * kTile.width, top = i / per_row * row_px, stops = exposure_of(view).stops;
+    const auto place = [&](const cv::Mat3f& picture, const FittedTwins& twins, int row) {
+      fitted_into(display(picture, twins.exposure, developed.linear_srgb_from_camera)(twins.box), kTile)
+          .copyTo(sheet(cv::Rect({left, top + row * kTile.height}, kTile)));
+    };
+    for (int row = 1; row < tiles; ++row) {
+      const std::string& model = models[static_cast<std::size_t>(row - 1)];
+      if (!std::filesystem::exists(fitted_file_of(session, view.id, model))) continue;  // fitted to other views
+      const FittedTwins twins = read_twins(session, view, model, stops);
+      place(twins.photographed, twins, 0);
+      place(twins.fitted, twins, row);
+    }
+  }
+  return sheet;
 }
 
 cv::Mat3b overview_picture(const std::filesystem::path& session, const DevelopedViews& developed) {

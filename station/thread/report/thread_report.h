@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "station/documents/views_file.h"
 
@@ -13,6 +14,11 @@ namespace station {
 std::string thread_section(const std::filesystem::path& session, const DevelopedViews& developed);
 // The section with the pictures of result/cloth as HTML; empty when there are none.
 std::string cloth_section(const std::filesystem::path& session, const DevelopedViews& developed);
+
+// Of each view the photograph and below it its twins by the fitted models, in the order of fitted_model_names and at
+// one exposure, as in figures 6 and 7; six views to a row. Empty without a thread.
+std::vector<std::string> fitted_model_names(const std::filesystem::path& session);
+cv::Mat3b models_picture(const std::filesystem::path& session, const DevelopedViews& developed);
 
 // The picture of the README: two photographs beside their fitted twins, and the cloth; empty without a thread and a
 // cloth.

@@ -186,7 +186,7 @@ std::string error_table(const DistributionFits& fits) {
   std::string table =
       "relative L2 errors in percent; yarn: reconstruction in the manner of Zhu et al. 2023; bound: a free forward\n"
       "lobe and a uniform rest at each angle\n"
-      "                  |        thread model        |       yarn baseline        |\n"
+      "                  |        thread model        |    yarn reconstruction     |\n"
       " theta absorption | separate   joint  all abs. | separate   joint  all abs. |   bound\n";
   for (std::size_t i = 0; i < fits.distributions.size(); ++i) {
     const AzimuthalData& d = fits.distributions[i].data;

@@ -112,7 +112,7 @@ PlotSheet figure_5(const DistributionFits& fits) {
       panel.lines = {azimuth_line("simulated", data.density, PlotStyle::line, 7),
                      azimuth_line("thread model", jointly ? joint.thread.densities[i] : separate.thread.densities[0],
                                   PlotStyle::line, 1),
-                     azimuth_line("yarn baseline", jointly ? joint.yarn.densities[i] : separate.yarn.densities[0],
+                     azimuth_line("yarn reconstruction", jointly ? joint.yarn.densities[i] : separate.yarn.densities[0],
                                   PlotStyle::dashed, 2)};
       panel.y_range = std::pair{0.0, 1.4 * data.density.maxCoeff()};
       sheet.panels.push_back(panel);

@@ -23,7 +23,7 @@ std::string made_from(const SpoolPhotographs& request, const SimulatedFibers& fi
 
 PhotographedSpool photograph_spool(const RigFile& rig, const Spool& spool, const SpoolPhotographs& request,
                                    const std::function<void(const std::string&, double)>& step) {
-  const renderer::CurveSet fibers = spool_fibers(spool);
+  const std::vector<renderer::CurveSet> fibers = spool_fibers(spool);
   const std::string origin = made_from(request, *spool.simulation);
   PhotographedSpool made{.views = synthetic_views(rig, spool.wrapping, kPooledWidth_px, kPooledHeight_px),
                          .pictures = {}};

@@ -124,9 +124,9 @@ std::vector<inversion::View> cylinder_views(const RigFile& rig, const renderer::
 }
 
 cv::Mat3f photograph(const inversion::View& view, const inversion::WrappedSpool& spool,
-                     const renderer::CurveSet& curves, const PhotographOptions& options) {
+                     const std::vector<renderer::CurveSet>& curves, const PhotographOptions& options) {
   renderer::Scene scene;
-  scene.curves.push_back(curves);
+  scene.curves = curves;
   scene.meshes.push_back(inversion::holder_frame(spool, kFrameAlbedo));
   scene.lights.push_back(inversion::sphere_light(view.light));
   const renderer::PathTracer tracer(std::move(scene));

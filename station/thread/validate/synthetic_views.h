@@ -50,7 +50,7 @@ struct PhotographOptions {
 
 // Path-traces a photograph: radiance inside the view's mask, without the sensor's noise.
 cv::Mat3f photograph(const inversion::View& view, const inversion::WrappedSpool& spool,
-                     const renderer::CurveSet& curves, const PhotographOptions& options);
+                     const std::vector<renderer::CurveSet>& curves, const PhotographOptions& options);
 
 struct SensedPicture {
   cv::Mat3f radiance;

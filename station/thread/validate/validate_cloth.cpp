@@ -19,6 +19,7 @@
 #include "station/output/display.h"
 #include "station/output/interrupt.h"
 #include "station/output/watched_work.h"
+#include "station/session/results.h"
 #include "station/thread/invert/fit_document.h"
 #include "station/thread/validate/photographed_spool.h"
 #include "station/thread/validate/seeds.h"
@@ -51,7 +52,7 @@ struct Woven {
 };
 
 void require_thread_of(const Spool& spool, double yarn_diameter_mm) {
-  simulated_fibers(spool);
+  bundled_fibers(spool);
   if (std::abs(spool.wrapping.thread_diameter_mm - yarn_diameter_mm) > 1e-6)
     throw std::runtime_error("spool \"" + spool.name + "\": its thread is " +
                              number_text(spool.wrapping.thread_diameter_mm, 3) + " mm thick and the draft's yarn " +
@@ -71,7 +72,7 @@ renderer::YarnPatch of_many_yarns(const renderer::YarnPatch& patch) {
 }
 
 renderer::BundleParameters true_bundle(const Spool& spool) {
-  const SimulatedFibers& fibers = simulated_fibers(spool);
+  const SimulatedFibers& fibers = bundled_fibers(spool);
   return {.fiber_count = fibers.fibers_per_thread,
           .radius_ratio = 2 * fibers.fiber_radius_mm / spool.wrapping.thread_diameter_mm,
           .fiber = fibers.scattering};
@@ -267,7 +268,7 @@ std::map<std::string, Summary> summaries(const std::vector<PredictedSample>& sam
     Summary& noise = sums["noise of the reference" + lit];
     ++noise.pictures, noise.delta_e += sample.noise_delta_e;
     for (const PredictedSample::OfModel& of : sample.models) {
-      Summary& sum = sums[of.model + lit];
+      Summary& sum = sums[shown_model(of.model) + lit];
       ++sum.pictures, sum.delta_e += of.comparison.mean_delta_e;
       for (const double brightness : of.comparison.brightness) {
         sum.off_percent += percent_off(brightness);
@@ -284,7 +285,7 @@ renderer::YarnPatch with_fibers_of(const renderer::YarnPatch& patch, const std::
   std::vector<renderer::Strands> bundles;
   for (const renderer::Yarn& yarn : patch.yarns) {
     const Spool& spool = spools.at(static_cast<std::size_t>(yarn.thread));
-    const SimulatedFibers& fibers = simulated_fibers(spool);
+    const SimulatedFibers& fibers = bundled_fibers(spool);
     const std::uint64_t seed = fibers.seed * kSeedsPerSpool + kFirstSeedOfCloth + bundles.size();
     const double scale = 2 * yarn.radius_mm / spool.wrapping.thread_diameter_mm;
     renderer::Strands& bundle =
@@ -304,13 +305,13 @@ std::string describe(const std::vector<PredictedSample>& samples) {
   std::string text =
       "CIEDE2000 of block averages, mean red, green and blue over the reference's (% off), and the highlight's column, "
       "width (px), height (of the reference's) and hue (deg)\n"
-      "weave            warp                       lamp   model        mean  95 % below   red green  blue  "
+      "weave            warp                       lamp   model                mean  95 % below   red green  blue  "
       "column  width  height   hue\n";
   const auto add_line = [&](const PredictedSample& of, const std::string& what, double mean, double most,
                             const std::array<double, 3>& brightness, const HighlightProfile& highlight, double unit) {
     char line[200];
     std::snprintf(line, sizeof line,
-                  "%-16s %-26s %-6s %-11s %5.2f  %10.2f %+5.1f %+5.1f %+5.1f  %6.0f %6.0f  %6.3f %5.0f\n",
+                  "%-16s %-26s %-6s %-19s %5.2f  %10.2f %+5.1f %+5.1f %+5.1f  %6.0f %6.0f  %6.3f %5.0f\n",
                   of.weave.c_str(), of.warp.c_str(), of.side.c_str(), what.c_str(), mean, most,
                   percent_off(brightness[0]), percent_off(brightness[1]), percent_off(brightness[2]), highlight.peak_px,
                   highlight.width_px, highlight.peak / unit, highlight.hue_deg);
@@ -321,8 +322,8 @@ std::string describe(const std::vector<PredictedSample>& samples) {
     const HighlightProfile& reference = sample.models.front().comparison.photograph;
     add_line(sample, "reference", sample.noise_delta_e, 0, {1, 1, 1}, reference, reference.peak);
     for (const PredictedSample::OfModel& of : sample.models)
-      add_line(sample, of.model, of.comparison.mean_delta_e, of.comparison.delta_e_95, of.comparison.brightness,
-               of.comparison.rendering, reference.peak);
+      add_line(sample, shown_model(of.model), of.comparison.mean_delta_e, of.comparison.delta_e_95,
+               of.comparison.brightness, of.comparison.rendering, reference.peak);
   }
   for (const auto& [what, sum] : summaries(samples)) {
     char line[200];

@@ -13,6 +13,7 @@
 #include "station/documents/reader.h"
 #include "station/output/interrupt.h"
 #include "station/output/progress.h"
+#include "station/session/results.h"
 #include "station/thread/invert/fit_document.h"
 #include "station/thread/validate/photographed_spool.h"
 #include "station/thread/validate/seeds.h"
@@ -134,7 +135,7 @@ std::vector<Variant> variants_of(const ValidateRequest& request, const RigFile& 
 }
 
 std::string label_of(const ValidatedModel& of) {
-  return name_of(of.model) + (of.calibrated ? "*" : "");
+  return shown_model(name_of(of.model)) + (of.calibrated ? "*" : "");
 }
 
 // The photographs of a spool and those of another draw of its fibers.
@@ -305,16 +306,17 @@ std::vector<ValidatedSpool> validate_fits(const ValidateRequest& request) {
 std::string describe(const std::vector<ValidatedSpool>& spools) {
   std::string text =
       "Relative RMSE over 8 x 8-block averages, %, without the noise of photograph and rendering\n"
-      "spool                      fibers  model    left out  reflection  transmission  fitted views  seconds\n";
+      "spool                      fibers  model                left out  reflection  transmission  fitted views  "
+      "seconds\n";
   std::map<std::string, std::vector<double>> by_model;
   for (const ValidatedSpool& spool : spools) {
     char line[160];
-    std::snprintf(line, sizeof line, "%-25s  %6d  %-7s  %8.1f  %10.1f  %12.1f\n", spool.name.c_str(),
+    std::snprintf(line, sizeof line, "%-25s  %6d  %-19s  %8.1f  %10.1f  %12.1f\n", spool.name.c_str(),
                   spool.fibers_per_thread, "draw", 100 * spool.draw, 100 * spool.draw_reflection,
                   100 * spool.draw_transmission);
     text += line;
     for (const ValidatedModel& m : spool.models) {
-      std::snprintf(line, sizeof line, "%-25s  %6d  %-7s  %8.1f  %10.1f  %12.1f  %12.1f  %7.1f\n", spool.name.c_str(),
+      std::snprintf(line, sizeof line, "%-25s  %6d  %-19s  %8.1f  %10.1f  %12.1f  %12.1f  %7.1f\n", spool.name.c_str(),
                     spool.fibers_per_thread, label_of(m).c_str(), 100 * m.relative_rmse, 100 * m.reflection,
                     100 * m.transmission, 100 * m.fitted_views, m.seconds);
       text += line;

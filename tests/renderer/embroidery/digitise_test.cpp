@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
+#include <random>
 #include <stdexcept>
 
 namespace renderer {
@@ -81,6 +83,68 @@ TEST(Digitise, AWideStrokeIsSatinAsWideAsItself) {
   const std::vector<Vector2d> points = needle(drawn({{5, -5}, {25, -5}}, 3));
   EXPECT_NEAR(static_cast<double>(points.size()), 2 * 20 / 0.35, 2);
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_NEAR(points[i].y(), i % 2 == 0 ? -3.5 : -6.5, 1e-9);
+}
+
+// Whether a place is inside of outlines, by the angles under which it sees them.
+bool inside(const std::vector<std::vector<Vector2d>>& area, const Vector2d& at) {
+  double winding = 0;
+  for (const auto& outline : area)
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const Vector2d a = outline[i] - at, b = outline[(i + 1) % outline.size()] - at;
+      winding += std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+    }
+  return std::abs(winding) > std::numbers::pi;
+}
+
+// Rings with a hole, drawn at random: the stitches lie within, along the direction, and cover the ring evenly.
+TEST(Digitise, AFilledShapeIsRowsOfStitchesAlongItsDirection) {
+  constexpr unsigned kSeed = 20261202;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
+  for (int trial = 0; trial < 5; ++trial) {
+    const double phase = between(0, 6), along = between(-3, 3);
+    const Vector2d middle(between(-40, 40), between(-40, 40));
+    const int lobes = static_cast<int>(between(2, 6));
+    ArtLine shape{.srgb = kRed, .along_rad = along};
+    for (const double size : {1.0, -0.4}) {  // the hole turns the other way
+      std::vector<Vector2d>& outline = shape.area.emplace_back();
+      for (int k = 0; k < 720; ++k) {
+        const double angle = (size < 0 ? -1 : 1) * 2 * std::numbers::pi * k / 720;
+        const double radius = std::abs(size) * (14 + 3 * std::cos(lobes * angle + phase));
+        outline.emplace_back(middle + radius * Vector2d(std::cos(angle), std::sin(angle)));
+      }
+    }
+    const Motif motif = digitise({.name = "ring", .lines = {shape}}, "motif");
+    const Vector2d direction(std::cos(along), std::sin(along));
+    double sewn_mm = 0, area_mm2 = 0;
+    int outside = 0, stitches = 0;
+    for (const StitchRun& run : motif.runs)
+      for (std::size_t i = 1; i < run.needle_points.size(); ++i) {
+        const Vector2d stitch = run.needle_points[i] - run.needle_points[i - 1];
+        EXPECT_LT(stitch.norm(), 4.7);
+        const bool in_row = std::abs(direction.x() * stitch.y() - direction.y() * stitch.x()) < 1e-6;
+        if (!in_row) continue;  // from one row to the next, along the outline
+        sewn_mm += stitch.norm(), ++stitches;
+        outside += !inside(shape.area, (run.needle_points[i] + run.needle_points[i - 1]) / 2);
+      }
+    constexpr double kCell_mm = 0.3;
+    for (double x = -18; x < 18; x += kCell_mm)
+      for (double y = -18; y < 18; y += kCell_mm)
+        area_mm2 += kCell_mm * kCell_mm * inside(shape.area, middle + Vector2d(x, y));
+    EXPECT_EQ(outside, 0) << "of " << stitches;
+    EXPECT_NEAR(sewn_mm * 0.35 / area_mm2, 1, 0.02);
+  }
+}
+
+TEST(Digitise, AShapeWithoutADirectionIsFilledAlongItsLongerSide) {
+  ArtLine shape{.srgb = kRed, .area = {{{0, 0}, {20, 20}, {19, 21}, {-1, 1}}}};
+  const Motif motif = digitise({.name = "bar", .lines = {shape}}, "motif");
+  ASSERT_EQ(motif.runs.size(), 1U);
+  const std::vector<Vector2d>& points = motif.runs[0].needle_points;
+  EXPECT_GT(longest(points), 3.5);
+  const Vector2d first = points[1] - points[0];
+  EXPECT_NEAR(std::abs(first.x()), std::abs(first.y()), 1e-6);
 }
 
 TEST(Digitise, NeighbouringLinesOfOneColourShareAThread) {

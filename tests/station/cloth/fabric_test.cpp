@@ -6,6 +6,7 @@
 
 #include "renderer/picture/image_file.h"
 #include "station/cloth/predict_fabric.h"
+#include "station/documents/fiber_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/views_file.h"
 #include "station/output/compare/compare_pictures.h"
@@ -113,6 +114,32 @@ TEST_F(FabricSession, LooksAsItsThreadsAndDraftPredictAndNotAsAnotherCloth) {
   }
   // The lamp's side is where the light is; the picture's left is the bench's -y.
   EXPECT_GT(predicted[0].comparison.photograph.peak_px, predicted[1].comparison.photograph.peak_px + 20);
+}
+
+// A cloth is the same whether its fabric names the threads or the caller does, and a baseline's is another.
+TEST_F(FabricSession, IsPredictedFromTheModelsThatOneGives) {
+  const json weave = read_spool_document(fabric_file()).at("weave");
+  for (const std::size_t k : {0U, 1U})
+    write_json_file(*folder / ("thread" + std::to_string(k) + ".json"), weave.at("threads").at(k));
+  const auto given = [&](const std::string& warp, const std::string& weft, const std::string& model) {
+    return predict_fabric({.session = session(),
+                           .warp = *folder / warp,
+                           .weft = *folder / weft,
+                           .model = model,
+                           .samples_per_pixel = 64,
+                           .progress_style = ProgressStyle::quiet});
+  };
+  const cv::Mat3f own = renderer::read_exr(predicted[0].prediction);
+  const std::vector<PredictedView> same = given("thread0.json", "thread1.json", "thread");
+  EXPECT_EQ(cv::norm(own, renderer::read_exr(same[0].prediction), cv::NORM_INF), 0);
+  std::filesystem::create_directories(*folder / "fitted" / "result" / "fiber");
+  write_json_file(*folder / "fitted" / "result" / "fiber" / "fiber.json", to_json(renderer::FiberParameters{}));
+  const std::vector<PredictedView> fiber = given("fitted", "fitted", "fiber");
+  EXPECT_EQ(fiber[0].prediction.parent_path(), session() / "result/fabric/fiber");
+  EXPECT_GT(fiber[0].comparison.mean_delta_e, 2 * predicted[0].comparison.mean_delta_e);
+  EXPECT_THAT(message_of([&] { given("fitted", "fitted", "yarn"); }), HasSubstr("invert"));
+  EXPECT_THAT(message_of([&] { predict_fabric({.session = session(), .model = "fiber"}); }), HasSubstr("--warp"));
+  EXPECT_THAT(message_of([&] { predict_fabric({.session = session(), .weft = "x"}); }), HasSubstr("give both"));
 }
 
 TEST_F(FabricSession, WhatCannotBePredictedOrInvertedIsOneLine) {

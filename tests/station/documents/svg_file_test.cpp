@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <random>
 
 #include "renderer/embroidery/digitise.h"
@@ -40,7 +42,7 @@ TEST(SvgFile, LinesAreFollowedInSmallStepsInMillimetresYUp) {
   const std::vector<Vector2d> straight = line(R"svg(<path d="M 10 20 h 10.03" stroke="#c01830"/>)svg");
   EXPECT_LT((straight.front() - Vector2d(10, -20)).norm(), 1e-9);
   EXPECT_LT((straight.back() - Vector2d(20.03, -20)).norm(), 1e-9);
-  const std::vector<Vector2d> circle = line(R"svg(<circle cx="50" cy="50" r="7" stroke="red"/>)svg");
+  const std::vector<Vector2d> circle = line(R"svg(<circle cx="50" cy="50" r="7" stroke="red" fill="none"/>)svg");
   for (const Vector2d& point : circle) EXPECT_NEAR((point - Vector2d(50, -50)).norm(), 7, 1e-6);
   EXPECT_LT((circle.front() - circle.back()).norm(), 1e-6);
   for (const auto& points : {straight, circle})
@@ -56,15 +58,44 @@ TEST(SvgFile, CornersArePoints) {
         << corner.transpose();
 }
 
-TEST(SvgFile, StrokesAreAsWideAsTheyAreDrawnAndOutlinesHaveNoWidth) {
+TEST(SvgFile, StrokesAreAsWideAsTheyAreDrawn) {
   const LineArt art = drawn(R"svg(<path d="M0 0 L9 0" stroke="red"/>
     <g transform="scale(2 8)"><path d="M0 0 L9 0" stroke="red" stroke-width="3"/></g>
-    <path d="M0 0 L9 0" stroke="red" style="stroke-width:2mm"/><path d="M0 0 L9 0 L9 9 Z" fill="red"/>)svg");
-  ASSERT_EQ(art.lines.size(), 4U);
+    <path d="M0 0 L9 0" stroke="red" style="stroke-width:2mm"/>)svg");
+  ASSERT_EQ(art.lines.size(), 3U);
   EXPECT_NEAR(art.lines[0].width_mm, 0.3, 1e-9);
   EXPECT_NEAR(art.lines[1].width_mm, 12, 1e-9);
   EXPECT_NEAR(art.lines[2].width_mm, 2 * 96 / 25.4, 1e-9) << "the unit of this drawing is a millimetre, not a pixel";
-  EXPECT_EQ(art.lines[3].width_mm, 0);
+}
+
+TEST(SvgFile, ShapesAreFilledBeforeTheirOutlineIsDrawnAndLinesHoldNothing) {
+  const LineArt art = drawn(R"svg(<path d="M0 0 H9 V9 Z" fill="red" stroke="blue"/>
+    <path d="M0 0 L9 0" stroke="blue"/>
+    <path d="M0 0 H9 V9 H0 Z M3 3 H6 V6 H3 Z" fill-rule="evenodd"/>)svg");
+  ASSERT_EQ(art.lines.size(), 4U);
+  EXPECT_EQ(art.lines[0].srgb, (std::array<unsigned char, 3>{255, 0, 0}));
+  EXPECT_EQ(art.lines[0].area.size(), 1U);
+  EXPECT_FALSE(art.lines[0].along_rad || art.lines[0].even_odd);
+  EXPECT_EQ(art.lines[1].srgb, (std::array<unsigned char, 3>{0, 0, 255}));
+  EXPECT_TRUE(art.lines[1].area.empty() && art.lines[2].area.empty());
+  EXPECT_EQ(art.lines[3].area.size(), 2U);
+  EXPECT_TRUE(art.lines[3].even_odd);
+  EXPECT_EQ(art.lines[3].srgb, (std::array<unsigned char, 3>{0, 0, 0})) << "black, as a drawing shows it";
+}
+
+TEST(SvgFile, DirectionsAreThoseOfTheirGroupAndNearestToTheShape) {
+  const LineArt art = drawn(R"svg(<line class="direction" x1="0" y1="0" x2="10" y2="0"/>
+    <g transform="rotate(90)"><path class="thin direction" d="M 0 -40 l 10 0"/>
+      <path class="direction" d="M 0 -4 l 10 10"/>
+      <rect x="0" y="-44" width="8" height="8"/><g><rect x="0" y="-8" width="8" height="8"/></g></g>
+    <rect x="0" y="0" width="9" height="5"/>)svg");
+  ASSERT_EQ(art.lines.size(), 3U);
+  constexpr double kRight = std::numbers::pi / 2;
+  EXPECT_NEAR(std::remainder(art.lines[0].along_rad.value() - kRight, 2 * kRight), 0, 1e-9);
+  EXPECT_NEAR(std::remainder(art.lines[1].along_rad.value() - kRight / 2, 2 * kRight), 0, 1e-9);
+  EXPECT_NEAR(std::remainder(art.lines[2].along_rad.value(), 2 * kRight), 0, 1e-9);
+  EXPECT_NE(refusal([] { drawn(R"svg(<path id="d" class="direction" d="M 0 0 z"/>)svg"); }).find("leads nowhere"),
+            std::string::npos);
 }
 
 TEST(SvgFile, TransformsOfGroupsAndElementsApplyFromTheInside) {

@@ -288,7 +288,7 @@ TEST_F(WeaveDocuments, EveryDraftInFixturesIsReadAndHasADrawing) {
   for (const fs::directory_entry& file : fs::directory_iterator(kDrafts)) {
     if (file.path().extension() != ".json" && file.path().extension() != ".wif") continue;
     const renderer::Draft draft = read_draft(file.path());
-    const cv::Mat3b picture = draw_draft(draft, 4);
+    const cv::Mat3b picture = draw_draft(draft, {}, 4);
     EXPECT_EQ(picture.cols, 4 * (ends_in_patch(draft) + 2)) << file.path();
     EXPECT_EQ(picture.rows, 4 * (picks_in_patch(draft) + 2)) << file.path();
     const std::string svg = draw_draft_svg(draft);
@@ -332,9 +332,14 @@ TEST_F(WeaveDocuments, TheExampleOfEveryOptionSaysWhatItsReadmeSays) {
 
 TEST_F(WeaveDocuments, TheDrawingShowsTheYarnOnTopAndTheFirstPickAtTheBottom) {
   renderer::Draft draft = renderer::twill_draft(3, 1);
-  const cv::Mat3b picture = draw_draft(draft, 2);
+  const cv::Mat3b picture = draw_draft(draft, {}, 2);
   const cv::Vec3b warp = picture(0, 4), weft = picture(4, 0);  // the colour orders along the edges
   EXPECT_NE(warp, weft);
+  const ThreadColours own{{10, 20, 30}, {200, 100, 50}};
+  const cv::Mat3b in_their_colours = draw_draft(draft, own, 2);
+  EXPECT_EQ(in_their_colours(0, 4), own[0]);
+  EXPECT_EQ(in_their_colours(4, 0), own[1]);
+  EXPECT_NE(draw_draft_svg(draft, own).find("#0a141e"), std::string::npos);
   for (int pick = 0; pick < 4; ++pick)
     for (int end = 0; end < 4; ++end)
       EXPECT_EQ(picture(2 * (5 - pick), 2 * (end + 2)),
