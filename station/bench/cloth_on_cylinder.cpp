@@ -15,7 +15,8 @@ constexpr int kMostColumns = 1024;  // that are looked at; between them a cylind
 constexpr double kRim_mm = 3;
 const double kLeastCosine = std::cos(75 * kDegree);
 
-// Where a ray first meets the endless cylinder's side from outside.
+}  // namespace
+
 std::optional<Eigen::Vector3d> side_point(const renderer::CameraRay& ray, double radius_mm) {
   const Eigen::Vector2d o = ray.origin.head<2>(), d = ray.direction.head<2>();
   const double a = d.squaredNorm(), b = o.dot(d), c = o.squaredNorm() - radius_mm * radius_mm;
@@ -23,8 +24,6 @@ std::optional<Eigen::Vector3d> side_point(const renderer::CameraRay& ray, double
   if (a == 0 || root < 0 || c <= 0 || b >= 0) return std::nullopt;
   return ray.origin + (-b - std::sqrt(root)) / a * ray.direction;
 }
-
-}  // namespace
 
 void add_cloth_on_cylinder(renderer::Scene& scene, const renderer::CylinderShape& cylinder,
                            const renderer::YarnPatch& patch, const std::vector<renderer::ScatteringModel>& threads) {

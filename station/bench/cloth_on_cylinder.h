@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "renderer/picture/camera.h"
 #include "renderer/scene/scene.h"
@@ -15,6 +16,9 @@ namespace station {
 // cloth. Errors: those of renderer::surface_of.
 void add_cloth_on_cylinder(renderer::Scene& scene, const renderer::CylinderShape& cylinder,
                            const renderer::YarnPatch& patch, const std::vector<renderer::ScatteringModel>& threads);
+
+// Where a ray first meets the side of the endless cylinder from outside.
+std::optional<Eigen::Vector3d> side_point(const renderer::CameraRay& ray, double radius_mm);
 
 // The side of blocks whose averages can be compared: 8 pixels or two repeats of the weave, whichever is more. Such an
 // average does not depend on which yarn of the repeat lies where: a hand turned the cylinder, and its yarns begin

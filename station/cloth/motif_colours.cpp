@@ -16,7 +16,7 @@ namespace {
 using Eigen::Array3d;
 
 constexpr int kSteps = 5, kSamples = 12;
-constexpr double kMostPixels = 150000;
+constexpr double kMostPixels = 100000;
 
 // The camera with so many pixels at most.
 renderer::Camera coarser(const renderer::Camera& camera) {

@@ -2,13 +2,16 @@
 
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <tuple>
 
 #include "inversion/view/view.h"
 #include "renderer/picture/image_file.h"
 #include "renderer/trace/path_tracer.h"
+#include "renderer/weave/patch_measures.h"
 #include "station/bench/cloth_on_cylinder.h"
 #include "station/documents/bundle_file.h"
 #include "station/documents/disk/stored_file.h"
+#include "station/documents/number_text.h"
 #include "station/documents/session_file.h"
 #include "station/documents/views_file.h"
 #include "station/output/interrupt.h"
@@ -109,6 +112,68 @@ std::vector<PredictedView> predict_fabric(const PredictRequest& request) {
   }
   progress.finish(std::to_string(predicted.size()) + " views");
   return predicted;
+}
+
+MeasuredSett measure_sett(const std::filesystem::path& session, const std::filesystem::path& fabric,
+                          ProgressStyle progress_style) {
+  watch_interrupts();
+  const SessionFile asked = read_session_file(session);
+  const Weave weave = own_weave_of({.session = session, .fabric = fabric}, asked.spool);
+  DevelopedViews developed = read_views(session);
+  read_view_pictures(session, developed);
+  ProgressDisplay progress("predict", progress_style);
+  const renderer::YarnPatch patch = weave_watched(weave.draft, progress).patch;
+  MeasuredSett sett{.said_around_mm = patch.period_x_mm,
+                    .said_along_mm = patch.period_y_mm,
+                    .ends = ends_in_patch(weave.draft),
+                    .picks = picks_in_patch(weave.draft),
+                    .draft = weave.draft};
+  std::vector<PhotographedCloth> pictures;
+  for (const DevelopedView& one : developed.views)
+    pictures.push_back({.image = one.view.image, .mask = one.view.mask, .camera = one.view.camera});
+  const renderer::SurfaceRange range = renderer::surface_range(patch);
+  const double middle_mm = asked.spool.fabric->cylinder.radius_mm - range.low_mm;
+  progress.show(0, 1, "the repeat in the photographs");
+  sett.periods = measure_periods(pictures, {.crown_radius_mm = middle_mm + range.high_mm,
+                                            .middle_radius_mm = middle_mm,
+                                            .around_mm = patch.period_x_mm,
+                                            .along_mm = patch.period_y_mm});
+  if (const auto& around = sett.periods.around_mm) sett.draft.warp.pitch_mm *= around->value / patch.period_x_mm;
+  if (const auto& along = sett.periods.along_mm) sett.draft.weft.pitch_mm *= along->value / patch.period_y_mm;
+  progress.finish(std::to_string(sett.periods.waves) + " waves of the weave");
+  return sett;
+}
+
+std::string describe(const MeasuredSett& sett) {
+  std::string text;
+  for (const auto& [name, measured, said, yarns] :
+       {std::tuple{"ends", sett.periods.around_mm, sett.said_around_mm, sett.ends},
+        {"picks", sett.periods.along_mm, sett.said_along_mm, sett.picks}}) {
+    text += std::string(name) + " per cm: ";
+    if (measured) {
+      const double per_cm = 10 * yarns / measured->value;
+      text += number_text(per_cm, 2) + " +- " + number_text(per_cm * measured->sigma / measured->value, 2);
+    } else {
+      text += "cannot be seen in the photographs";
+    }
+    text += " (the fabric says " + number_text(10 * yarns / said, 2) + ")\n";
+  }
+  return text;
+}
+
+nlohmann::json to_json(const MeasuredSett& sett) {
+  const auto of = [](const std::optional<MeasuredValue>& period, int yarns) {
+    if (!period) return nlohmann::json();
+    return nlohmann::json{{"period_mm", period->value},
+                          {"period_sigma_mm", period->sigma},
+                          {"per_cm", 10 * yarns / period->value},
+                          {"per_cm_sigma", 10 * yarns * period->sigma / (period->value * period->value)}};
+  };
+  return {{"ends", of(sett.periods.around_mm, sett.ends)},
+          {"picks", of(sett.periods.along_mm, sett.picks)},
+          {"waves", sett.periods.waves},
+          {"said_ends_per_cm", 10 * sett.ends / sett.said_around_mm},
+          {"said_picks_per_cm", 10 * sett.picks / sett.said_along_mm}};
 }
 
 }  // namespace station

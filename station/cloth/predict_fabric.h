@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "renderer/weave/draft.h"
+#include "station/cloth/fabric_measures.h"
 #include "station/output/compare/compare_pictures.h"
 #include "station/output/progress.h"
 
@@ -40,5 +42,18 @@ nlohmann::json to_json(const PredictedView& view);
 // result/fabric/<model>. Errors: std::runtime_error for a session of a wrapped thread, one that is not developed, a
 // fabric without a weave, threads that are not fitted so, or another model than a thread's without warp and weft.
 std::vector<PredictedView> predict_fabric(const PredictRequest& request);
+
+// The sett of a photographed cloth by its repeat, beside that of the weave that it is said to have.
+struct MeasuredSett {
+  ClothPeriods periods;
+  double said_around_mm = 0, said_along_mm = 0;  // the repeat of the patch
+  int ends = 0, picks = 0;                       // in a repeat
+  renderer::Draft draft;                         // of the weave, with the measured pitches as far as they are known
+};
+// `fabric` as in PredictRequest. Errors: those of predict_fabric.
+MeasuredSett measure_sett(const std::filesystem::path& session, const std::filesystem::path& fabric,
+                          ProgressStyle progress_style);
+std::string describe(const MeasuredSett& sett);
+nlohmann::json to_json(const MeasuredSett& sett);
 
 }  // namespace station

@@ -6,7 +6,9 @@
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
 #include "station/commands/ready_name.h"
+#include "station/documents/draft_file.h"
 #include "station/documents/number_text.h"
+#include "station/documents/reader.h"
 
 namespace station {
 namespace {
@@ -30,6 +32,8 @@ void print(const PredictedView& view) {
 void add_predict_command(CLI::App& app) {
   struct PredictArguments {
     PredictRequest request;
+    bool sett = false;
+    std::filesystem::path draft;
     OutputOptions output;
   };
   auto arguments = std::make_shared<PredictArguments>();
@@ -51,9 +55,23 @@ void add_predict_command(CLI::App& app) {
   command->add_option("--seed", request.seed, "of the paths")->capture_default_str();
   command->add_flag("--fit-scale", request.fit_scale,
                     "compare colours after a scale that makes the prediction as bright as its photograph");
+  command->add_flag("--sett", arguments->sett,
+                    "predict nothing: ends and picks per cm by the repeat that the photographs show");
+  command->add_option("--draft-out", arguments->draft, "with --sett: the weave's draft with these, to write")
+      ->needs("--sett");
   arguments->output.add_to(*command);
   command->callback([=] {
     arguments->request.progress_style = arguments->output.progress_style();
+    if (arguments->sett) {
+      const MeasuredSett sett =
+          measure_sett(arguments->request.session, arguments->request.fabric, arguments->request.progress_style);
+      if (!arguments->draft.empty()) write_json_file(arguments->draft, to_json(sett.draft));
+      if (arguments->output.json)
+        std::cout << to_json(sett).dump() << "\n";
+      else if (!arguments->output.quiet)
+        std::cout << describe(sett);
+      return;
+    }
     nlohmann::json views = nlohmann::json::array();
     for (const PredictedView& view : predict_fabric(arguments->request))
       if (arguments->output.json)

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "renderer/picture/image_file.h"
 #include "station/cloth/predict_fabric.h"
@@ -44,12 +46,14 @@ struct FabricSession : testing::Test {
                      .progress_style = ProgressStyle::quiet});
     develop_session(session(), ProgressStyle::quiet);
     predicted = predict_fabric({.session = session(), .samples_per_pixel = 64, .progress_style = ProgressStyle::quiet});
+    first_picture = renderer::read_exr(predicted[0].prediction);  // before others are written in its place
   }
   static void TearDownTestSuite() { delete folder; }
   static std::filesystem::path session() { return *folder / "cloth"; }
 
   static inline TemporaryFolder* folder = nullptr;
   static inline std::vector<PredictedView> predicted;
+  static inline cv::Mat3f first_picture;
 };
 
 TEST_F(FabricSession, IsASessionOfTwoViewsLitFromRightAndLeftAndHasAllThatPredictsIt) {
@@ -121,25 +125,36 @@ TEST_F(FabricSession, IsPredictedFromTheModelsThatOneGives) {
   const json weave = read_spool_document(fabric_file()).at("weave");
   for (const std::size_t k : {0U, 1U})
     write_json_file(*folder / ("thread" + std::to_string(k) + ".json"), weave.at("threads").at(k));
-  const auto given = [&](const std::string& warp, const std::string& weft, const std::string& model) {
+  const auto given = [&](const std::string& warp, const std::string& weft, const std::string& model, int samples) {
     return predict_fabric({.session = session(),
                            .warp = *folder / warp,
                            .weft = *folder / weft,
                            .model = model,
-                           .samples_per_pixel = 64,
+                           .samples_per_pixel = samples,
                            .progress_style = ProgressStyle::quiet});
   };
-  const cv::Mat3f own = renderer::read_exr(predicted[0].prediction);
-  const std::vector<PredictedView> same = given("thread0.json", "thread1.json", "thread");
-  EXPECT_EQ(cv::norm(own, renderer::read_exr(same[0].prediction), cv::NORM_INF), 0);
+  const std::vector<PredictedView> same = given("thread0.json", "thread1.json", "thread", 64);
+  EXPECT_EQ(cv::norm(first_picture, renderer::read_exr(same[0].prediction), cv::NORM_INF), 0);
   std::filesystem::create_directories(*folder / "fitted" / "result" / "fiber");
   write_json_file(*folder / "fitted" / "result" / "fiber" / "fiber.json", to_json(renderer::FiberParameters{}));
-  const std::vector<PredictedView> fiber = given("fitted", "fitted", "fiber");
+  const std::vector<PredictedView> fiber = given("fitted", "fitted", "fiber", 8);
   EXPECT_EQ(fiber[0].prediction.parent_path(), session() / "result/fabric/fiber");
   EXPECT_GT(fiber[0].comparison.mean_delta_e, 2 * predicted[0].comparison.mean_delta_e);
-  EXPECT_THAT(message_of([&] { given("fitted", "fitted", "yarn"); }), HasSubstr("invert"));
+  EXPECT_THAT(message_of([&] { given("fitted", "fitted", "yarn", 8); }), HasSubstr("invert"));
   EXPECT_THAT(message_of([&] { predict_fabric({.session = session(), .model = "fiber"}); }), HasSubstr("--warp"));
   EXPECT_THAT(message_of([&] { predict_fabric({.session = session(), .weft = "x"}); }), HasSubstr("give both"));
+}
+
+// The bench stretches the cloth round the cylinder until a whole number of repeats closes it.
+TEST_F(FabricSession, ItsSettIsSeenInThePhotographs) {
+  const MeasuredSett sett = measure_sett(session(), {}, ProgressStyle::quiet);
+  std::printf("%s", describe(sett).c_str());
+  ASSERT_TRUE(sett.periods.around_mm && sett.periods.along_mm);
+  const double middle_mm = 41 + 0.5, repeats = std::round(2 * std::numbers::pi * middle_mm / sett.said_around_mm);
+  EXPECT_NEAR(sett.periods.around_mm->value, 2 * std::numbers::pi * middle_mm / repeats,
+              4 * sett.periods.around_mm->sigma);
+  EXPECT_NEAR(sett.periods.along_mm->value, sett.said_along_mm, 4 * sett.periods.along_mm->sigma);
+  EXPECT_LT(sett.periods.along_mm->sigma, 0.01 * sett.said_along_mm);
 }
 
 TEST_F(FabricSession, WhatCannotBePredictedOrInvertedIsOneLine) {

@@ -46,12 +46,12 @@ struct Reproduce : testing::Test {
              {"paper", "shows <two> of them"},
              {"different", "there are fewer"},
              {"steps",
-              {{{"for", drafts({"plain", "twill_2_2"})},
+              {{{"for", drafts({"plain", "basket_2_2"})},
                 {"quick_for", drafts({"plain"})},
                 {"run", "weave --draft {draft} --out {draft}.json --view {draft}.png --json"},
                 {"whole", "--height-scale 0.5"}}}},
              {"pictures",
-              {{{"for", drafts({"plain", "twill_2_2"})},
+              {{{"for", drafts({"plain", "basket_2_2"})},
                 {"quick_for", drafts({"plain"})},
                 {"file", "{draft}.png"},
                 {"caption", "a patch of {draft}"}},
@@ -87,14 +87,14 @@ TEST_F(Reproduce, FiguresAreMadeByTheirCommandsAndShownWithTheirNumbers) {
   ASSERT_EQ(made.status, 0) << made.error;
   const json patch = read_json_file(in_figure("plain.json"));
   EXPECT_EQ(patch.at("height_scale"), 0.5);
-  EXPECT_TRUE(fs::exists(in_figure("twill_2_2.png")));
+  EXPECT_TRUE(fs::exists(in_figure("basket_2_2.png")));
   EXPECT_TRUE(fs::exists(in_figure("given/leaf.jpg")));
   char period[40];
   std::snprintf(period, sizeof period, "period: %.2f mm (paper: 1.9 mm)", patch.at("period_x_mm").get<double>());
   EXPECT_THAT(made.out, AllOf(HasSubstr(period), HasSubstr("mean radius: 0.250"), HasSubstr("not there: not said")));
   const std::string page = text_in(fs::path(out()) / "index.html");
   EXPECT_THAT(page, AllOf(HasSubstr("weaves &amp; drafts"), HasSubstr("shows &lt;two&gt; of them"),
-                          HasSubstr("src=\"figure-8/twill_2_2.png\""), HasSubstr("src=\"figure-8/given/leaf.jpg\""),
+                          HasSubstr("src=\"figure-8/basket_2_2.png\""), HasSubstr("src=\"figure-8/given/leaf.jpg\""),
                           HasSubstr("threadstation weave --draft plain"), HasSubstr("threadstation reproduce 8")));
   const std::string pdf = text_in(fs::path(out()) / "figures.pdf");
   EXPECT_TRUE(pdf.starts_with("%PDF"));
@@ -104,7 +104,7 @@ TEST_F(Reproduce, FiguresAreMadeByTheirCommandsAndShownWithTheirNumbers) {
 TEST_F(Reproduce, WhatIsMadeStaysAndWhatIsOtherwiseIsMadeAnew) {
   write("1.json", weave);
   ASSERT_EQ(make({"--quick"}).status, 0);
-  EXPECT_FALSE(fs::exists(in_figure("twill_2_2.json"))) << "quick has fewer";
+  EXPECT_FALSE(fs::exists(in_figure("basket_2_2.json"))) << "quick has fewer";
   EXPECT_EQ(read_json_file(in_figure("plain.json")).at("height_scale"), 1);
   const auto before = fs::last_write_time(in_figure("plain.json"));
   ASSERT_EQ(make({"--quick"}).status, 0);
@@ -112,11 +112,11 @@ TEST_F(Reproduce, WhatIsMadeStaysAndWhatIsOtherwiseIsMadeAnew) {
   ASSERT_EQ(make({}).status, 0);
   EXPECT_EQ(read_json_file(in_figure("plain.json")).at("height_scale"), 0.5);
   const auto whole = fs::last_write_time(in_figure("plain.json"));
-  weave["steps"].push_back({{"run", "weave --draft satin_5 --out satin.json"}});
+  weave["steps"].push_back({{"run", "weave --draft plain --out other.json"}});
   write("1.json", weave);
   ASSERT_EQ(make({}).status, 0);
   EXPECT_EQ(fs::last_write_time(in_figure("plain.json")), whole);
-  EXPECT_TRUE(fs::exists(in_figure("satin.json")));
+  EXPECT_TRUE(fs::exists(in_figure("other.json")));
 }
 
 TEST_F(Reproduce, AFailureIsThatFigureAndWhatNeedsItOnly) {
