@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 
 #include "station/bench/bench_picture.h"
 #include "station/bench/mounted_holder.h"
 #include "station/documents/degree.h"
+#include "tests/places.h"
 #include "tests/station/session/recorded_bench.h"
 
 namespace station {
@@ -231,6 +233,34 @@ TEST(SessionFaults, ASessionOfAnotherVersionIsRefusedAndNotTouched) {
     EXPECT_EQ(text_of(bench.path / "journal.jsonl"), journal);
     EXPECT_FALSE(verify_session(bench.path).sound()) << "read, and said what is wrong";
   }
+}
+
+// Thin metal threads that face the lamp have a third of the detail that they have beside it, and are as sharp.
+TEST(SessionFaults, ThreadsThatFaceTheLampAreNotTakenForALostFocus) {
+  RecordedBench bench;
+  bench.asked.spool = read_spool(fs::path(DATA_DIR) / "library" / "spools" / "metal_silver.json");
+  bench.asked.plan.steps.clear();
+  const Plan whole = read_session_file(recorded_session()).plan;
+  for (const PlanStep& step : whole.steps)
+    if (step.kind == StepKind::pose || (is_reflection(step) && step.mounting == rig::Mounting::horizontal))
+      if (step.mounting == rig::Mounting::horizontal) bench.asked.plan.steps.push_back(step);
+  bench.bench = std::make_unique<rig::SimulatedBench>(bench.asked.rig.simulation->truth,
+                                                      make_bench_picture(bench.asked.rig, bench.asked.spool));
+  bench.camera = rig::make_simulated_camera(*bench.bench, *bench.clock);
+  bench.turntable = rig::make_simulated_turntable(*bench.bench, *bench.clock);
+  bench.person = rig::make_simulated_operator(*bench.bench);
+  EXPECT_EQ(bench.run(), "");
+  EXPECT_THAT(bench.refused(), IsEmpty());
+  double least = 1e9, most = 0;
+  for (const auto& [step, picture] : pictures_of(bench.path)) {
+    if (picture.kind != StepKind::view) continue;
+    const Finding* focus = picture.verdict.find("focus");
+    ASSERT_TRUE(focus && focus->value) << step;
+    EXPECT_EQ(focus->grade, Grade::good) << step;
+    least = std::min(least, *focus->value), most = std::max(most, *focus->value);
+  }
+  std::printf("detail from %.3f to %.3f\n", least, most);
+  EXPECT_LT(least, 0.5 * most) << "otherwise nothing is tried here";
 }
 
 }  // namespace
