@@ -68,7 +68,7 @@ TEST(FabricMeasures, TheRepeatIsFoundWithinItsErrors) {
   std::printf("seed %u\n", kSeed);
   std::mt19937 random(kSeed);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
-  for (int trial = 0; trial < 6; ++trial) {
+  for (int trial = 0; trial < 4; ++trial) {
     const Waves waves{.around_mm = between(2.2, 5),
                       .along_mm = between(2.2, 5),
                       .phase = between(0, 1),
