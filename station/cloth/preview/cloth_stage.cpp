@@ -97,6 +97,7 @@ void light(json& scene, const std::string& lights) {
   lamp["position_mm"] = to_json(Vector3d(middle + distance * direction.normalized()));
   lamp["visible"] = false;
   lamps = json::array({lamp});
+  scene.erase("white_card");  // the lamp may not shine on its face; whoever shows the picture knows the studio's
 }
 
 bool is_floor(const json& object) {
