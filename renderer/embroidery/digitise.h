@@ -4,7 +4,7 @@
 //                        | at every corner
 //   wider                | satin: to and fro across the line, as wide as the stroke, 0.35 mm from one thread to the
 //                        | next
-//   filled shape         | rows of stitches side by side, 0.35 mm apart, up to 4 mm long and offset from row to row,
+//   filled shape         | rows of stitches side by side, 0.35 mm apart, about 4 mm long and offset from row to row,
 //                        | along the direction that was drawn for it, or along its own longer side
 #pragma once
 

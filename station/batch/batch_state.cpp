@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "station/documents/disk/folder_lock.h"
+#include "station/output/child_process.h"
 
 namespace station {
 namespace {

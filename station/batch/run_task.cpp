@@ -26,7 +26,7 @@ namespace station {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr auto kTaskLooks = std::chrono::milliseconds(20), kBetweenTries = std::chrono::milliseconds(500);
+constexpr auto kBetweenTries = std::chrono::milliseconds(500);
 
 std::runtime_error stop_of(const BatchTask& task) {
   return std::runtime_error(name_of(task) + " was stopped on request; the same batch goes on with it");
@@ -89,19 +89,6 @@ std::string from_slurm(const char* name) {
   return value ? value : "";
 }
 
-// Runs the command to its end; after ctrl-C it is asked to stop, as often as we are.
-EndedProcess run(const BatchWork& work, const BatchTask& task, const fs::path& folder, const OpenFile& lock) {
-  std::vector<std::string> words = arguments_of(work, task);
-  words.insert(words.begin(), kOwnProgram);
-  // Where this process is killed, nobody else begins while the command is still writing.
-  ChildProcess process(words, log_of(folder), work.plan.folder, lock.descriptor());
-  for (int told = 0;;) {
-    if (const auto ended = process.ended()) return *ended;
-    for (; told < interrupts(); ++told) process.signal(SIGINT);
-    std::this_thread::sleep_for(kTaskLooks);
-  }
-}
-
 }  // namespace
 
 TaskOutcome run_task(const TaskRequest& request) {
@@ -135,7 +122,9 @@ TaskOutcome run_task(const TaskRequest& request) {
   clear_result(work, task, before && before->inputs_hash == begun.inputs_hash);
   write_begun(folder, begun);
   remove_record(folder);
-  const EndedProcess ended = run(work, task, folder, lock);
+  // Where this process is killed, nobody else begins while the command is still writing.
+  const EndedProcess ended =
+      run_own_program(arguments_of(work, task), log_of(folder), work.plan.folder, lock.descriptor());
   if (interrupted() && ended.status != 0) {
     TaskBegun again = begun;
     again.stopped = job.empty();  // Slurm knows why it ended a task (slurm_batch.h)

@@ -1,7 +1,5 @@
 #include "station/batch/task_record.h"
 
-#include <fstream>
-
 #include "station/documents/migrations.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
@@ -134,17 +132,6 @@ fs::path own_log_of(const fs::path& task_folder) {
 fs::path slurm_log_of(const fs::path& batch_folder, const std::string& step, const std::string& array,
                       const std::string& index) {
   return batch_folder / "slurm" / (step + "-" + array + "_" + index + ".txt");
-}
-
-std::string last_words(const fs::path& log) {
-  const std::string problem = "threadstation: ";
-  std::string last, told;
-  std::ifstream lines(log);
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with(problem)) told = line.substr(problem.size());
-    if (!line.empty()) last = line;
-  }
-  return told.empty() ? last : told;
 }
 
 }  // namespace station

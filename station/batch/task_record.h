@@ -51,7 +51,5 @@ std::filesystem::path log_of(const std::filesystem::path& task_folder);
 std::filesystem::path own_log_of(const std::filesystem::path& task_folder);
 std::filesystem::path slurm_log_of(const std::filesystem::path& batch_folder, const std::string& step,
                                    const std::string& array, const std::string& index);
-// The last line of what a task has said that tells a problem, or its last line; empty when it said nothing.
-std::string last_words(const std::filesystem::path& log);
 
 }  // namespace station

@@ -11,14 +11,6 @@
 namespace station {
 namespace {
 
-std::optional<double> finite_number(const std::string& text) {
-  double value = 0;
-  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
-  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 std::string shown(Range range) {
   return "a number from " + shortest_text(range.low) + " to " + shortest_text(range.high);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <optional>
 #include <string>
 
 namespace station {
@@ -12,6 +13,8 @@ std::string percent_text(double part);  // "12.3 %"
 std::string numbers_text(std::initializer_list<double> values, int decimals);
 // The number in the fewest digits that are read as the same number again.
 std::string shortest_text(double value);
+// The finite number that the whole text is, in any computer's language; nothing for any other text.
+std::optional<double> finite_number(const std::string& text);
 // The text that printf makes, at most 255 characters.
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
 

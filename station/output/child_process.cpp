@@ -12,9 +12,13 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <memory>
 #include <stdexcept>
+#include <thread>
 #include <utility>
+
+#include "station/output/interrupt.h"
 
 extern char** environ;
 
@@ -107,6 +111,29 @@ std::optional<EndedProcess> ChildProcess::ended() {
 
 void ChildProcess::signal(int number) const {
   if (!ended_) kill(process_, number);
+}
+
+EndedProcess run_own_program(std::vector<std::string> arguments, const std::filesystem::path& said,
+                             const std::filesystem::path& folder, int held) {
+  constexpr auto kLooks = std::chrono::milliseconds(20);
+  arguments.insert(arguments.begin(), kOwnProgram);
+  ChildProcess process(std::move(arguments), said, folder, held);
+  for (int told = 0;;) {
+    if (const auto ended = process.ended()) return *ended;
+    for (; told < interrupts(); ++told) process.signal(SIGINT);
+    std::this_thread::sleep_for(kLooks);
+  }
+}
+
+std::string last_words(const std::filesystem::path& said) {
+  const std::string problem = "threadstation: ";
+  std::string last, told;
+  std::ifstream lines(said);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(problem)) told = line.substr(problem.size());
+    if (!line.empty()) last = line;
+  }
+  return told.empty() ? last : told;
 }
 
 CommandResult run_command(std::vector<std::string> words, const std::string& input) {

@@ -42,6 +42,13 @@ class ChildProcess {
   std::optional<EndedProcess> ended_;
 };
 
+// Runs this program with these arguments to its end, as a ChildProcess; after ctrl-C (interrupt.h) it is asked to stop,
+// as often as we are.
+EndedProcess run_own_program(std::vector<std::string> arguments, const std::filesystem::path& said,
+                             const std::filesystem::path& folder, int held = -1);
+// The last line of what it has said that tells a problem, or its last line; empty when it said nothing.
+std::string last_words(const std::filesystem::path& said);
+
 struct CommandResult {
   int status = 0;
   std::string out, error;

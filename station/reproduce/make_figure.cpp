@@ -1,12 +1,9 @@
 #include "station/reproduce/make_figure.h"
 
-#include <csignal>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <thread>
 
 #include "station/documents/disk/stored_file.h"
-#include "station/documents/disk/whole_file.h"
 #include "station/documents/reader.h"
 #include "station/documents/session_file.h"
 #include "station/output/child_process.h"
@@ -18,7 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr auto kLooks = std::chrono::milliseconds(50);
 constexpr const char* kRecord = "made.json";
 
 // What has been run in a folder: {"software", "steps": [{"words", "seconds"}]}.
@@ -41,24 +37,6 @@ std::vector<std::string> with_data(std::vector<std::string> words, const fs::pat
   return words;
 }
 
-std::string last_line(const fs::path& file) {
-  const std::string text = text_of_file(file);
-  const std::size_t end = text.find_last_not_of("\r\n ");
-  if (end == text.npos) return {};
-  const std::size_t begin = text.find_last_of("\r\n", end);
-  return text.substr(begin == text.npos ? 0 : begin + 1, end - (begin == text.npos ? 0 : begin + 1) + 1);
-}
-
-EndedProcess run(std::vector<std::string> words, const fs::path& folder, const fs::path& said) {
-  words.insert(words.begin(), kOwnProgram);
-  ChildProcess process(words, said, folder);
-  for (int told = 0;;) {
-    if (const auto ended = process.ended()) return *ended;
-    for (; told < interrupts(); ++told) process.signal(SIGINT);
-    std::this_thread::sleep_for(kLooks);
-  }
-}
-
 // The values at a pointer in which * stands for each element of a list or object.
 void collect(const json& document, const std::string& at, std::vector<double>& values) {
   const std::size_t star = at.find("/*");
@@ -73,7 +51,7 @@ void collect(const json& document, const std::string& at, std::vector<double>& v
 }
 
 json document_in(const fs::path& file) {
-  if (file.extension() == ".txt") return json::parse(last_line(file), nullptr, false);
+  if (file.extension() == ".txt") return json::parse(last_words(file), nullptr, false);
   return read_json_file(file);
 }
 
@@ -90,6 +68,10 @@ std::optional<double> value_of(const FigureNumber& number, const fs::path& folde
 
 MadeFigure described(const Figure& figure, const fs::path& folder, const json& record) {
   MadeFigure made{.figure = figure};
+  for (const std::vector<FigurePicture>& row : figure.rows)
+    for (const FigurePicture& picture : row)
+      if (made.problem.empty() && !fs::exists(folder / picture.file))
+        made.problem = "none of its commands has made " + picture.file.string();
   for (const json& step : record["steps"]) made.seconds += step.at("seconds").get<double>();
   for (const FigureNumber& number : figure.numbers) made.numbers.push_back({number, value_of(number, folder)});
   return made;
@@ -101,7 +83,7 @@ fs::path figure_folder(const fs::path& out, const std::string& id) {
   return out / ("figure-" + id);
 }
 
-MadeFigure make_figure(const Figure& figure, const fs::path& out, const fs::path& data_folder,
+MadeFigure make_figure(const Figure& figure, const fs::path& out, const fs::path& data_folder, int lock,
                        const std::function<void(const std::string&)>& step) {
   const fs::path folder = figure_folder(out, figure.id);
   make_folder(folder);
@@ -119,18 +101,20 @@ MadeFigure make_figure(const Figure& figure, const fs::path& out, const fs::path
     json& steps = record["steps"];
     steps.erase(steps.begin() + static_cast<std::ptrdiff_t>(std::min(i, steps.size())), steps.end());
     const fs::path said = fs::absolute(folder) / said_by_step(i + 1);
-    const EndedProcess ended = run(with_data(words, fs::absolute(data_folder)), folder, said);
+    const EndedProcess ended = run_own_program(with_data(words, fs::absolute(data_folder)), said, folder, lock);
+    if (ended.status == 0) {
+      steps.push_back({{"words", words}, {"seconds", ended.seconds}});
+      write_json_file(folder / kRecord, record);
+    }
     if (interrupted())
       throw std::runtime_error("stopped on request; the same command goes on with figure " + figure.id);
     if (ended.status != 0) {
       MadeFigure failed = described(figure, folder, record);
-      const std::string why = last_line(said);
+      const std::string why = last_words(said);
       failed.problem =
           shown_command(words) + ": " + (why.empty() ? "it ended with status " + std::to_string(ended.status) : why);
       return failed;
     }
-    steps.push_back({{"words", words}, {"seconds", ended.seconds}});
-    write_json_file(folder / kRecord, record);
   }
   return described(figure, folder, record);
 }

@@ -27,10 +27,11 @@ struct MadeFigure {
 std::filesystem::path figure_folder(const std::filesystem::path& out, const std::string& id);
 
 // Runs what has not been run yet, with the same words and by this version, in the figure's folder; before each command
-// `step` is told of it. A command that fails ends the figure. Errors: std::runtime_error, one line, when a person has
+// `step` is told of it. Commands keep the file `lock` open, so that nobody else begins while they still write. One that
+// fails ends the figure. Errors: std::runtime_error, one line, when a person has
 // interrupted: the same again goes on.
 MadeFigure make_figure(const Figure& figure, const std::filesystem::path& out, const std::filesystem::path& data_folder,
-                       const std::function<void(const std::string&)>& step);
+                       int lock, const std::function<void(const std::string&)>& step);
 
 // What is there of a figure, without running anything; nothing where it has not been made.
 std::optional<MadeFigure> made_figure(const Figure& figure, const std::filesystem::path& out);

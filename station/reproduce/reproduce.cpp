@@ -68,8 +68,8 @@ FiguresPage reproduce(const ReproduceRequest& request) {
   ProgressDisplay progress("reproduce", request.progress_style);
   std::map<std::string, MadeFigure> made;
   const auto make = [&](const Figure& figure) {
-    MadeFigure one =
-        make_figure(figure, request.out, data, [&](const std::string& what) { progress.show(done++, steps, what); });
+    MadeFigure one = make_figure(figure, request.out, data, lock.descriptor(),
+                                 [&](const std::string& what) { progress.show(done++, steps, what); });
     if (!one.problem.empty()) progress.note("figure " + figure.id + " could not be made: " + one.problem);
     return one;
   };

@@ -65,10 +65,10 @@ class Row {
   double number(const std::string& column, Range range, std::optional<double> otherwise = {}) const {
     const std::string cell = text(column);
     if (cell.empty() && otherwise) return *otherwise;
-    const std::optional<double> value = number_of(cell);
+    const std::optional<double> value = finite_number(cell);
     if (!value || !(*value >= range.low && *value <= range.high))
-      refuse(column, "'" + cell + "' was found, expected a number from " + number_text(range.low, 3) + " to " +
-                         number_text(range.high, 3));
+      refuse(column, "'" + cell + "' was found, expected a number from " + shortest_text(range.low) + " to " +
+                         shortest_text(range.high));
     return *value;
   }
   [[noreturn]] void refuse(const std::string& column, const std::string& problem) const {
@@ -83,16 +83,6 @@ class Row {
   }
 
  private:
-  static std::optional<double> number_of(const std::string& cell) {
-    std::size_t read = 0;
-    try {
-      const double value = std::stod(cell, &read);
-      if (read == cell.size() && std::isfinite(value)) return value;
-    } catch (const std::logic_error&) {
-    }
-    return std::nullopt;
-  }
-
   std::string file_;
   const TextTable& table_;
   const TextTable::Row& row_;
@@ -103,9 +93,15 @@ Vector3d direction(double azimuth_deg, double elevation_deg) {
   return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
 }
 
+bool is_picture(const fs::path& file) {
+  static const std::set<std::string> endings{".exr", ".tif", ".tiff", ".EXR", ".TIF", ".TIFF"};
+  return endings.contains(file.extension());
+}
+
 DevelopedView view_of(const Row& row, const Arrangement& of) {
   DevelopedView made;
   made.image_file = row.file("image");
+  if (!is_picture(made.image_file)) row.refuse("image", "its name does not end as that of an EXR or a TIFF; rename it");
   if (!row.text("mask").empty()) made.mask_file = row.file("mask");
   made.view.id = row.text("id").empty() ? fs::path(made.image_file).stem().string() : row.text("id");
   if (safe_name(made.view.id) != made.view.id)

@@ -74,6 +74,8 @@ StagedMesh staged(const fs::path& file, const ClothPreviewRequest& request) {
 
 // What all pictures are of, in the order in which they were asked for.
 std::vector<Shown> shown_in(const ClothPreviewRequest& request) {
+  if (std::ranges::count_if(request.shapes, [](const std::string& shape) { return !is_shape(shape); }) > 1)
+    throw std::runtime_error("several meshes were given, and each would be the folder's mesh.exr; give one at a time");
   std::vector<Shown> all;
   for (const std::string& shape : request.shapes) {
     OnStage cloth{.threads = {}, .lights = request.lights};

@@ -293,7 +293,7 @@ class CaptureChecks::Work {
 
   // Threads that face the lamp shade each other less, and thin or glossy ones then have a third of the detail that they
   // have elsewhere. Printed edges beside them have not.
-  bool edges_are_as_sharp(const Seen& seen) const {
+  bool edges_are_as_sharp(const Seen& seen) {
     const std::optional<double> here = edge_blur_px(seen.grey, seen.tags);
     if (!here) return false;
     std::vector<double> before;
@@ -302,8 +302,12 @@ class CaptureChecks::Work {
       if (record.kind != StepKind::view || record.lamp != seen.step.lamp || record.mounting != seen.step.mounting ||
           id == seen.step.id)
         continue;
-      const cv::Mat1f grey = calibration::linear_grey(calibration::read_sensor_file(session_.path() / record.file));
-      if (const auto blur = edge_blur_px(grey, calibration::detect_tags(grey))) before.push_back(*blur);
+      const auto [known, unknown] = edge_blurs_px_.try_emplace(record.sha256);
+      if (unknown) {
+        const cv::Mat1f grey = calibration::linear_grey(calibration::read_sensor_file(session_.path() / record.file));
+        known->second = edge_blur_px(grey, calibration::detect_tags(grey));
+      }
+      if (known->second) before.push_back(*known->second);
     }
     return !before.empty() && *here < kSofter * calibration::median(before);
   }
@@ -372,6 +376,7 @@ class CaptureChecks::Work {
   std::map<rig::Mounting, std::vector<PosePicture>> posed_;            // this run's
   std::map<rig::Mounting, std::optional<Eigen::Isometry3d>> mounted_;  // platform_from_holder
   std::map<std::pair<rig::Lamp, rig::Mounting>, std::vector<double>> sharpness_;
+  std::map<std::string, std::optional<double>> edge_blurs_px_;  // of earlier views' pictures, by their hashes
   LampChecks lamp_;
 };
 

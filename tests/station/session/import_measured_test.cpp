@@ -210,6 +210,11 @@ TEST_F(Measured, WhatCannotBeMeantIsOneLine) {
   cv::imwrite(folder / "view-0.tif", cv::Mat3b(kHeight, kWidth, cv::Vec3b(9, 9, 9)));
   write();
   EXPECT_THAT(refusal(), HasSubstr("8 bits"));
+  fs::rename(folder / "view-0.tif", folder / "view-0");
+  std::string table = text_of_file(folder / "views.csv");
+  table.replace(table.find("view-0.tif"), 10, "view-0");
+  std::ofstream(folder / "views.csv") << table;
+  EXPECT_THAT(refusal(), HasSubstr("rename it"));
   EXPECT_THAT(message_of([&] { capture_session({.session = folder / "refused"}); }), HasSubstr("measured elsewhere"));
 }
 
