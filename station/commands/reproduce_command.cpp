@@ -36,7 +36,7 @@ void add_reproduce_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("reproduce", "figures and numbers of the paper, made anew, on one page");
   command->add_option("figures", request.figures, "their numbers as in the paper; all without them");
   command->add_option("--out", request.out, "folder; the same again goes on with it")->required();
-  command->add_flag("--quick", request.quick, "smaller, noisier and fewer: twenty minutes in place of four hours");
+  command->add_flag("--quick", request.quick, "smaller, noisier and fewer of each");
   arguments->output.add_to(*command);
   command->callback([arguments] { run(*arguments); });
 }
