@@ -86,7 +86,7 @@ constexpr Guide kGuides[] = {
     {"recover", "Study the models",
      "recover --rig rig.json --spool DATA/spools/silk_blue.json --thread DATA/threads/silk_blue.json --draws 0 --spp 8 "
      "--paths 64 256"},
-    {"reproduce", "Study the models", "reproduce 13 --quick --out figures"},
+    {"reproduce", "Study the models", "reproduce 5 --quick --out figures"},
 
     {"batch", "Many at once", "batch DATA/batches/ready_threads.json --out batch"},
     {"batch status", kParts, "batch status batch"},

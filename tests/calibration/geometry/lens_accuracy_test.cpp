@@ -211,7 +211,7 @@ Guided guided(double noise_px, int solves, unsigned seed) {
 }
 
 TEST(LensAccuracy, ABoardOnStandsThatAHandPutsDownDoesAsWell) {
-  const Guided found = guided(0.2, 100, 77);
+  const Guided found = guided(0.2, 40, 77);
   EXPECT_LT(found.rms_px, 0.3);
 }
 

@@ -16,7 +16,7 @@
 namespace calibration {
 namespace {
 constexpr double kNoise_px = 0.2, kTagBow_mm = 0.5;
-constexpr int kSolves = 100, kPicturesOfAStand = 16;
+constexpr int kSolves = 50, kPicturesOfAStand = 16;
 constexpr unsigned kSeed = 500;
 
 // 7 x 5 tags of 32 mm: every corner on one lattice, three quarters of a picture wide at the spool's distance.

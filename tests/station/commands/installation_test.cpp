@@ -85,7 +85,7 @@ TEST_F(Installation, HasTheProgramItsDataAndWhatSystemAndShellsAskFor) {
 
 // The example of demo, and more; nothing of it may need the checkout.
 TEST_F(Installation, DoesTheWholeJobWithoutTheCheckoutAndRunAgainKeepsItsPictures) {
-  const ProgramResult first = run_without_checkout(example_of({"demo"}) + " --json");
+  const ProgramResult first = run_without_checkout(example_of({"demo"}) + " --quick --json");
   ASSERT_EQ(first.status, 0) << first.error;
   const json said = json::parse(first.out);
   const auto there = [](const json& file) { return fs::exists(*folder / file.get<std::string>()); };
@@ -100,7 +100,7 @@ TEST_F(Installation, DoesTheWholeJobWithoutTheCheckoutAndRunAgainKeepsItsPicture
     return run_shell("cd '" + (*folder / "demo").string() + "' && sha256sum calibration/pictures/* session/raw/*").out;
   };
   const std::string before = pictures();
-  const ProgramResult again = run_without_checkout(example_of({"demo"}) + " --quiet");
+  const ProgramResult again = run_without_checkout(example_of({"demo"}) + " --quick --quiet");
   EXPECT_EQ(again.status, 0) << again.error;
   EXPECT_THAT(again.out, HasSubstr("kept"));
   EXPECT_EQ(pictures(), before);

@@ -5,13 +5,19 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tests/places.h"
+#include "tests/station/commands/help.h"
 #include "tests/station/commands/program.h"
 
 namespace {
 
 TEST(ReproducedFigures, HaveTheStoredNumbers) {
   const station_test::TemporaryFolder folder;
-  const auto made = station_test::run_threadstation({"reproduce", "5", "--quick", "--json", "--out", folder / "out"});
+  // The example of help.
+  const std::string example = station_test::example_of({"reproduce"});
+  ASSERT_TRUE(example.starts_with("threadstation ")) << example;
+  const auto made = station_test::run_shell("cd '" + folder.path().string() + "' && '" THREADSTATION_PROGRAM "'" +
+                                            example.substr(std::string("threadstation").size()) + " --json");
   ASSERT_EQ(made.status, 0) << made.error;
   int compared = 0;
   const nlohmann::json page = nlohmann::json::parse(made.out);

@@ -81,7 +81,7 @@ TEST_F(ScatterSimulate, FitsEachAngleAndJointlyAndSaysWhatItFound) {
           0);
   const ProgramResult result = fit({"t0a0.csv", "t45a0.csv", "t70a0.csv", "t0a0.1.csv", "t45a0.1.csv", "t70a0.1.csv"});
   ASSERT_EQ(result.status, 0) << result.error;
-  EXPECT_NE(result.out.find("yarn baseline"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("yarn reconstruction"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("jointly over 2 absorptions"), std::string::npos) << result.out;
   const nlohmann::json found = station::read_json_file(folder_ / "fit.json");
   ASSERT_EQ(found["separate"].size(), 6U);
