@@ -10,7 +10,7 @@
 
 #include "renderer/scattering/degree.h"
 #include "renderer/scene/grid_triangles.h"
-#include "renderer/weave/periodic_spline.h"
+#include "renderer/scene/hanging_sheet.h"
 
 namespace renderer {
 namespace {
@@ -74,8 +74,8 @@ std::vector<double> heights_of(const std::vector<std::vector<Vector2d>>& rows, d
 
 constexpr double kClearance_mm = 1.5;  // of cloth from what it lies on
 
-// What a cloth lies on or hangs round: a ball at the origin, or a body round the z axis that widens from a waist at z =
-// 0 downwards.
+// What a cloth lies on or hangs round: a ball at the origin, a body round the z axis that widens from a waist at z = 0
+// downwards, or a shoulder.
 struct Ball {
   double radius_mm;
   // The place outside that is nearest to `at`.
@@ -93,140 +93,18 @@ struct Hips {
     return {scale * at.x(), scale * at.y(), at.z()};
   }
 };
+// A bar round a line through the origin, level from front to back.
+struct Shoulder {
+  double radius_mm;
+  Vector3d along;  // unit vector in the plane y = 0
+  Vector3d outside(const Vector3d& at) const {
+    const double least_mm = radius_mm + kClearance_mm;
+    const Vector3d on_line = at.dot(along) * along, away = at - on_line;
+    return away.squaredNorm() < least_mm * least_mm ? Vector3d(on_line + least_mm * away.normalized()) : at;
+  }
+};
 struct Air {
   Vector3d outside(const Vector3d& at) const { return at; }
-};
-
-// Cloth on its way to rest, by position-based dynamics [Macklin 2016]; z is up. Points lie in rows; a closed sheet's
-// last column is followed by its first.
-class HangingSheet {
- public:
-  using Pattern = std::function<Vector2d(int column, int row)>;  // mm; alike from column to column
-
-  struct Size {
-    int columns, rows;  // of points
-    bool closed = false;
-  };
-  // How much it gives way to bending over two and over five cells: compliance of a unit mass, s^2.
-  struct Bending {
-    double near_s2, far_s2;
-  };
-
-  HangingSheet(const Size& size, const Bending& bending, const Pattern& pattern, std::vector<Vector3d> places)
-      : size_(size), places_(std::move(places)) {
-    add_links(pattern, bending);
-  }
-
-  void pin_row(int row) {
-    for (int column = 0; column < size_.columns; ++column) pinned_.push_back(index(column, row));
-  }
-
-  template <class Body>
-  void settle(int steps, int sweeps, const Body& body, const std::function<void(int steps_done)>& go_on) {
-    constexpr double kGravity = -9810, kKept = 0.98;  // of the speed, after each step
-    std::vector<Vector3d> speeds(places_.size(), Vector3d::Zero());
-    for (int step = 0; step < steps; ++step) {
-      go_on(step);
-      const std::vector<Vector3d> before = places_;
-      for (std::size_t i = 0; i < places_.size(); ++i)
-        places_[i] += kStep_s * (kKept * speeds[i] + Vector3d(0, 0, kGravity * kStep_s));
-      for (int sweep = 0; sweep < sweeps; ++sweep) {
-        for (const Link& link : links_) pull(link);
-        for (std::size_t i = 0; i < places_.size(); ++i) keep_outside(body, before[i], places_[i]);
-        for (const std::uint32_t i : pinned_) places_[i] = before[i];
-      }
-      for (std::size_t i = 0; i < places_.size(); ++i) speeds[i] = (places_[i] - before[i]) / kStep_s;
-    }
-  }
-
-  const std::vector<Vector3d>& places() const { return places_; }
-
-  // A smooth surface through about the same places, `finer` times as fine: a uniform cubic B-spline.
-  std::vector<Vector3d> refined(int finer) const {
-    const int columns = size_.closed ? size_.columns * finer : (size_.columns - 1) * finer + 1,
-              rows = (size_.rows - 1) * finer + 1;
-    std::vector<Vector3d> fine;
-    for (int row = 0; row < rows; ++row)
-      for (int column = 0; column < columns; ++column) {
-        const Eigen::Vector4d u = spline_weights(static_cast<double>(column % finer) / finer),
-                              v = spline_weights(static_cast<double>(row % finer) / finer);
-        Vector3d at = Vector3d::Zero();
-        for (int j = 0; j < 4; ++j)
-          for (int i = 0; i < 4; ++i) at += u[i] * v[j] * control(column / finer + i - 1, row / finer + j - 1);
-        fine.push_back(at);
-      }
-    return fine;
-  }
-
- private:
-  static constexpr double kStep_s = 1 / 240.0;
-  static constexpr double kFriction = 0.6;  // of a slide that is held back, each sweep
-  struct Link {
-    std::uint32_t a, b;
-    double length_mm, yielding;  // the share of its stretch that each end takes
-  };
-
-  std::uint32_t index(int column, int row) const { return static_cast<std::uint32_t>(row * size_.columns + column); }
-
-  // A place, or beyond an open border its mirror image.
-  Vector3d control(int column, int row) const {
-    if (size_.closed) column = (column + size_.columns) % size_.columns;
-    const auto beyond = [](int i, int count) { return i < 0 ? 1 : (i >= count ? count - 2 : -1); };
-    if (const int inner = beyond(row, size_.rows); inner >= 0)
-      return 2 * control(column, std::clamp(row, 0, size_.rows - 1)) - control(column, inner);
-    if (const int inner = beyond(column, size_.columns); inner >= 0)
-      return 2 * control(std::clamp(column, 0, size_.columns - 1), row) - control(inner, row);
-    return places_[index(column, row)];
-  }
-
-  void add_links(const Pattern& pattern, const Bending& bending) {
-    constexpr double kThread = 0, kShear = 2e-6;  // compliance of a unit mass, s^2
-    struct Kind {
-      int right, up;
-      double compliance_s2;
-    };
-    // Links that follow one another share no point, so that a processor works on several at once.
-    for (const Kind& kind : {Kind{1, 0, kThread},
-                             {0, 1, kThread},
-                             {1, 1, kShear},
-                             {-1, 1, kShear},
-                             {2, 0, bending.near_s2},
-                             {0, 2, bending.near_s2},
-                             {5, 0, bending.far_s2},
-                             {0, 5, bending.far_s2}})
-      for (const int half : {0, 1})
-        for (int row = 0; row + kind.up < size_.rows; ++row)
-          for (int column = 0; column < size_.columns; ++column) {
-            int to = column + kind.right;
-            if (size_.closed) to = (to + size_.columns) % size_.columns;
-            if (to < 0 || to >= size_.columns) continue;
-            if ((kind.up > 0 ? row / kind.up : column / kind.right) % 2 != half) continue;
-            const double length_mm = (pattern(column + kind.right, row + kind.up) - pattern(column, row)).norm();
-            links_.push_back({index(column, row), index(to, row + kind.up), length_mm,
-                              1 / (2 + kind.compliance_s2 / (kStep_s * kStep_s))});
-          }
-  }
-
-  void pull(const Link& link) {
-    const Vector3d between = places_[link.b] - places_[link.a];
-    const double length = std::max(between.norm(), 1e-9);
-    const double share = (1 - link.length_mm / length) * link.yielding;
-    places_[link.a] += share * between;
-    places_[link.b] -= share * between;
-  }
-
-  template <class Body>
-  static void keep_outside(const Body& body, const Vector3d& before, Vector3d& at) {
-    const Vector3d out = body.outside(at);
-    if (out == at) return;
-    const Vector3d outwards = (out - at).normalized(), slid = out - before;
-    at = out - kFriction * (slid - slid.dot(outwards) * outwards);
-  }
-
-  Size size_;
-  std::vector<Vector3d> places_;
-  std::vector<std::uint32_t> pinned_{};
-  std::vector<Link> links_{};
 };
 
 // With its lowest point at z = 0.
@@ -350,6 +228,55 @@ struct Maker {
     });
   }
 
+  UvMesh operator()(const SariShape& s) const {
+    constexpr int kAcross = 224, kDown = 300, kSariFiner = 2, kSariSteps = 240, kSariSweeps = 8, kSariSmoother = 2;
+    const double step_mm = s.length_mm / kDown;
+    const int crest = static_cast<int>(std::lround((s.length_mm - s.front_mm) / step_mm));  // rows from the hem behind
+    // What is pinned to the shoulder keeps its pleats off it.
+    const Shoulder shoulder{.radius_mm = 0.75 * s.shoulder_radius_mm,
+                            .along = Vector3d(std::cos(s.slope_deg * kDegree), 0, -std::sin(s.slope_deg * kDegree))};
+    const double round_mm = s.shoulder_radius_mm + kClearance_mm;
+    std::vector<Vector3d> places;
+    for (int row = 0; row <= kDown; ++row) {
+      const double behind_mm = (crest - row) * step_mm, side = behind_mm < 0 ? -1 : 1;
+      const double part = std::abs(behind_mm) / (step_mm * (behind_mm < 0 ? kDown - crest : crest));
+      const double hung_mm = s.width_mm * (s.gathered + 0.5 * (0.9 - s.gathered) * part);
+      FoldedLine hung;
+      for (int i = 0; i <= kFine; ++i) {
+        const double x = static_cast<double>(i) / kFine;
+        const double wave =
+            2 * std::numbers::pi * (s.pleats * x + 0.15 * std::sin(9 * x) + 0.4 * part * std::sin(5 * x + 1 + side));
+        hung.base.emplace_back(hung_mm * (x - 0.5), 0);
+        hung.fold.emplace_back(0, 1 - std::cos(wave + 0.3 * std::sin(wave)));
+      }
+      // Over the shoulder and straight down on both sides of it; folds stand off it, and their way over it is longer.
+      const Vector3d up = Vector3d(-shoulder.along.z(), 0, shoulder.along.x());
+      for (const Vector2d& at : by_length(folded_to(s.width_mm, s.width_mm / s.pleats, hung), kAcross)) {
+        const double off_mm = round_mm + at.y(), quarter_mm = off_mm * std::numbers::pi / 2;
+        const double over_rad = std::clamp(behind_mm, -quarter_mm, quarter_mm) / off_mm;
+        const double down_mm = std::max(0.0, std::abs(behind_mm) - quarter_mm);
+        places.emplace_back(at.x() * shoulder.along +
+                            off_mm * (std::sin(over_rad) * Vector3d::UnitY() + std::cos(over_rad) * up) -
+                            Vector3d(0, 0, down_mm));
+      }
+    }
+    const auto pattern = [&](double column, double row) {
+      return Vector2d(s.width_mm * column / kAcross, s.length_mm - row * step_mm);
+    };
+    HangingSheet cloth({kAcross + 1, kDown + 1}, kSoft, pattern, std::move(places));
+    // Over the shoulder's top the pleats keep what they were laid in.
+    const int kept = static_cast<int>(std::ceil(0.5 * std::numbers::pi * round_mm / step_mm));
+    for (int row = crest - kept; row <= crest + kept; ++row) cloth.pin_row(row);
+    cloth.hang_from_row(crest, pattern);
+    cloth.keep_order(shoulder.along);
+    cloth.settle(kSariSteps, kSariSweeps, shoulder, [&](int step) { go_on(static_cast<double>(step) / kSariSteps); });
+    cloth.smooth(kSariSmoother);
+    return mesh_of(cloth.refined(kSariFiner), kAcross * kSariFiner + 1, kDown * kSariFiner + 1, false,
+                   [&](int column, int row) {
+                     return pattern(static_cast<double>(column) / kSariFiner, static_cast<double>(row) / kSariFiner);
+                   });
+  }
+
   UvMesh operator()(const DrapeShape& s) const;
 };
 
@@ -393,6 +320,15 @@ UvMesh Maker::operator()(const DrapeShape& s) const {
 }  // namespace
 
 UvMesh garment_mesh(const GarmentShape& shape, const std::function<bool(double)>& progress) {
+  if (const auto* sari = std::get_if<SariShape>(&shape)) {
+    const double over_mm = std::numbers::pi * sari->shoulder_radius_mm;
+    if (!(sari->front_mm > over_mm && sari->length_mm - sari->front_mm > over_mm))
+      throw std::runtime_error("a sari of " + std::to_string(std::lround(sari->length_mm)) + " mm, " +
+                               std::to_string(std::lround(sari->front_mm)) +
+                               " mm of it in front, does not hang down on both sides of the shoulder; give front_mm " +
+                               "more than " + std::to_string(std::lround(over_mm)) +
+                               " and as much less than length_mm");
+  }
   if (const auto* skirt = std::get_if<SkirtShape>(&shape); skirt && !(skirt->flare_deg >= 60))
     throw std::runtime_error("a skirt of " + std::to_string(skirt->flare_deg) +
                              " degrees is narrower at the hem than a leg needs; give flare_deg from 60 to 360");

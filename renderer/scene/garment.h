@@ -3,7 +3,7 @@
 //
 // A hanging cloth hardly stretches: rings and rows keep the length that they have in the pattern, and fold where there
 // is less room for them. Folds are laid regularly and then fall into what gravity makes of them, by position-based
-// dynamics [Macklin 2016, doi 10.1145/2994258.2994272]; cloth does not meet itself there.
+// dynamics (renderer/scene/hanging_sheet.h); cloth does not meet itself there.
 #pragma once
 
 #include <functional>
@@ -36,7 +36,17 @@ struct DrapeShape {
   double ball_radius_mm = 220;
 };
 
-using GarmentShape = std::variant<SkirtShape, PleatedShape, DrapeShape>;
+// A sari's whole length, pleated across and pinned over a shoulder: a bar along x that slopes to the right. In front
+// (towards -y) hangs the face; the lowest point is at z = 0.
+struct SariShape {
+  double length_mm = 6000, width_mm = 1150;
+  double front_mm = 2700;  // of the length, in front of the shoulder
+  int pleats = 10;
+  double gathered = 0.6;  // width over the shoulder over width
+  double shoulder_radius_mm = 100, slope_deg = 3;
+};
+
+using GarmentShape = std::variant<SkirtShape, PleatedShape, DrapeShape, SariShape>;
 
 // The mesh of a garment. `progress` is called now and then with the finished part; returning false stops the work.
 // Errors: std::runtime_error with one line for a skirt that is narrower than its pattern lets it be, or when stopped by

@@ -7,22 +7,17 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "renderer/scattering/fiber_bundle.h"
 #include "renderer/trace/path_tracer.h"
 #include "renderer/weave/woven_patch.h"
 #include "station/bench/bench_objects.h"
 #include "station/bench/camera_adapter.h"
 #include "station/bench/cloth_on_cylinder.h"
+#include "station/bench/spool_fibers.h"
 #include "station/documents/matrix_rows.h"
 
 namespace station {
 namespace {
 
-// Length of a fiber's pieces in radii: below the 30 up to which curve_geometry.cpp has rays meet cylinders.
-constexpr double kPieceRadii = 29;
-constexpr int kPackingAttempts = 3000, kPackingTries = 40;
-constexpr int kPiecesPerTurn = 16;                // of a ply
-constexpr double kOpaque = 1e6;                   // 1 / energy of what comes back from inside metal
 constexpr std::uint64_t kPictureSeedStep = 7919;  // between the seeds of two pictures
 constexpr double kRoomLampRadius_mm = 250;
 constexpr int kRoughSamples = 2;                          // of live view
@@ -50,92 +45,6 @@ void add(renderer::Scene& scene, std::vector<renderer::TriangleMesh> meshes, con
     transform(mesh, scene_from_mesh);
     scene.meshes.push_back(std::move(mesh));
   }
-}
-
-std::vector<Eigen::Vector2d> places_in_bundle(const Spool& spool, double radius_mm, int count, std::uint64_t seed,
-                                              double flatness = 1) {
-  const SimulatedFibers& fibers = *spool.simulation;
-  std::size_t most = 0;
-  // Random sequential placement may end a fiber short of what another order of the same circles would hold: try again.
-  for (int attempt = 0; attempt < kPackingTries; ++attempt) {
-    const auto centres = renderer::pack_fibers(radius_mm, fibers.fiber_radius_mm, fibers.min_gap_mm, kPackingAttempts,
-                                               count, seed + static_cast<std::uint64_t>(attempt),
-                                               renderer::FiberPlacement::area_uniform, flatness);
-    if (static_cast<int>(centres.size()) == count) return centres;
-    most = std::max(most, centres.size());
-  }
-  throw std::runtime_error("spool \"" + spool.name + "\": at most " + std::to_string(most) + " of " +
-                           std::to_string(count) +
-                           " fibers fit into a thread at random; make fibers_per_thread or fiber_radius_mm smaller");
-}
-
-// A metal fiber: an opaque thread that only reflects, with a colour.
-renderer::ScatteringModel scattering_of(const SimulatedFibers& fibers) {
-  if (!fibers.reflectance) return fibers.scattering;
-  renderer::ThreadParameters metal;
-  const double m = fibers.scattering.beta_m, n = fibers.scattering.beta_n;
-  metal.alpha = {m, m, m}, metal.beta = {n, n, n};
-  metal.r0a = metal.r0b = 0, metal.r0c = 1;
-  metal.r1a = 0;
-  metal.r2a = 0, metal.r2b = kOpaque, metal.r2c = 0;
-  metal.lambda0_rgb = *fibers.reflectance;
-  metal.exit = renderer::ThreadExit::entry_point;
-  return metal;
-}
-
-renderer::CurveSet straight_fibers(const Spool& spool) {
-  const SimulatedFibers& fibers = *spool.simulation;
-  renderer::CurveSet curves;
-  curves.scattering = scattering_of(fibers);
-  std::uint64_t seed = fibers.seed * kSeedsPerSpool;  // a stream of its own for every thread of every spool
-  for (const inversion::Segment3& line : inversion::thread_lines(spool.wrapping)) {
-    const int pieces =
-        static_cast<int>(std::ceil((line.to - line.from).norm() / (kPieceRadii * fibers.fiber_radius_mm)));
-    for (const Eigen::Vector2d& centre : fiber_centres(spool, ++seed * kFiberSeedStep)) {
-      const Eigen::Vector3d offset(centre.x(), 0, centre.y());  // threads run along y
-      inversion::add_straight_curve(curves, {line.from + offset, line.to + offset}, fibers.fiber_radius_mm, pieces);
-    }
-  }
-  return curves;
-}
-
-// Plies turn about the thread, and their fibers keep their places in them; each thread begins at an angle of its own.
-std::vector<renderer::CurveSet> plied_fibers(const Spool& spool) {
-  const SimulatedFibers& fibers = *spool.simulation;
-  const std::vector<Eigen::Vector3d>& absorptions = fibers.plies->sigma_a;
-  const auto plies = static_cast<int>(absorptions.size());
-  const double radius_mm = spool.wrapping.thread_diameter_mm / 2, share = std::sin(std::numbers::pi / plies),
-               of_ply_mm = radius_mm * share / (1 + share), out_mm = radius_mm - of_ply_mm;
-  const double step_rad = 2 * std::numbers::pi / kPiecesPerTurn;
-  const double drawn_mm = out_mm * 3 / (2 + std::cos(step_rad));  // B-splines run inside their control points
-  std::vector<renderer::CurveSet> sets(absorptions.size());
-  std::uint64_t seed = fibers.seed * kSeedsPerSpool;
-  for (const inversion::Segment3& line : inversion::thread_lines(spool.wrapping)) {
-    const double step_mm = fibers.plies->turn_mm / kPiecesPerTurn;
-    const int steps = static_cast<int>(std::ceil((line.to - line.from).norm() / step_mm));
-    const double begin_rad = 2 * std::numbers::pi * static_cast<double>(++seed % kPiecesPerTurn) / kPiecesPerTurn;
-    for (int ply = 0; ply < plies; ++ply) {
-      renderer::CurveSet& curves = sets[static_cast<std::size_t>(ply)];
-      renderer::FiberParameters scattering = fibers.scattering;
-      scattering.sigma_a = absorptions[static_cast<std::size_t>(ply)];
-      curves.scattering = scattering;
-      const int count = (fibers.fibers_per_thread + ply) / plies;  // they add up
-      const std::uint64_t of_ply = seed * kFiberSeedStep + static_cast<std::uint64_t>(ply * kPackingTries);
-      for (const Eigen::Vector2d& place : places_in_bundle(spool, of_ply_mm, count, of_ply)) {
-        std::vector<Eigen::Vector4f> points;
-        for (int i = 0; i <= steps; ++i) {
-          const double angle = begin_rad + 2 * std::numbers::pi * ply / plies + i * step_rad;
-          const Eigen::Vector3d at =
-              line.from + (line.to - line.from) * i / steps +
-              Eigen::Vector3d(drawn_mm * std::cos(angle) + place.x(), 0, drawn_mm * std::sin(angle) + place.y());
-          points.emplace_back(at.cast<float>().x(), at.cast<float>().y(), at.cast<float>().z(),
-                              static_cast<float>(fibers.fiber_radius_mm));
-        }
-        curves.add_clamped_curve(points);
-      }
-    }
-  }
-  return sets;
 }
 
 struct Painter {
@@ -222,29 +131,6 @@ struct Painter {
 
 }  // namespace
 
-const SimulatedFibers& simulated_fibers(const Spool& spool) {
-  if (!spool.simulation)
-    throw std::runtime_error("spool \"" + spool.name +
-                             "\" has no \"simulation\" part; the simulated bench cannot draw it");
-  return *spool.simulation;
-}
-
-const SimulatedFibers& bundled_fibers(const Spool& spool) {
-  const SimulatedFibers& fibers = simulated_fibers(spool);
-  if (fibers.reflectance || fibers.plies)
-    throw std::runtime_error("spool \"" + spool.name + "\" is simulated " + (fibers.plies ? "of plies" : "of metal") +
-                             "; give one whose threads are a bundle of fibers with \"eta\" and \"sigma_a\"");
-  return fibers;
-}
-
-std::vector<Eigen::Vector2d> fiber_centres(const Spool& spool, std::uint64_t seed, double flatness) {
-  const SimulatedFibers& fibers = simulated_fibers(spool);
-  return places_in_bundle(spool, spool.wrapping.thread_diameter_mm / 2, fibers.fibers_per_thread, seed, flatness);
-}
-
-std::vector<renderer::CurveSet> spool_fibers(const Spool& spool) {
-  return simulated_fibers(spool).plies ? plied_fibers(spool) : std::vector{straight_fibers(spool)};
-}
 rig::DrawPicture make_bench_picture(const RigFile& rig, const std::optional<Spool>& spool) {
   if (!rig.simulation)
     throw std::runtime_error("rig \"" + rig.name + "\" has no \"simulation\" part; there is no bench to draw");

@@ -27,7 +27,7 @@ struct OutputOptions {
         ->excludes(quiet_option);
   }
   ProgressStyle progress_style() const {
-    return quiet ? ProgressStyle::quiet : json ? ProgressStyle::json : ProgressStyle::automatic;
+    return quiet ? ProgressStyle::quiet : json ? ProgressStyle::json_lines : ProgressStyle::automatic;
   }
 };
 

@@ -1,7 +1,9 @@
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
+#include "station/cloth/measure_fabric.h"
 #include "station/cloth/predict_fabric.h"
 #include "station/commands/commands.h"
 #include "station/commands/output_options.h"
@@ -32,21 +34,22 @@ void print(const PredictedView& view) {
 void add_predict_command(CLI::App& app) {
   struct PredictArguments {
     PredictRequest request;
-    bool sett = false;
+    MeasureFabricRequest measure{.sett = false};
     std::filesystem::path draft;
     OutputOptions output;
   };
   auto arguments = std::make_shared<PredictArguments>();
   PredictRequest& request = arguments->request;
+  SaidFabric& cloth = request.cloth;
   CLI::App* command =
       app.add_subcommand("predict", "what a cloth on the cylinder should look like, beside its photographs");
-  command->add_option("session", request.session, "developed session of a cloth (capture --spool FABRIC)")->required();
-  command->add_option("--fabric", request.fabric, "fabric file whose weave is predicted instead of the session's own");
-  or_ready("threads", command->add_option("--warp", request.warp,
+  command->add_option("session", cloth.session, "developed session of a cloth (capture --spool FABRIC)")->required();
+  command->add_option("--fabric", cloth.fabric, "fabric file whose weave is predicted instead of the session's own");
+  or_ready("threads", command->add_option("--warp", cloth.warp,
                                           "session of the warp's thread, a file of its model or a ready thread's name, "
                                           "instead of what the fabric says"));
-  or_ready("threads", command->add_option("--weft", request.weft, "likewise, of the weft"));
-  command->add_option("--model", request.model, "which of the sessions' fitted models")
+  or_ready("threads", command->add_option("--weft", cloth.weft, "likewise, of the weft"));
+  command->add_option("--model", cloth.model, "which of the sessions' fitted models")
       ->check(CLI::IsMember({"thread", "bundle", "fiber", "yarn"}))
       ->capture_default_str();
   command->add_option("--spp", request.samples_per_pixel, "samples per pixel")
@@ -55,21 +58,29 @@ void add_predict_command(CLI::App& app) {
   command->add_option("--seed", request.seed, "of the paths")->capture_default_str();
   command->add_flag("--fit-scale", request.fit_scale,
                     "compare colours after a scale that makes the prediction as bright as its photograph");
-  command->add_flag("--sett", arguments->sett,
+  command->add_flag("--sett", arguments->measure.sett,
                     "predict nothing: ends and picks per cm by the repeat that the photographs show");
-  command->add_option("--draft-out", arguments->draft, "with --sett: the weave's draft with these, to write")
-      ->needs("--sett");
+  command->add_flag("--height", arguments->measure.height,
+                    "compare no colours: how far the yarns stand out, by the width of the highlight");
+  command->add_option("--draft-out", arguments->draft,
+                      "with --sett or --height: the weave's draft with these, to write");
   arguments->output.add_to(*command);
   command->callback([=] {
     arguments->request.progress_style = arguments->output.progress_style();
-    if (arguments->sett) {
-      const MeasuredSett sett =
-          measure_sett(arguments->request.session, arguments->request.fabric, arguments->request.progress_style);
-      if (!arguments->draft.empty()) write_json_file(arguments->draft, to_json(sett.draft));
+    MeasureFabricRequest& measure = arguments->measure;
+    if (!arguments->draft.empty() && !measure.sett && !measure.height)
+      throw std::runtime_error(
+          "--draft-out is for a draft of what was measured; give --sett, --height or both with it");
+    if (measure.sett || measure.height) {
+      const PredictRequest& asked = arguments->request;
+      measure.cloth = asked.cloth, measure.progress_style = asked.progress_style, measure.seed = asked.seed;
+      if (command->count("--spp") > 0) measure.samples_per_pixel = asked.samples_per_pixel;
+      const MeasuredFabric measured = measure_fabric(measure);
+      if (!arguments->draft.empty()) write_json_file(arguments->draft, to_json(measured.draft));
       if (arguments->output.json)
-        std::cout << to_json(sett).dump() << "\n";
+        std::cout << to_json(measured).dump() << "\n";
       else if (!arguments->output.quiet)
-        std::cout << describe(sett);
+        std::cout << describe(measured);
       return;
     }
     nlohmann::json views = nlohmann::json::array();

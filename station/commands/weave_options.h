@@ -14,6 +14,8 @@ inline void add_weave_options(CLI::App& command, ThreadsToWeave& cloth) {
   or_ready("threads", command.add_option("--weft", cloth.weft_thread,
                                          "thread or bundle file of the weft, or a ready thread's name; the warp's "
                                          "without it"));
+  command.add_flag("--uneven", cloth.uneven,
+                   "threads as uneven in shade and thickness as invert measured them; even ones without it");
   command
       .add_option(
           "--fibers", cloth.fibers,

@@ -93,6 +93,17 @@ renderer::GarmentShape parse_garment(ObjectReader& reader, const std::string& ki
     if (reader.has("gathered")) s.gathered = reader.number("gathered", 0.3, 0.9);
     return s;
   }
+  if (kind == "sari") {
+    renderer::SariShape s;
+    read_length(reader, "length_mm", kLeastGarment, s.length_mm);
+    read_length(reader, "width_mm", kLeastGarment, s.width_mm);
+    read_length(reader, "front_mm", kLeastGarment, s.front_mm);
+    read_length(reader, "shoulder_radius_mm", kLeastGarment, s.shoulder_radius_mm);
+    if (reader.has("pleats")) s.pleats = reader.integer("pleats", 2, 20);
+    if (reader.has("gathered")) s.gathered = reader.number("gathered", 0.4, 0.9);
+    if (reader.has("slope_deg")) s.slope_deg = reader.number("slope_deg", 0, 30);
+    return s;
+  }
   renderer::DrapeShape s;
   read_length(reader, "side_mm", kLeastGarment, s.side_mm);
   read_length(reader, "ball_radius_mm", kLeastGarment, s.ball_radius_mm);
@@ -184,7 +195,7 @@ SceneCloth parse_cloth(ObjectReader reader, const std::filesystem::path& folder,
   SceneCloth cloth{.weave = parse_weave(reader, folder)};
   check_threads(reader, cloth, threads.size());
   ObjectReader shape = reader.object("shape");
-  cloth.shape = parse_shape(shape, {"swatch", "cylinder", "mesh", "skirt", "pleats", "drape"}, folder);
+  cloth.shape = parse_shape(shape, {"swatch", "cylinder", "mesh", "skirt", "pleats", "drape", "sari"}, folder);
   shape.finish();
   cloth.world_from_cloth = pose(reader, "world_from_cloth");
   if (reader.has("method")) cloth.two_scale = reader.choice("method", {"two_scale", "brute_force"}) == "two_scale";

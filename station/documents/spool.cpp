@@ -49,6 +49,16 @@ SimulatedFibers parse_fibers(ObjectReader fibers) {
     else
       result.scattering.sigma_a = fibers.vector3("sigma_a", kAbsorption);
   }
+  if (fibers.has("uneven")) {
+    if (result.reflectance || result.plies)
+      fibers.refuse("uneven", "is for threads of one bundle of fibers with \"eta\" and \"sigma_a\"; leave it out");
+    ObjectReader reader = fibers.object("uneven");
+    SimulatedUnevenness& uneven = result.uneven.emplace();
+    uneven.shade = reader.number("shade", 0, 1);
+    uneven.diameter = reader.number("diameter", 0, 0.15);
+    uneven.length_mm = reader.number("length_mm", 20, 1e5);
+    reader.finish();
+  }
   result.scattering.beta_m = fibers.number("beta_m", kRoughness);
   result.scattering.beta_n = fibers.number("beta_n", kRoughness);
   result.seed = static_cast<std::uint64_t>(fibers.integer("seed", 0, 1 << 30));

@@ -23,6 +23,12 @@ struct SimulatedPlies {
   double turn_mm = 5;                      // length of one turn along the thread
 };
 
+// Standard deviations along the thread of the logarithm of its absorption and of its diameter (a share), and over what
+// length of thread their correlation falls to 1 / e.
+struct SimulatedUnevenness {
+  double shade = 0, diameter = 0, length_mm = 300;
+};
+
 // The fibers that the simulated bench draws: every thread is a bundle of them, placed at random in its cross-section.
 struct SimulatedFibers {
   int fibers_per_thread = 12;  // of all plies together
@@ -31,6 +37,7 @@ struct SimulatedFibers {
   renderer::FiberParameters scattering;
   std::optional<Eigen::Vector3d> reflectance{};  // of metal, RGB, in place of eta and absorption: nothing goes through
   std::optional<SimulatedPlies> plies{};
+  std::optional<SimulatedUnevenness> uneven{};  // of one bundle of dielectric fibers
   std::uint64_t seed = 1;
 };
 

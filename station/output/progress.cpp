@@ -44,7 +44,7 @@ void ProgressDisplay::show(int done, int total, const std::string& label, double
   const double elapsed = seconds();
   if (!first_) first_ = done;
   if (seconds_left < 0 && done > *first_) seconds_left = elapsed / (done - *first_) * (total - done);
-  if (style_ == ProgressStyle::json) {
+  if (style_ == ProgressStyle::json_lines) {
     nlohmann::json line{{"task", task_}, {"done", done}, {"total", total}, {"label", label}};
     if (seconds_left >= 0) line["seconds_left"] = seconds_left;
     std::fprintf(stderr, "%s\n", line.dump().c_str());
@@ -70,7 +70,7 @@ double ProgressDisplay::seconds() const {
 void ProgressDisplay::note(const std::string& text) {
   if (style_ == ProgressStyle::quiet) return;
   const std::lock_guard lock(mutex_);
-  if (style_ == ProgressStyle::json)
+  if (style_ == ProgressStyle::json_lines)
     std::fprintf(stderr, "%s\n", nlohmann::json{{"task", task_}, {"note", text}}.dump().c_str());
   else
     std::fprintf(stderr, "%s%s: %s\n", open_line_ ? "\r\033[K" : "", task_.c_str(), text.c_str());

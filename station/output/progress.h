@@ -11,7 +11,7 @@ namespace station {
 
 double seconds_since(std::chrono::steady_clock::time_point begin);
 
-enum class ProgressStyle { automatic, quiet, json };  // automatic: bar on a terminal, lines elsewhere
+enum class ProgressStyle { automatic, quiet, json_lines };  // automatic: bar on a terminal, lines elsewhere
 
 class ProgressDisplay {
  public:

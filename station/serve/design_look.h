@@ -23,9 +23,9 @@ class DesignLook {
   DesignLook(const DesignLook&) = delete;
   DesignLook& operator=(const DesignLook&) = delete;
 
-  // Shows what is asked for: {"number", "weft" (numbers of threads in the library), "draft", "shape", and of the view
-  // what cloth_stage.h has}, and returns the look's number. Other threads, drafts and shapes begin another process.
-  // Throws Refused for what may not be asked.
+  // Shows what is asked for: {"number", "weft" (threads: numbers in the library, or names of ready ones), "draft",
+  // "shape", and of the view what cloth_stage.h has}, and returns the look's number. Other threads, drafts and shapes
+  // begin another process. Throws Refused for what may not be asked.
   int show(const nlohmann::json& asked);
   void end();
 

@@ -23,6 +23,7 @@ using nlohmann::json;
 using Words = std::vector<std::string>;
 
 constexpr std::uint64_t kLargestNumber = 1'000'000;
+constexpr const char* kReadyThreads = "library/threads";
 
 struct Asked {
   const json& fields;
@@ -46,6 +47,12 @@ struct Asked {
     return found->get<int>();
   }
   std::string thread() const { return workspace.thread_in_library(number("number")); }
+  // Of the library by its number, or a ready one by its name.
+  std::string thread_or_ready(const char* key) const {
+    const auto found = fields.find(key);
+    if (found != fields.end() && found->is_string()) return ready_thread(name_of(fields, key));
+    return workspace.thread_in_library(number(key));
+  }
   bool flag(const char* key) const {
     const auto found = fields.find(key);
     return found != fields.end() && found->is_boolean() && found->get<bool>();
@@ -304,9 +311,9 @@ JobCommand job_command(const json& asked, const Workspace& workspace, const fs::
 std::vector<std::string> design_words(const json& fields, const Workspace& workspace) {
   const fs::path no_rig;
   const Asked asked{fields, workspace, no_rig};
-  Words words{asked.thread()};
-  if (const int weft = asked.number("weft"); weft != asked.number("number"))
-    words.insert(words.end(), {"--weft", workspace.thread_in_library(weft).string()});
+  const std::string warp = asked.thread_or_ready("number"), weft = asked.thread_or_ready("weft");
+  Words words{warp};
+  if (weft != warp) words.insert(words.end(), {"--weft", weft});
   words.insert(words.end(), {"--draft", ready_draft(name_of(fields, "draft")).string()});
   if (const std::string shape = asked.text("shape"); !shape.empty()) {
     const std::vector<std::string> shapes = cloth_shapes();
@@ -335,6 +342,16 @@ fs::path ready_draft(const std::string& name) {
 
 std::vector<std::string> ready_drafts() {
   return files_in(data_folder() / "drafts", ".json");
+}
+
+fs::path ready_thread(const std::string& name) {
+  const fs::path file = data_folder() / kReadyThreads / (checked_name(name) + ".json");
+  if (!fs::exists(file)) throw Refused(404, "there is no ready thread " + name);
+  return file;
+}
+
+std::vector<std::string> ready_threads() {
+  return files_in(data_folder() / kReadyThreads, ".json");
 }
 
 }  // namespace station

@@ -30,7 +30,7 @@ struct JobCommand {
 JobCommand job_command(const nlohmann::json& asked, const Workspace& workspace, const std::filesystem::path& rig);
 
 // The arguments that say which cloth a design is, for `cloth` and `look`: threads, draft and, where it is asked for,
-// shape. Throws Refused likewise.
+// shape. Each thread is a number of the library's or the name of a ready one. Throws Refused likewise.
 std::vector<std::string> design_words(const nlohmann::json& asked, const Workspace& workspace);
 
 // The forms in which a thread of the library may be exported.
@@ -39,5 +39,9 @@ std::vector<std::string> export_formats();
 // Ready weave drafts that `cloth` may be asked for, by name.
 std::filesystem::path ready_draft(const std::string& name);
 std::vector<std::string> ready_drafts();
+
+// Threads that come with the program, by name: digitized on the simulated bench.
+std::filesystem::path ready_thread(const std::string& name);
+std::vector<std::string> ready_threads();
 
 }  // namespace station

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "station/bench/bench_picture.h"
+#include "station/bench/spool_fibers.h"
 #include "station/data/data_folder.h"
 #include "station/documents/disk/file_name.h"
 #include "station/documents/reader.h"

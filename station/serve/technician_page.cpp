@@ -295,6 +295,7 @@ json TechnicianPage::state() {
   json document = workspace_.contents();
   document["rig"] = rig_.name;
   document["drafts"] = ready_drafts();
+  document["ready_threads"] = ready_threads();
   document["shapes"] = cloth_shapes();
   document["fibers"] = fiber_kinds();
   document["export_formats"] = export_formats();

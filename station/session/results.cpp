@@ -9,7 +9,7 @@
 namespace station {
 namespace {
 
-constexpr std::array<const char*, 6> kClothPictures{"swatch", "cylinder", "skirt", "pleats", "drape", "mesh"};
+constexpr std::array<const char*, 7> kClothPictures{"swatch", "cylinder", "skirt", "pleats", "drape", "sari", "mesh"};
 
 }  // namespace
 

@@ -34,7 +34,7 @@ RigCalibration calibrate_rig(const CalibrateRequest& request) {
     if (request.asked) watched.emplace(*request.asked);
     RigDevices devices = open_rig(rig, std::nullopt, watched ? &*watched : nullptr);
     std::unique_ptr<rig::Operator> person;  // behind its drawing, which a program makes
-    if (rig.operator_driver == "console" && request.progress_style == ProgressStyle::json) {
+    if (rig.operator_driver == "console" && request.progress_style == ProgressStyle::json_lines) {
       person = std::move(devices.person);
       devices.person = make_drawing_operator(*person, *request.asked);
     }

@@ -107,11 +107,10 @@ bool is_floor(const json& object) {
 }  // namespace
 
 const std::vector<ClothStage>& cloth_stages() {
-  static const std::vector<ClothStage> stages{{"swatch", "twill_swatch.json", 720, 720, 32},
-                                              {"cylinder", "satin_cylinder.json", 480, 720, 32},
-                                              {"skirt", "satin_skirt.json", 617, 720, 64},
-                                              {"pleats", "twill_pleats.json", 540, 720, 64},
-                                              {"drape", "satin_drape.json", 720, 540, 64}};
+  static const std::vector<ClothStage> stages{
+      {"swatch", "twill_swatch.json", 720, 720, 32}, {"cylinder", "satin_cylinder.json", 480, 720, 32},
+      {"skirt", "satin_skirt.json", 617, 720, 64},   {"pleats", "twill_pleats.json", 540, 720, 64},
+      {"drape", "satin_drape.json", 720, 540, 64},   {"sari", "satin_sari.json", 360, 720, 64}};
   return stages;
 }
 
@@ -127,7 +126,7 @@ const ClothStage& cloth_stage(const std::string& shape) {
   const auto found = std::ranges::find(cloth_stages(), shape, &ClothStage::shape);
   if (found == cloth_stages().end())
     throw std::runtime_error("there is no shape '" + shape +
-                             "' for cloth; take swatch, cylinder, skirt, pleats or drape");
+                             "' for cloth; take swatch, cylinder, skirt, pleats, drape or sari");
   return *found;
 }
 

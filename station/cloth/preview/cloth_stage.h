@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -12,7 +11,7 @@
 namespace station {
 
 struct ClothStage {
-  std::string shape;                // "swatch", "cylinder", "skirt", "pleats" or "drape"
+  std::string shape;                // "swatch", "cylinder", "skirt", "pleats", "drape" or "sari"
   std::string scene;                // in station/data/scenes
   int width_px = 0, height_px = 0;  // on a screen
   int samples_per_pixel = 0;
@@ -54,9 +53,9 @@ struct StagedMesh {
 
 // What is put on a stage.
 struct OnStage {
-  std::array<std::string, 2> threads;  // of warp and weft
-  std::string fibers{};                // what is seen of them close by (documents/cloth_fibers.h), or nothing
-  std::string lights = "studio";       // one of cloth_lights(), or a picture, as the scene names it
+  std::vector<std::string> threads;  // of the patch
+  std::string fibers{};              // what is seen of them close by (documents/cloth_fibers.h), or nothing
+  std::string lights = "studio";     // one of cloth_lights(), or a picture, as the scene names it
   std::optional<StagedMesh> mesh{};
 };
 

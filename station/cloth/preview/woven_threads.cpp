@@ -7,6 +7,7 @@
 #include "station/cloth/cloth_colour.h"
 #include "station/cloth/draft_of_one_thread.h"
 #include "station/cloth/patch_picture.h"
+#include "station/cloth/uneven_threads.h"
 #include "station/documents/bundle_file.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/patch_file.h"
@@ -73,6 +74,30 @@ std::array<std::string, 2> write_threads(const ThreadsToWeave& wanted, const Sys
   return files;
 }
 
+std::array<ThreadIrregularity, 2> irregularities_of(const Systems& own) {
+  std::array<ThreadIrregularity, 2> found;
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    if (is_bundle_file(own.at(k)))
+      throw std::runtime_error("uneven yarns are for threads, and " + own.at(k).string() +
+                               " is a bundle; leave --uneven out, or take its thread");
+    found.at(k) = irregularity_of(read_thread(own.at(k)), own.at(k));
+  }
+  return found;
+}
+
+// Writes each system's thread in its shades; returns their files.
+std::vector<std::string> write_shades(const fs::path& folder, const std::array<std::string, 2>& threads,
+                                      const std::array<ThreadIrregularity, 2>& uneven) {
+  std::vector<std::string> files;
+  for (std::size_t k = 0; k < threads.size(); ++k)
+    for (const ThreadFile& shade : shades_of(read_thread(folder / threads.at(k)), uneven.at(k).shade)) {
+      files.push_back(std::string(kSystems.at(k)) + "_shade_" + std::to_string(files.size() % kThreadShades + 1) +
+                      ".json");
+      write_json_file(folder / files.back(), to_json(shade));
+    }
+  return files;
+}
+
 // Each system of the draft as thick as its thread.
 renderer::Draft draft_of_threads(const fs::path& file, double warp_mm, double weft_mm) {
   renderer::Draft draft = draft_of_one_thread(read_draft(file), warp_mm);
@@ -106,7 +131,12 @@ WovenThreads weave_threads(const ThreadsToWeave& wanted, ProgressStyle progress_
   if (code)
     throw std::runtime_error("cannot make " + folder.string() + ": " + code.message() +
                              "; is the folder that it is in writable?");
-  const renderer::Draft draft = draft_of_threads(wanted.draft, thread.diameter_mm, weft.diameter_mm);
+  renderer::Draft draft = draft_of_threads(wanted.draft, thread.diameter_mm, weft.diameter_mm);
+  std::array<ThreadIrregularity, 2> irregularities;
+  if (wanted.uneven) {
+    irregularities = irregularities_of(own);
+    draft = uneven_draft(draft, irregularities[kWarp], irregularities[kWeft]);
+  }
   ProgressDisplay progress("cloth", progress_style);
   const renderer::YarnPatch patch = weave_watched(draft, progress).patch;
   write_json_file(folder / "draft.json", to_json(draft));
@@ -117,7 +147,15 @@ WovenThreads weave_threads(const ThreadsToWeave& wanted, ProgressStyle progress_
   if (!wanted.fibers.empty()) woven.made_of["fibers"] = wanted.fibers;
   woven.made_of["threads"] = {read_json_file(own[kWarp]).value("name", ""),
                               read_json_file(own[kWeft]).value("name", "")};
-  woven.files = write_threads(wanted, own, patch, progress_style, woven.made_of);
+  const std::array<std::string, 2> files = write_threads(wanted, own, patch, progress_style, woven.made_of);
+  woven.files = {files.begin(), files.end()};
+  if (wanted.uneven) {
+    woven.files = write_shades(folder, files, irregularities);
+    for (std::size_t k = 0; k < kSystems.size(); ++k)
+      woven.made_of["uneven"][kSystems.at(k)] = {{"shade", irregularities.at(k).shade},
+                                                 {"diameter", irregularities.at(k).diameter},
+                                                 {"length_mm", irregularities.at(k).length_mm}};
+  }
   ThreadColours colours = colours_of_threads({own[kWarp], own[kWeft]});
   for (const auto& [colour, system] : {std::pair{wanted.warp_colour, kWarp}, {wanted.weft_colour, kWeft}})
     if (colour) colours[system] = {(*colour)[0], (*colour)[1], (*colour)[2]};

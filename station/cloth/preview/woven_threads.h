@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "station/documents/srgb.h"
 #include "station/output/progress.h"
@@ -21,10 +22,11 @@ struct ThreadsToWeave {
   // The colours of warp and weft (cloth_colour.h); a system without one has its digitized thread's own.
   std::optional<Srgb8> warp_colour{}, weft_colour{};
   std::string fibers{};  // what is seen of them close by, one of fiber_kinds(); empty: nothing
+  bool uneven = false;   // as the threads were measured to be (uneven_threads.h)
 };
 
 struct WovenThreads {
-  std::array<std::string, 2> files;               // of warp and weft, as a scene in the folder names them
+  std::vector<std::string> files;                 // the patch's threads in order, as a scene in the folder names them
   nlohmann::json made_of;                         // session/results.h, without what pictures add
   std::array<double, 9> linear_srgb_from_camera;  // the warp's
   std::string fibers{};                           // as they were asked for
@@ -32,7 +34,8 @@ struct WovenThreads {
 
 // Writes draft.json, patch.json, drawing.svg (the draft in the threads' colours), and the threads that are coloured or
 // to be copied. Errors: those of the files read and of weave_watched; std::runtime_error, one line, when a bundle is to
-// be coloured, the threads' colours are those of different cameras, or the folder cannot be made.
+// be coloured or uneven, a thread's irregularity was not measured, the threads' colours are those of different cameras,
+// or the folder cannot be made.
 WovenThreads weave_threads(const ThreadsToWeave& wanted, ProgressStyle progress_style);
 
 }  // namespace station

@@ -15,7 +15,8 @@ namespace {
 renderer::ClothShape built(const SceneShape& shape, ProgressDisplay& progress) {
   const auto* garment = std::get_if<SceneGarment>(&shape);
   if (garment) {
-    constexpr std::array<const char*, 3> kNames{"the ready skirt", "the ready pleats", "the ready drape"};
+    constexpr std::array<const char*, 4> kNames{"the ready skirt", "the ready pleats", "the ready drape",
+                                                "the ready sari"};
     return renderer::MeshShape{.mesh = std::make_shared<renderer::UvMesh>(garment_watched(garment->shape, progress)),
                                .placement = {.uv_mm = 1, .turn_rad = garment->turn_rad},
                                .name = kNames.at(garment->shape.index())};
@@ -41,10 +42,6 @@ std::vector<renderer::CurveSet> sewn(const SceneEmbroidery& embroidery, const re
   }
   return renderer::sewn_curves(std::move(sets), place, surface, renderer::surface_range(patch).high_mm);
 }
-
-}  // namespace
-
-namespace {
 
 // Flyaways absorb as much on their way as the cloth's first thread does.
 std::optional<renderer::Flyaways> flyaways_of(const SceneCloth& cloth, const renderer::YarnPatch& patch,

@@ -1,4 +1,4 @@
-// Design: cloth of any thread of the library, or of two, in any ready draft and shape; what was woven, to look at and to download.
+// Design: cloth of any thread of the library or of the ready ones, or of two, in any ready draft and shape; what was woven, to look at and to download.
 
 import {beginLook, lookAt, viewWanted} from "/design_look.js";
 import {allow, byId, fill, make, show, text} from "/document.js";
@@ -22,7 +22,10 @@ function propose() {
   form.name.value = proposed = `${form.draft.value} ${form.shape.value} ${threads}`;
 }
 
-const clothWanted = form => ({number: Number(form.warp.value), weft: Number(form.weft.value), draft: form.draft.value, shape: form.shape.value,
+// A thread of the library is a number, a ready one a name.
+const threadOf = value => state.ready_threads.includes(value) ? value : Number(value);
+
+const clothWanted = form => ({number: threadOf(form.warp.value), weft: threadOf(form.weft.value), draft: form.draft.value, shape: form.shape.value,
                                 fibers: form.fibers.value});
 
 // For other programs: a job makes it, and then it can be taken.
@@ -53,19 +56,19 @@ function shown(design) {
 }
 
 export function showDesign() {
-  const form = byId("design-form"), numbers = state.threads.map(thread => thread.number);
+  const form = byId("design-form"), numbers = state.threads.map(thread => String(thread.number)), threads = [...numbers, ...state.ready_threads];
   byId("design-none").hidden = numbers.length > 0;
-  form.hidden = numbers.length === 0;
-  for (const list of [form.warp, form.weft]) fill(list, numbers, state.threads.map(thread => `${thread.number} · ${thread.name}`));
-  if (numbers.map(String).includes(wanted)) form.warp.value = form.weft.value = wanted;
+  const titles = [...state.threads.map(thread => `${thread.number} · ${thread.name}`), ...state.ready_threads.map(name => `${name} · ${text("ready_thread")}`)];
+  for (const list of [form.warp, form.weft]) fill(list, threads, titles);
+  if (numbers.includes(wanted)) form.warp.value = form.weft.value = wanted;
   wanted = "";
   fill(form.draft, state.drafts);
   fill(form.shape, state.shapes, state.shapes.map(shape => text(`cloth_${shape}`)));
   fill(form.fibers, ["", ...state.fibers], [text("fibers_none"), ...state.fibers.map(kind => text(`fibers_${kind}`))]);
   fill(form.size, ["", ...kPrinted_cm.map(String)], [text("size_screen"), ...kPrinted_cm.map(cm => text("size_print", {cm}))]);
   if (!byId("design-draft").src && state.drafts.length) showDraft();
-  if (numbers.length && document.activeElement !== form.name) propose();
-  if (numbers.length && state.drafts.length) lookAt(clothWanted(form));
+  if (threads.length && document.activeElement !== form.name) propose();
+  if (threads.length && state.drafts.length) lookAt(clothWanted(form));
   allow(form.querySelector(".primary"), whyNot());
   byId("design-why").textContent = whyNot();
   show(byId("designs"), [state.designs, state.exports, whyNot()], () => [...state.designs].sort((a, b) => b.made - a.made).map(shown));

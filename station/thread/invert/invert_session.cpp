@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "inversion/fit/fit_doubts.h"
+#include "inversion/view/irregularity.h"
 #include "renderer/picture/image_file.h"
 #include "station/documents/bundle_file.h"
 #include "station/documents/disk/stored_file.h"
@@ -86,6 +87,43 @@ FittedView write_fitted_view(const InvertRequest& request, const inversion::Wrap
       .id = view.id, .transmission = view.transmission, .agreement = inversion::agreement(view, fitted, fit.block_px)};
 }
 
+// By how much the brightness of a view falls with the absorption: of its logarithm for each unit of the other's.
+Eigen::Array3d darkening_of(const inversion::WrappedSpool& spool, const inversion::View& view,
+                            const renderer::ThreadParameters& thread, int samples_per_pixel) {
+  constexpr double kMore = 1.1;
+  std::array<Eigen::Array3d, 2> light;
+  for (std::size_t i = 0; i < 2; ++i) {
+    renderer::ThreadParameters changed = thread;
+    changed.sigma_a *= i == 0 ? kMore : 1 / kMore;
+    const cv::Scalar mean =
+        cv::mean(inversion::fitted_view(spool, view, changed, samples_per_pixel, kViewSeed), view.mask);
+    light.at(i) = Eigen::Array3d(mean[0], mean[1], mean[2]);
+  }
+  return (light[1] / light[0]).log() / (2 * std::log(kMore));
+}
+
+json to_json(const std::optional<inversion::Deviation>& deviation) {
+  if (!deviation) return nullptr;
+  return {{"value", deviation->value}, {"sigma", deviation->sigma}};
+}
+
+// How uneven the thread is, by its photographs and their fitted twins as they were written.
+json irregularity_json(const InvertRequest& request, const inversion::WrappedSpool& spool,
+                       const std::vector<inversion::View>& views, const renderer::ThreadParameters& thread) {
+  const auto reflected = std::ranges::find(views, false, &inversion::View::transmission);
+  if (reflected == views.end()) return nullptr;
+  std::vector<cv::Mat3f> fitted;
+  for (const inversion::View& view : views)
+    fitted.push_back(renderer::read_exr(fitted_file_of(request.session, view.id, name_of(request.fit.model))));
+  const inversion::Irregularity found = inversion::measure_irregularity(
+      spool, views, fitted, darkening_of(spool, *reflected, thread, std::max(1, request.samples_per_pixel / 4)));
+  if (!found.brightness) return nullptr;
+  return {{"brightness", to_json(found.brightness)},
+          {"shade", to_json(found.shade)},
+          {"diameter", to_json(found.diameter)},
+          {"length_mm", found.length_mm}};
+}
+
 // Makes the folders of the results before the work, and finds out then what cannot be written.
 void prepare_results(const InvertRequest& request) {
   FileSystem disk;
@@ -142,6 +180,8 @@ InvertResult invert_session(const InvertRequest& request) {
   result.relative_rmse = result.fit.at("relative_rmse");
   result.doubts = inversion::fit_doubts(seen, fit, agreements_of(result.views, false));
   result.fit["doubts"] = result.doubts;
+  if (const auto* thread = std::get_if<renderer::ThreadParameters>(&fit.model))
+    result.fit["irregularity"] = irregularity_json(request, asked.spool.wrapping, views, *thread);
   const json provenance = provenance_json(request.session, asked);
   const json document = std::visit(ModelDocument{asked, developed, result.fit, provenance}, fit.model);
   write_json_file(result.file, document);
@@ -183,6 +223,18 @@ std::string thread_text(const renderer::ThreadParameters& p, const json& fit) {
   return text;
 }
 
+std::string irregularity_text(const json& fit) {
+  const json found = fit.value("irregularity", json());
+  if (!found.is_object()) return "";
+  std::string text = "uneven along the thread:";
+  for (const char* what : {"brightness", "shade", "diameter"})
+    if (const json& one = found.at(what); one.is_object())
+      text += std::string(text.back() == ':' ? " " : ", ") + what + " " +
+              number_text(100 * one.at("value").get<double>(), 1) + " +- " +
+              number_text(100 * one.at("sigma").get<double>(), 1) + " %";
+  return text + ", alike over " + number_text(found.at("length_mm"), 0) + " mm\n";
+}
+
 std::string baseline_text(const json& fit) {
   std::string text;
   if (fit.contains("fiber_count")) text += "fibers  " + std::to_string(fit.at("fiber_count").get<int>()) + "\n";
@@ -212,6 +264,7 @@ std::string describe(const InvertResult& result) {
     text += thread_text(*thread, result.fit);
   else
     text += baseline_text(result.fit);
+  text += irregularity_text(result.fit);
   for (const std::string& doubt : result.doubts) text += "doubt: " + doubt + "\n";
   return text + result.fit.at("model").get<std::string>() + "  " + result.file.string() + "\n";
 }

@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "renderer/picture/image_file.h"
-#include "station/bench/bench_picture.h"
+#include "station/bench/spool_fibers.h"
 #include "station/documents/reader.h"
 #include "station/output/interrupt.h"
 #include "station/thread/validate/seeds.h"

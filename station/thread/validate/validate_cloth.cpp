@@ -10,8 +10,8 @@
 
 #include "renderer/picture/image_file.h"
 #include "renderer/trace/path_tracer.h"
-#include "station/bench/bench_picture.h"
 #include "station/bench/cloth_on_cylinder.h"
+#include "station/bench/spool_fibers.h"
 #include "station/documents/draft_file.h"
 #include "station/documents/number_text.h"
 #include "station/documents/reader.h"

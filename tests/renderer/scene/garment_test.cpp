@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <span>
 #include <string>
 
 #include "renderer/scene/backdrop.h"
@@ -29,11 +31,13 @@ std::pair<double, double> stretch_of(const UvMesh& mesh) {
   return {std::sqrt(sum2 / (3.0 * static_cast<double>(mesh.triangles.size()))), most};
 }
 
-const GarmentShape kReady[] = {SkirtShape{}, PleatedShape{}, DrapeShape{}};
+const GarmentShape kReady[] = {SkirtShape{}, PleatedShape{}, DrapeShape{}, SariShape{}};
+const std::span kSoonMade(kReady, 3);  // the sari takes as long as all others
 
 // Made once.
 const UvMesh& ready_mesh(const GarmentShape& shape) {
-  static const UvMesh meshes[] = {garment_mesh(kReady[0]), garment_mesh(kReady[1]), garment_mesh(kReady[2])};
+  static const UvMesh meshes[] = {garment_mesh(kReady[0]), garment_mesh(kReady[1]), garment_mesh(kReady[2]),
+                                  garment_mesh(kReady[3])};
   return meshes[shape.index()];
 }
 
@@ -50,7 +54,8 @@ TEST(GarmentTest, TheReadyOnesAreSurfacesForCloth) {
   for (const GarmentShape& shape : kReady) {
     const UvMesh& mesh = ready_mesh(shape);
     const ClothSurface surface = cloth_surface(mesh, {.uv_mm = 1}, Eigen::Isometry3d::Identity(), "garment");
-    EXPECT_NO_THROW(make_shell(surface, {-0.8, 0.8})) << shape.index();
+    const double reach_mm = std::holds_alternative<SariShape>(shape) ? 0.5 : 0.8;  // a sari is of fine cloth
+    EXPECT_NO_THROW(make_shell(surface, {-reach_mm, reach_mm})) << shape.index();
     double lowest = mesh.vertices.front().z();
     for (const Vector3d& vertex : mesh.vertices) lowest = std::min(lowest, vertex.z());
     EXPECT_NEAR(lowest, 0, 1e-9) << shape.index();
@@ -113,8 +118,33 @@ TEST(GarmentTest, TheDrapeLiesOnTheBallAndHangsBelowIt) {
   EXPECT_GT(top, 1.5 * shape.ball_radius_mm);
 }
 
+// Over the shoulder at most a little lower than it, and on both sides of it down to hems that are as long as asked.
+TEST(GarmentTest, ASariHangsOnBothSidesOfTheShoulderInOrderlyPleats) {
+  const SariShape shape;
+  const UvMesh& mesh = ready_mesh(shape);
+  double top = 0;
+  std::array<double, 2> lowest{1e9, 1e9};  // in front, behind
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    double& of_part = lowest[mesh.uv[i].y() < shape.front_mm ? 0 : 1];
+    of_part = std::min(of_part, mesh.vertices[i].z());
+    top = std::max(top, mesh.vertices[i].z());
+  }
+  // An arc of the shoulder is not below it.
+  EXPECT_NEAR(top - lowest[0], shape.front_mm, 0.06 * shape.front_mm);
+  EXPECT_NEAR(top - lowest[1], shape.length_mm - shape.front_mm, 0.06 * shape.front_mm);
+  // In front the face is seen: no pleat lies with its back outwards.
+  int turned = 0, all = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    if (mesh.uv[t[0]].y() > shape.front_mm || a.z() > top - 3 * shape.shoulder_radius_mm) continue;
+    ++all, turned += (b - a).cross(c - a).y() > 0 ? 1 : 0;
+  }
+  EXPECT_GT(all, 100000);
+  EXPECT_LT(turned, 0.005 * all);
+}
+
 TEST(GarmentTest, TheWorkTellsHowFarItIsAndStopsWhenAsked) {
-  for (const GarmentShape& shape : kReady) {
+  for (const GarmentShape& shape : kSoonMade) {
     double last = -1;
     int calls = 0;
     const auto until_half = [&](double finished) {
@@ -129,8 +159,17 @@ TEST(GarmentTest, TheWorkTellsHowFarItIsAndStopsWhenAsked) {
   }
 }
 
+TEST(GarmentTest, ASariThatDoesNotHangOnBothSidesIsRefused) {
+  try {
+    garment_mesh(SariShape{.length_mm = 2000, .front_mm = 1900});
+    ADD_FAILURE() << "was made";
+  } catch (const std::runtime_error& problem) {
+    EXPECT_NE(std::string(problem.what()).find("give front_mm more than 314"), std::string::npos) << problem.what();
+  }
+}
+
 TEST(GarmentTest, TheSameShapeGivesTheSameMesh) {
-  for (const GarmentShape& shape : kReady) EXPECT_EQ(garment_mesh(shape).vertices, ready_mesh(shape).vertices);
+  for (const GarmentShape& shape : kSoonMade) EXPECT_EQ(garment_mesh(shape).vertices, ready_mesh(shape).vertices);
 }
 
 // All of it is seen from where cameras and lamps are, and no step of the bend is more than a degree.

@@ -1,12 +1,16 @@
 // The fibers that a simulated spool is drawn of: as one bundle, as plies of several absorptions, of metal.
+#include "station/bench/spool_fibers.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
+#include <map>
 
+#include "inversion/view/irregularity.h"
 #include "renderer/scattering/thread.h"
-#include "station/bench/bench_picture.h"
+#include "renderer/trace/path_tracer.h"
 #include "station/documents/reader.h"
 #include "tests/places.h"
 #include "tests/support/message_of.h"
@@ -94,6 +98,114 @@ TEST(SpoolFibersTest, MetalReflectsItsColourAndLetsNothingThrough) {
       EXPECT_LT((lobes.attenuation.row(0).matrix().transpose() - *spool.simulation->reflectance).norm(), 0.003);
       EXPECT_LT(lobes.attenuation.bottomRows(3).sum(), 1e-4);
     }
+}
+
+// The standard deviation of the shades in which a thread is drawn.
+double drawn_shade(const Spool& spool) {
+  double weights = 0, mean = 0, squares = 0;
+  for (const renderer::CurveSet& set : spool_fibers(spool)) {
+    const double shade = std::log(std::get<renderer::FiberParameters>(set.scattering).sigma_a.y() /
+                                  spool.simulation->scattering.sigma_a.y());
+    const auto pieces = static_cast<double>(set.segments.size());
+    weights += pieces, mean += pieces * shade, squares += pieces * shade * shade;
+  }
+  mean /= weights;
+  EXPECT_NEAR(mean, 0, 0.1);
+  return std::sqrt(squares / weights - mean * mean);
+}
+
+// Shades and thicknesses of the turns, and the same of a thread that is even.
+TEST(SpoolFibersTest, AnUnevenThreadIsUnevenAlongItself) {
+  json document = spool_document("silk_red");
+  const std::vector<renderer::CurveSet> even = spool_fibers(spool_of(document));
+  document["simulation"]["uneven"] = {{"shade", 0.3}, {"diameter", 0.05}, {"length_mm", 100}};
+  const Spool spool = spool_of(document);
+  const std::vector<renderer::CurveSet> sets = spool_fibers(spool);
+  ASSERT_GT(sets.size(), 8U);
+  double lowest = 1e9, highest = -1e9;
+  std::map<float, double> thicknesses;
+  for (const renderer::CurveSet& set : sets)
+    for (const Eigen::Vector4f& point : set.control_points) {
+      ++thicknesses[point.w()];
+      lowest = std::min<double>(lowest, point.z()), highest = std::max<double>(highest, point.z());
+    }
+  EXPECT_NEAR(drawn_shade(spool), 0.3, 0.06);
+  EXPECT_EQ(thicknesses.size(), static_cast<std::size_t>(spool.wrapping.turns));
+  double thickness = 0, thickness2 = 0;
+  for (const auto& [radius, count] : thicknesses)
+    thickness += radius / spool.simulation->fiber_radius_mm,
+        thickness2 += std::pow(radius / spool.simulation->fiber_radius_mm, 2);
+  const double turns = spool.wrapping.turns;
+  EXPECT_NEAR(std::sqrt(thickness2 / turns - thickness * thickness / (turns * turns)), 0.05, 0.015);
+  // Turns touch: the sheet is as high as they are thick together.
+  EXPECT_NEAR(highest - lowest, thickness * spool.wrapping.thread_diameter_mm, 0.02 * (highest - lowest));
+  std::size_t fibers = 0, of_even = 0;
+  for (const renderer::CurveSet& set : sets) fibers += set.segments.size();
+  for (const renderer::CurveSet& set : even) of_even += set.segments.size();
+  EXPECT_GE(fibers, of_even);
+  EXPECT_THAT(message_of([&] { bundled_fibers(spool); }), HasSubstr("uneven"));
+  json metal = spool_document("metal_gold");
+  metal["simulation"]["uneven"] = document["simulation"]["uneven"];
+  EXPECT_THAT(message_of([&] { spool_of(metal); }), HasSubstr("leave it out"));
+}
+
+// Photographs of the fibers against those of an even thread's: fibers lie at random in both, which is all that makes
+// the even one uneven.
+TEST(SpoolFibersTest, ItsUnevennessIsSeenInItsPhotographs) {
+  json document = spool_document("silk_red");
+  document["turns"] = 40;
+  const Spool even = spool_of(document);
+  document["simulation"]["uneven"] = {{"shade", 0.4}, {"diameter", 0}, {"length_mm", 150}};
+  const Spool uneven_spool = spool_of(document);
+  const auto photographed = [](const Spool& spool, std::uint64_t seed) {
+    std::vector<inversion::View> views;
+    for (int i = 0; i < 6; ++i) {
+      inversion::View view;
+      view.camera = renderer::look_at(Vector3d(580, 60 * i - 150, 40 * i - 100), Vector3d::Zero(), Vector3d::UnitZ());
+      view.camera.width = 260, view.camera.height = 80;
+      view.camera.fx = view.camera.fy = 2400;
+      view.camera.cx = 129.5, view.camera.cy = 39.5;
+      view.light.position = Vector3d(480, 120, 90 - 30 * i);
+      renderer::Scene scene;
+      scene.curves = spool_fibers(spool);
+      scene.lights.push_back(inversion::sphere_light(view.light));
+      const renderer::PathTracer tracer(scene);
+      view.mask = tracer.curve_coverage(view.camera, 4);
+      view.image = tracer.render(
+          view.camera, {.samples_per_pixel = 12, .seed = seed + static_cast<std::uint64_t>(i), .only = view.mask});
+      views.push_back(view);
+    }
+    return views;
+  };
+  const std::vector<inversion::View> pictures = photographed(uneven_spool, 11);
+  document["simulation"]["seed"] = 999;  // other places of the fibers
+  document["simulation"].erase("uneven");
+  const std::vector<inversion::View> other = photographed(even, 31), twins = photographed(spool_of(document), 51);
+  std::vector<cv::Mat3f> even_pictures;
+  for (const inversion::View& view : twins) even_pictures.push_back(view.image);
+  // What absorption does to the light, by two even threads.
+  json darker = document;
+  for (json& sigma : darker["simulation"]["sigma_a"]) sigma = sigma.get<double>() * 1.2;
+  Eigen::Array3d darkening = Eigen::Array3d::Zero();
+  const std::vector<inversion::View> dark = photographed(spool_of(darker), 51);
+  for (std::size_t i = 0; i < dark.size(); ++i) {
+    const cv::Scalar light = cv::mean(twins[i].image, twins[i].mask), less = cv::mean(dark[i].image, dark[i].mask);
+    for (int c = 0; c < 3; ++c)
+      darkening[c] += std::log(light[c] / less[c]) / std::log(1.2) / static_cast<double>(dark.size());
+  }
+  const inversion::Irregularity uneven =
+      inversion::measure_irregularity(even.wrapping, pictures, even_pictures, darkening);
+  const inversion::Irregularity none = inversion::measure_irregularity(even.wrapping, other, even_pictures, darkening);
+  ASSERT_TRUE(uneven.shade && none.shade);
+  const double fibers = none.shade->value, truth = drawn_shade(uneven_spool);  // of where they lie; of the absorption
+  std::printf("darkening %.3f %.3f %.3f; shade %.3f: %.3f +- %.3f over %.0f mm; of an even one %.3f +- %.3f\n",
+              darkening[0], darkening[1], darkening[2], truth, uneven.shade->value, uneven.shade->sigma,
+              uneven.length_mm, none.shade->value, none.shade->sigma);
+  const double own = std::sqrt(std::max(0.0, std::pow(uneven.shade->value, 2) - fibers * fibers));
+  EXPECT_GT(own, 0.5 * truth) << "a turn lights its neighbours, so that it is told as less";
+  EXPECT_LT(own, 1.2 * truth);
+  EXPECT_LT(fibers, 0.2);
+  EXPECT_NEAR(std::log(uneven.length_mm / 150), 0, 0.8);
 }
 
 TEST(SpoolFibersTest, AllSpoolsOfTheLibraryCanBeDrawn) {

@@ -40,7 +40,7 @@ TEST(ClothStage, TurnsTheLampAloneAndLeavesTheSurroundings) {
 }
 
 TEST(ClothStage, StaysAboveTheFloorWhereThereIsOne) {
-  for (const char* shape : {"cylinder", "skirt", "pleats", "drape"})
+  for (const char* shape : {"cylinder", "skirt", "pleats", "drape", "sari"})
     for (const double turn : {0.0, 120.0}) {
       const json scene = station::scene_on_stage(
           station::cloth_stage(shape), {.threads = {"a", "b"}},

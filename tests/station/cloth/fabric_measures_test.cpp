@@ -9,6 +9,8 @@
 #include <numbers>
 #include <random>
 
+#include "station/cloth/fabric_height.h"
+
 namespace station {
 namespace {
 
@@ -20,7 +22,8 @@ constexpr int kWidth = 420, kHeight = 300;
 
 struct Waves {
   double around_mm, along_mm, phase, strength, noise;
-  bool diagonal;  // as of a twill, or along the axes
+  bool diagonal;               // as of a twill, or along the axes
+  double highlight_rad = 0.8;  // standard deviation of the slow brightness round the cylinder
 };
 
 double brightness(const Waves& waves, double around, double along) {
@@ -57,7 +60,7 @@ PhotographedCloth picture_of(const Waves& waves, double camera_rad, std::mt19937
       made.mask(row, column) = 255;
       const double angle = std::atan2(at.y(), at.x());
       // Shading that changes slowly, as of a highlight.
-      const double light = 0.2 + std::pow(facing, 3);
+      const double light = 0.2 + std::exp(-0.5 * std::pow((angle - camera_rad) / waves.highlight_rad, 2));
       const auto value = static_cast<float>(light * (brightness(waves, kRadius_mm * angle, at.z()) + noise(random)));
       made.image(row, column) = cv::Vec3f(value, 0.5f * value, 0.2f * value);
     }
@@ -100,6 +103,47 @@ TEST(FabricMeasures, NoiseHasNoRepeat) {
   const ClothPeriods found = measure_periods({picture_of(nothing, 0, random)}, {.around_mm = 3, .along_mm = 3});
   EXPECT_EQ(found.waves, 0);
   EXPECT_FALSE(found.around_mm || found.along_mm);
+}
+
+// Of the same width, whatever the brightness; the error is about as large as the found width is off.
+TEST(FabricMeasures, AHighlightIsMostLikeOneOfItsWidth) {
+  std::mt19937 random(kSeed + 1);
+  const auto between = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
+  for (int trial = 0; trial < 4; ++trial) {
+    Waves waves{.around_mm = between(2.2, 5),
+                .along_mm = between(2.2, 5),
+                .phase = between(0, 1),
+                .strength = 0.05,
+                .noise = 0.1,
+                .diagonal = false,
+                .highlight_rad = between(0.25, 0.5)};
+    const double truth = waves.highlight_rad, camera_rad = between(-0.3, 0.3);
+    const auto profiles = [&](double times) {
+      waves.highlight_rad = times * truth;
+      PhotographedCloth picture = picture_of(waves, camera_rad, random);
+      picture.image *= between(0.3, 3);
+      return HighlightProfiles({picture}, kRadius_mm, waves.around_mm);
+    };
+    const HighlightProfiles photograph = profiles(1);
+    std::vector<std::pair<double, double>> misfits;
+    for (const double times : {0.6, 0.8, 0.95, 1.15, 1.4})
+      misfits.emplace_back(times, photograph.misfit(profiles(times), -1));
+    const auto found = lowest_place(misfits);
+    ASSERT_TRUE(found);
+    std::printf("highlight of %.3f rad: %.3f times as wide\n", truth, *found);
+    EXPECT_NEAR(*found, 1, 0.05);
+  }
+}
+
+TEST(FabricMeasures, TheLowestPlaceIsThatOfAParabola) {
+  const auto line = [](double lowest, double above) {
+    std::vector<std::pair<double, double>> points;
+    for (const double x : {0.5, 0.7, 1.0, 1.1, 1.5}) points.emplace_back(x, above + 3 * (x - lowest) * (x - lowest));
+    return points;
+  };
+  for (const double lowest : {0.75, 0.98, 1.2}) EXPECT_NEAR(lowest_place(line(lowest, 0.2)).value(), lowest, 1e-12);
+  EXPECT_FALSE(lowest_place(line(0.4, 0))) << "it may lie lower than what was tried";
+  EXPECT_FALSE(lowest_place(line(1.6, 0)));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "renderer/picture/image_file.h"
+#include "station/cloth/measure_fabric.h"
 #include "station/cloth/predict_fabric.h"
 #include "station/documents/fiber_file.h"
 #include "station/documents/reader.h"
@@ -45,15 +46,17 @@ struct FabricSession : testing::Test {
                                                .accept_calibration = true},
                      .progress_style = ProgressStyle::quiet});
     develop_session(session(), ProgressStyle::quiet);
-    predicted = predict_fabric({.session = session(), .samples_per_pixel = 64, .progress_style = ProgressStyle::quiet});
-    first_picture = renderer::read_exr(predicted[0].prediction);  // before others are written in its place
+    predicted = predict_fabric(
+        {.cloth = {.session = session()}, .samples_per_pixel = 64, .progress_style = ProgressStyle::quiet});
+    for (const PredictedView& view : predicted)  // before others are written in their place
+      first_pictures.push_back(renderer::read_exr(view.prediction));
   }
   static void TearDownTestSuite() { delete folder; }
   static std::filesystem::path session() { return *folder / "cloth"; }
 
   static inline TemporaryFolder* folder = nullptr;
   static inline std::vector<PredictedView> predicted;
-  static inline cv::Mat3f first_picture;
+  static inline std::vector<cv::Mat3f> first_pictures;
 };
 
 TEST_F(FabricSession, IsASessionOfTwoViewsLitFromRightAndLeftAndHasAllThatPredictsIt) {
@@ -72,9 +75,7 @@ TEST_F(FabricSession, IsASessionOfTwoViewsLitFromRightAndLeftAndHasAllThatPredic
 TEST_F(FabricSession, TwoPredictionsDifferByLittle) {
   DevelopedViews developed = read_views(session());
   read_view_pictures(session(), developed);
-  std::vector<cv::Mat3f> first;
-  for (const PredictedView& view : predicted) first.push_back(renderer::read_exr(view.prediction));
-  const std::vector<PredictedView> again = predict_fabric({.session = session(),
+  const std::vector<PredictedView> again = predict_fabric({.cloth = {.session = session()},
                                                            .samples_per_pixel = 64,
                                                            .seed = 77,
                                                            .fit_scale = true,
@@ -82,8 +83,8 @@ TEST_F(FabricSession, TwoPredictionsDifferByLittle) {
   for (std::size_t i = 0; i < again.size(); ++i) {
     const CompareOptions options{
         .fit_scale = true, .block_px = again[i].block_px, .linear_srgb_from_camera = developed.linear_srgb_from_camera};
-    const Comparison noise =
-        compare_pictures(first[i], renderer::read_exr(again[i].prediction), developed.views[i].view.mask, options);
+    const Comparison noise = compare_pictures(first_pictures[i], renderer::read_exr(again[i].prediction),
+                                              developed.views[i].view.mask, options);
     EXPECT_LT(noise.mean_delta_e, 1) << again[i].view;
     EXPECT_NEAR(noise.scale, 1, 0.02) << again[i].view;
     const auto [darkest, brightest] = std::ranges::minmax(again[i].comparison.brightness);
@@ -100,10 +101,10 @@ TEST_F(FabricSession, LooksAsItsThreadsAndDraftPredictAndNotAsAnotherCloth) {
   json other = read_spool_document(fabric_file());
   std::swap(other["weave"]["threads"][0], other["weave"]["threads"][1]);
   write_json_file(*folder / "other.json", other);
-  const std::vector<PredictedView> others = predict_fabric({.session = session(),
-                                                            .fabric = *folder / "other.json",
-                                                            .samples_per_pixel = 16,
-                                                            .progress_style = ProgressStyle::quiet});
+  const std::vector<PredictedView> others =
+      predict_fabric({.cloth = {.session = session(), .fabric = *folder / "other.json"},
+                      .samples_per_pixel = 16,
+                      .progress_style = ProgressStyle::quiet});
   for (std::size_t i = 0; i < predicted.size(); ++i) {
     const PredictedView& view = predicted[i];
     const std::array<double, 3> brightness = view.comparison.brightness;
@@ -126,28 +127,32 @@ TEST_F(FabricSession, IsPredictedFromTheModelsThatOneGives) {
   for (const std::size_t k : {0U, 1U})
     write_json_file(*folder / ("thread" + std::to_string(k) + ".json"), weave.at("threads").at(k));
   const auto given = [&](const std::string& warp, const std::string& weft, const std::string& model, int samples) {
-    return predict_fabric({.session = session(),
-                           .warp = *folder / warp,
-                           .weft = *folder / weft,
-                           .model = model,
-                           .samples_per_pixel = samples,
-                           .progress_style = ProgressStyle::quiet});
+    return predict_fabric(
+        {.cloth = {.session = session(), .warp = *folder / warp, .weft = *folder / weft, .model = model},
+         .samples_per_pixel = samples,
+         .progress_style = ProgressStyle::quiet});
   };
-  const std::vector<PredictedView> same = given("thread0.json", "thread1.json", "thread", 64);
-  EXPECT_EQ(cv::norm(first_picture, renderer::read_exr(same[0].prediction), cv::NORM_INF), 0);
+  const auto first_of = [](const std::vector<PredictedView>& views) { return renderer::read_exr(views[0].prediction); };
+  const cv::Mat3f own = first_of(predict_fabric(
+      {.cloth = {.session = session()}, .samples_per_pixel = 4, .progress_style = ProgressStyle::quiet}));
+  const cv::Mat3f same = first_of(given("thread0.json", "thread1.json", "thread", 4));
+  EXPECT_GT(cv::norm(own), 0);
+  EXPECT_EQ(cv::norm(own, same, cv::NORM_INF), 0);
   std::filesystem::create_directories(*folder / "fitted" / "result" / "fiber");
   write_json_file(*folder / "fitted" / "result" / "fiber" / "fiber.json", to_json(renderer::FiberParameters{}));
   const std::vector<PredictedView> fiber = given("fitted", "fitted", "fiber", 8);
   EXPECT_EQ(fiber[0].prediction.parent_path(), session() / "result/fabric/fiber");
   EXPECT_GT(fiber[0].comparison.mean_delta_e, 2 * predicted[0].comparison.mean_delta_e);
   EXPECT_THAT(message_of([&] { given("fitted", "fitted", "yarn", 8); }), HasSubstr("invert"));
-  EXPECT_THAT(message_of([&] { predict_fabric({.session = session(), .model = "fiber"}); }), HasSubstr("--warp"));
-  EXPECT_THAT(message_of([&] { predict_fabric({.session = session(), .weft = "x"}); }), HasSubstr("give both"));
+  EXPECT_THAT(message_of([&] { predict_fabric({.cloth = {.session = session(), .model = "fiber"}}); }),
+              HasSubstr("--warp"));
+  EXPECT_THAT(message_of([&] { predict_fabric({.cloth = {.session = session(), .weft = "x"}}); }),
+              HasSubstr("give both"));
 }
 
 // The bench stretches the cloth round the cylinder until a whole number of repeats closes it.
 TEST_F(FabricSession, ItsSettIsSeenInThePhotographs) {
-  const MeasuredSett sett = measure_sett(session(), {}, ProgressStyle::quiet);
+  const MeasuredSett sett = measure_sett({.session = session()}, ProgressStyle::quiet);
   std::printf("%s", describe(sett).c_str());
   ASSERT_TRUE(sett.periods.around_mm && sett.periods.along_mm);
   const double middle_mm = 41 + 0.5, repeats = std::round(2 * std::numbers::pi * middle_mm / sett.said_around_mm);
@@ -157,13 +162,33 @@ TEST_F(FabricSession, ItsSettIsSeenInThePhotographs) {
   EXPECT_LT(sett.periods.along_mm->sigma, 0.01 * sett.said_along_mm);
 }
 
+// Its fabric file says flatter yarns than were photographed.
+TEST_F(FabricSession, TheHeightOfItsYarnsIsSeenInItsHighlight) {
+  json flatter = read_spool_document(fabric_file());
+  flatter["weave"]["draft"]["height_scale"] = 0.8;
+  write_json_file(*folder / "flatter.json", flatter);
+  const MeasuredFabric measured = measure_fabric({.cloth = {.session = session(), .fabric = *folder / "flatter.json"},
+                                                  .sett = false,
+                                                  .height = true,
+                                                  .samples_per_pixel = 8,
+                                                  .progress_style = ProgressStyle::quiet});
+  std::printf("%s", describe(measured).c_str());
+  ASSERT_TRUE(measured.height->height_scale);
+  const MeasuredValue found = *measured.height->height_scale;
+  EXPECT_NEAR(found.value, 1, 4 * found.sigma);
+  EXPECT_LT(found.sigma, 0.05);
+  EXPECT_EQ(measured.draft.height_scale, found.value);
+  EXPECT_EQ(measured.height->said, 0.8);
+}
+
 TEST_F(FabricSession, WhatCannotBePredictedOrInvertedIsOneLine) {
   json bare = read_spool_document(fabric_file());
   bare.erase("weave");
   write_json_file(*folder / "bare.json", bare);
-  EXPECT_THAT(message_of([&] { predict_fabric({.session = session(), .fabric = *folder / "bare.json"}); }),
+  EXPECT_THAT(message_of([&] { predict_fabric({.cloth = {.session = session(), .fabric = *folder / "bare.json"}}); }),
               HasSubstr("woven of"));
-  EXPECT_THAT(message_of([&] { predict_fabric({.session = recorded_session()}); }), HasSubstr("wrapped thread"));
+  EXPECT_THAT(message_of([&] { predict_fabric({.cloth = {.session = recorded_session()}}); }),
+              HasSubstr("wrapped thread"));
   EXPECT_THAT(message_of([&] { invert_session({.session = session()}); }), HasSubstr("cloth on the cylinder"));
   json few = read_spool_document(fabric_file());
   few["weave"]["threads"].erase(1);

@@ -16,14 +16,14 @@ nlohmann::json shown(ProgressDisplay& display, int done) {
 
 TEST(Progress, TheTimeLeftIsGuessedFromWhatThisRunHasDone) {
   std::chrono::steady_clock::time_point now{};
-  ProgressDisplay display("capture", ProgressStyle::json, [&] { return now; });
+  ProgressDisplay display("capture", ProgressStyle::json_lines, [&] { return now; });
   EXPECT_FALSE(shown(display, 11).contains("seconds_left"));  // eleven views of an earlier run took no time of this one
   now += std::chrono::seconds(3);
   EXPECT_EQ(shown(display, 12).at("seconds_left"), 5 * 3);
 }
 
 TEST(Progress, ATimeThatIsGivenIsShown) {
-  ProgressDisplay display("capture", ProgressStyle::json);
+  ProgressDisplay display("capture", ProgressStyle::json_lines);
   testing::internal::CaptureStderr();
   display.show(0, 17, "view", 96);
   EXPECT_EQ(nlohmann::json::parse(testing::internal::GetCapturedStderr()).at("seconds_left"), 96);

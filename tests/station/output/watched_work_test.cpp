@@ -27,7 +27,7 @@ class Watched {
 
  private:
   std::chrono::steady_clock::time_point now_{};
-  ProgressDisplay progress_{"work", ProgressStyle::json, [this] { return now_ += std::chrono::seconds(1); }};
+  ProgressDisplay progress_{"work", ProgressStyle::json_lines, [this] { return now_ += std::chrono::seconds(1); }};
 };
 
 renderer::Draft plain() {

@@ -25,6 +25,25 @@ TEST_F(TechnicianPage, AThreadIsEditedTakenOutAndPutBack) {
   EXPECT_EQ(get("/api/state").at("threads").size(), 1U);
 }
 
+TEST_F(TechnicianPage, ADesignIsWovenOfReadyThreadsBeforeThereIsAnyOfOnesOwn) {
+  const json ready = get("/api/state").at("ready_threads");
+  EXPECT_EQ(ready.size(), 28U);
+  post("/api/control", {{"client", "me"}});
+  ASSERT_EQ(post("/api/job", {{"client", "me"},
+                              {"kind", "design"},
+                              {"name", "ready"},
+                              {"number", ready.at(0)},
+                              {"weft", ready.at(1)},
+                              {"draft", "plain"},
+                              {"shape", "swatch"},
+                              {"quick", true}})
+                .status,
+            200);
+  ASSERT_TRUE(eventually([&] { return !job().at("running").get<bool>(); }));
+  ASSERT_EQ(job().at("status"), 0) << job();
+  EXPECT_EQ(get("/api/state").at("designs").at(0).at("threads").size(), 2U);
+}
+
 TEST_F(TechnicianPage, ADesignIsWovenOfThreadsOfTheLibrary) {
   station::Library library(folder_ / "bench/library", true);
   for (const char* thread : {"silk_red.json", "silk_blue.json"})
@@ -35,6 +54,10 @@ TEST_F(TechnicianPage, ADesignIsWovenOfThreadsOfTheLibrary) {
   json missing = wanted;
   missing["weft"] = 3;
   EXPECT_EQ(refused_with("/api/job", missing), 404);
+  for (const char* none : {"silk_grey", "../threads/silk_red", ""}) {
+    missing["weft"] = none;
+    EXPECT_GE(refused_with("/api/job", missing), 400) << none;
+  }
   ASSERT_EQ(post("/api/job", wanted).status, 200);
   ASSERT_TRUE(eventually([&] { return !job().at("running").get<bool>(); }));
   ASSERT_EQ(job().at("status"), 0) << job();
