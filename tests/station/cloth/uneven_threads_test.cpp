@@ -45,7 +45,9 @@ TEST(UnevenThreads, ADraftShowsManyYarnsThatDiffer) {
       EXPECT_EQ(slow.warp_over[pick][end], even.warp_over[pick % 2][end % 2]);
   EXPECT_NEAR(slow.unevenness.radius, std::hypot(0.06, 0.08) / std::sqrt(2.0), 1e-12);
   EXPECT_EQ(slow.slubs.radius, 0);
-  const renderer::YarnPatch patch = renderer::woven_patch(slow).patch;
+  renderer::Draft begun = slow;
+  begun.relaxed = false;
+  const renderer::YarnPatch patch = renderer::woven_patch(begun).patch;
   std::set<int> warp, weft;
   for (const renderer::Yarn& yarn : patch.yarns) (yarn.warp ? warp : weft).insert(yarn.thread);
   EXPECT_GE(warp.size(), 4U);

@@ -43,7 +43,7 @@ TEST(BuildScene, ReadyScenesAreBuilt) {
     EXPECT_EQ(scene.cloths.size(), file.cloths.size()) << "ready scenes are in two scales";
     EXPECT_EQ(scene.meshes.size(), file.objects.size());
   }
-  EXPECT_EQ(read, 12);
+  EXPECT_EQ(read, 13);
 }
 
 TEST(BuildScene, BruteForceTurnsClothIntoCurvesOfItsThreads) {
