@@ -20,10 +20,7 @@ std::vector<Block> mask_blocks(const cv::Mat1b& mask, int side_px) {
 
 int pooled_px(const WrappedSpool& spool, const std::vector<View>& views) {
   double side = 1;
-  for (const View& view : views) {
-    const double pixels_per_mm = view.camera.fx / view.camera.world_from_camera.translation().norm();
-    side = std::max(side, kPooledPitches * spool.thread_diameter_mm * pixels_per_mm);
-  }
+  for (const View& view : views) side = std::max(side, kPooledPitches * spool.thread_diameter_mm * px_per_mm(view));
   return static_cast<int>(std::ceil(side));
 }
 

@@ -43,10 +43,6 @@ struct Grid {
   double z(int cell) const { return low_z + (cell / along + 0.5) * cell_z; }
 };
 
-double px_per_mm(const View& view) {
-  return view.camera.fx / view.camera.world_from_camera.translation().norm();
-}
-
 // The place on the sheet that a pixel shows.
 std::optional<Eigen::Vector2d> on_sheet(const View& view, const WrappedSpool& spool, int column, int row) {
   const renderer::CameraRay ray = renderer::ray_through(view.camera, column, row);
@@ -86,8 +82,9 @@ std::array<std::vector<double>, 2> halves_of(const std::vector<std::vector<doubl
 }
 
 // The square root of the covariance of the halves over a factor, and its error by leaving out parts of the sheet in
-// turn (jackknife).
-Deviation deviation_of(const std::vector<Told>& told, double over) {
+// turn (jackknife); nothing where too few places are told.
+std::optional<Deviation> deviation_of(const std::vector<Told>& told, double over) {
+  if (told.size() < 2 * kParts) return std::nullopt;
   const auto covariance = [&](std::size_t left_out) {
     double sum = 0, count = 0;
     for (std::size_t i = 0; i < told.size(); ++i)
@@ -99,7 +96,7 @@ Deviation deviation_of(const std::vector<Told>& told, double over) {
   for (std::size_t part = 0; part < kParts; ++part) squares += std::pow(covariance(part) - all, 2);
   const double sigma = std::sqrt(squares * (kParts - 1) / kParts), value = std::sqrt(std::max(0.0, all));
   // Of the root: linear where it is well above 0, and that of the covariance's own root elsewhere.
-  return {.value = value, .sigma = std::min(sigma / (2 * std::max(value, 1e-9)), std::sqrt(sigma))};
+  return Deviation{.value = value, .sigma = std::min(sigma / (2 * std::max(value, 1e-9)), std::sqrt(sigma))};
 }
 
 // The length at which v exp(-(d / length)^2) is nearest to the covariance at all distances d along the thread.
@@ -193,7 +190,8 @@ class Sheet {
     return sum / (grid_.turns_per_cell * grid_.turns_per_cell);
   }
 
-  // By how much the turns of each window are shifted from even places in a view, in diameters; flattened.
+  // By how much the turns of each window are shifted from even places in a view, in diameters; flattened. No numbers
+  // where the view does not show them all.
   std::vector<double> shifts(const View& view) const {
     const auto windows = static_cast<std::size_t>(spool_.turns / kWindowTurns);
     std::vector<std::complex<double>> waves(windows, 0);
@@ -214,6 +212,7 @@ class Sheet {
     each([&](std::size_t window, double turns, double value) {
       waves[window] += (value - light[window] / pixels[window]) * std::polar(1.0, -2 * std::numbers::pi * turns);
     });
+    if (std::ranges::count(pixels, 0) > 0) return std::vector(windows, std::numeric_limits<double>::quiet_NaN());
     std::vector<double> shifts;
     double last = 0;
     for (const std::complex<double>& wave : waves) {
@@ -252,13 +251,13 @@ class Sheet {
       for (std::size_t i = 1; i < shifted.size(); ++i) stretch.push_back((shifted[i] - shifted[i - 1]) / kWindowTurns);
     }
     const std::array<std::vector<double>, 2> halves = halves_of(stretches);
-    // A straight line has been taken from the stretches, and neighbours share a window.
-    const auto free = static_cast<double>(halves[0].size()) - 2;
-    if (free < 4) return std::nullopt;
-    double covariance = 0;
-    for (std::size_t i = 0; i < halves[0].size(); ++i) covariance += halves[0][i] * halves[1][i] / free;
-    const double value = std::sqrt(std::max(0.0, covariance / stretch_share(length_mm)));
-    return Deviation{.value = value, .sigma = value / std::sqrt(free)};
+    std::vector<Told> told;
+    for (std::size_t i = 0; i < halves[0].size(); ++i)
+      if (std::isfinite(halves[0][i]) && std::isfinite(halves[1][i]))
+        told.push_back({0, 0, {halves[0][i], halves[1][i]}});
+    // A straight line has been taken from the stretches.
+    const auto all = static_cast<double>(told.size());
+    return deviation_of(told, stretch_share(length_mm) * (all - 2) / all);
   }
 
  private:

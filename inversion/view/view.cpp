@@ -20,6 +20,10 @@ constexpr std::uint64_t kMaskSeed = 20250801;
 
 }  // namespace
 
+double px_per_mm(const View& view) {
+  return view.camera.fx / view.camera.world_from_camera.translation().norm();
+}
+
 renderer::SphereLight sphere_light(const NearLight& light) {
   return {.center = light.position,
           .radius_mm = light.radius_mm,

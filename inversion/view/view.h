@@ -32,6 +32,9 @@ struct View {
   cv::Mat1b mask;                   // 255 where threads are; the image's size
 };
 
+// How large a millimetre is in the picture, in the middle of the holder.
+double px_per_mm(const View& view);
+
 // The light as a light of the renderer.
 renderer::SphereLight sphere_light(const NearLight& light);
 

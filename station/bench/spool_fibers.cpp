@@ -96,11 +96,11 @@ std::vector<renderer::CurveSet> uneven_fibers(const Spool& spool) {
       const Eigen::Vector3d from(line.from.x() + thickness[turn] * centre.x(), line.from.y(),
                                  z + thickness[turn] * centre.y()),
           step = (line.to - line.from) / kShadesInFront;
+      const int pieces = static_cast<int>(std::ceil(step.norm() / (kPieceRadii * fibers.fiber_radius_mm)));
       for (int piece = 0; piece < kShadesInFront; ++piece) {
         const double noise = darker[(first + static_cast<std::size_t>(piece)) % darker.size()] / kMostShade;
         const auto shade =
             static_cast<std::size_t>(std::clamp<long>(std::lround((noise + 1) / 2 * (kShades - 1)), 0, kShades - 1));
-        const int pieces = static_cast<int>(std::ceil(step.norm() / (kPieceRadii * fibers.fiber_radius_mm)));
         inversion::add_straight_curve(sets[shade], {from + piece * step, from + (piece + 1) * step},
                                       thickness[turn] * fibers.fiber_radius_mm, pieces);
       }

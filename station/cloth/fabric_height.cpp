@@ -52,16 +52,15 @@ HighlightProfiles::HighlightProfiles(const std::vector<PhotographedCloth>& pictu
       cv::Vec3f light;
     };
     std::vector<Lit> lit;
+    const Eigen::Vector3d eye = picture.camera.world_from_camera.translation();
+    const double towards_camera = std::atan2(eye.y(), eye.x());  // from there, so that no step of the angle is seen
     double low = std::numeric_limits<double>::max(), high = -low;
     for (int row = 0; row < picture.image.rows; ++row)
       for (int column = 0; column < picture.image.cols; ++column) {
         if (picture.mask(row, column) == 0) continue;
         const auto point = side_point(renderer::ray_through(picture.camera, column, row), crown_radius_mm);
         if (!point) continue;
-        const Eigen::Vector3d& eye = picture.camera.world_from_camera.translation();
-        // From the camera's side, so that no step of the angle is seen.
-        const double angle =
-            std::remainder(std::atan2(point->y(), point->x()) - std::atan2(eye.y(), eye.x()), 2 * std::numbers::pi);
+        const double angle = std::remainder(std::atan2(point->y(), point->x()) - towards_camera, 2 * std::numbers::pi);
         lit.push_back({crown_radius_mm * angle, point->z(), picture.image(row, column)});
         low = std::min(low, point->z()), high = std::max(high, point->z());
       }

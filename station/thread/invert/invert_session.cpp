@@ -69,11 +69,12 @@ struct ModelDocument {
   }
 };
 
-// Renders one view with the fitted thread, compares it, and writes both pictures.
+// Renders one view with the fitted thread into `fitted`, compares it, and writes both pictures.
 FittedView write_fitted_view(const InvertRequest& request, const inversion::WrappedSpool& spool,
-                             const inversion::View& view, const inversion::ViewFit& fit, std::uint64_t seed) {
-  const cv::Mat3f fitted = inversion::fitted_view(spool, view, fit.model, request.samples_per_pixel, seed,
-                                                  [](double) { return !interrupted(); });
+                             const inversion::View& view, const inversion::ViewFit& fit, std::uint64_t seed,
+                             cv::Mat3f& fitted) {
+  fitted = inversion::fitted_view(spool, view, fit.model, request.samples_per_pixel, seed,
+                                  [](double) { return !interrupted(); });
   cv::Mat3f residual(fitted.size(), cv::Vec3f(0, 0, 0));
   cv::subtract(fitted, view.image, residual, view.mask);
   renderer::ImageHeader header{{"threadstation/view", view.id},
@@ -99,7 +100,8 @@ Eigen::Array3d darkening_of(const inversion::WrappedSpool& spool, const inversio
         cv::mean(inversion::fitted_view(spool, view, changed, samples_per_pixel, kViewSeed), view.mask);
     light.at(i) = Eigen::Array3d(mean[0], mean[1], mean[2]);
   }
-  return (light[1] / light[0]).log() / (2 * std::log(kMore));
+  const Eigen::Array3d darkening = (light[1] / light[0]).log() / (2 * std::log(kMore));
+  return darkening.isFinite().select(darkening, 0);  // a colour without light tells nothing
 }
 
 json to_json(const std::optional<inversion::Deviation>& deviation) {
@@ -107,14 +109,12 @@ json to_json(const std::optional<inversion::Deviation>& deviation) {
   return {{"value", deviation->value}, {"sigma", deviation->sigma}};
 }
 
-// How uneven the thread is, by its photographs and their fitted twins as they were written.
+// How uneven the thread is, by its photographs and their fitted twins.
 json irregularity_json(const InvertRequest& request, const inversion::WrappedSpool& spool,
-                       const std::vector<inversion::View>& views, const renderer::ThreadParameters& thread) {
+                       const std::vector<inversion::View>& views, const std::vector<cv::Mat3f>& fitted,
+                       const renderer::ThreadParameters& thread) {
   const auto reflected = std::ranges::find(views, false, &inversion::View::transmission);
   if (reflected == views.end()) return nullptr;
-  std::vector<cv::Mat3f> fitted;
-  for (const inversion::View& view : views)
-    fitted.push_back(renderer::read_exr(fitted_file_of(request.session, view.id, name_of(request.fit.model))));
   const inversion::Irregularity found = inversion::measure_irregularity(
       spool, views, fitted, darkening_of(spool, *reflected, thread, std::max(1, request.samples_per_pixel / 4)));
   if (!found.brightness) return nullptr;
@@ -169,11 +169,12 @@ InvertResult invert_session(const InvertRequest& request) {
 
   InvertResult result{.model = fit.model, .file = model_file(request)};
   std::filesystem::remove(result.file);  // it no longer belongs to the pictures beside it
+  std::vector<cv::Mat3f> fitted(views.size());
   for (const inversion::View& view : views) {
     const double share = static_cast<double>(result.views.size()) / static_cast<double>(views.size());
     progress.show(static_cast<int>(100 * (kFitShare + (1 - kFitShare) * share)), 100, "view " + view.id);
-    result.views.push_back(
-        write_fitted_view(request, asked.spool.wrapping, view, fit, kViewSeed + result.views.size()));
+    result.views.push_back(write_fitted_view(request, asked.spool.wrapping, view, fit, kViewSeed + result.views.size(),
+                                             fitted[result.views.size()]));
     result.views.back().held_out = held_out[result.views.size() - 1];
   }
   result.fit = fit_document(fit, request.fit, result.views, request.samples_per_pixel);
@@ -181,7 +182,7 @@ InvertResult invert_session(const InvertRequest& request) {
   result.doubts = inversion::fit_doubts(seen, fit, agreements_of(result.views, false));
   result.fit["doubts"] = result.doubts;
   if (const auto* thread = std::get_if<renderer::ThreadParameters>(&fit.model))
-    result.fit["irregularity"] = irregularity_json(request, asked.spool.wrapping, views, *thread);
+    result.fit["irregularity"] = irregularity_json(request, asked.spool.wrapping, views, fitted, *thread);
   const json provenance = provenance_json(request.session, asked);
   const json document = std::visit(ModelDocument{asked, developed, result.fit, provenance}, fit.model);
   write_json_file(result.file, document);
