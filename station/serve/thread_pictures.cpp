@@ -1,8 +1,10 @@
 #include "station/serve/thread_pictures.h"
 
 #include <chrono>
+#include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "station/serve/job_command.h"
 #include "station/session/record/session_folder.h"
@@ -52,15 +54,15 @@ void ThreadPictures::make(int number, const std::string& sha256) {
   making_ = sha256;
   given_up_ = false;
   fs::create_directories(cloth().parent_path());
+  // Said by nobody: whoever follows the station hears of the picture when it is there.
+  const std::vector<std::string> arguments{"cloth",   workspace_.thread_in_library(number).string(),
+                                           "--out",   cloth().string(),
+                                           "--draft", ready_draft(kDraft).string(),
+                                           "--shape", kShape,
+                                           "--size",  std::to_string(kSize_px),
+                                           "--quick", "--quiet"};
   job_ = std::make_unique<Job>(
-      JobRequest{
-          .title = "picture",
-          .steps = {{"cloth",
-                     {"cloth", workspace_.thread_in_library(number).string(), "--out", cloth().string(), "--draft",
-                      ready_draft(kDraft).string(), "--shape", kShape, "--size", std::to_string(kSize_px), "--quick"}}},
-          .said = cloth(),
-          .program = program_},
-      changed_);
+      JobRequest{.title = "picture", .steps = {{"cloth", arguments}}, .said = cloth(), .program = program_}, changed_);
 }
 
 // The picture alone; what was given up is gone on with some other time.

@@ -67,9 +67,9 @@ async function attend(station, what, seconds, outcome = /ended well$/) {
 async function check(station) {
   await station.until("control", () => document.getElementById("control").disabled, 10);
   assert.match(await station.text("#next"), /not been checked/);
-  await station.look("start");
   const bytes = await station.page.evaluate(() => performance.getEntriesByType("resource").reduce((sum, one) => sum + one.encodedBodySize, 0));
   assert.ok(bytes < 200e3, `${bytes} bytes until the first screen is there`);
+  await station.look("start");
   await station.click('[data-screen="bench"]');
   await station.look("bench-idle");
   await station.click('[data-screen="overview"]');
