@@ -44,9 +44,19 @@ std::vector<fs::path> found(const BatchFile& plan, const std::string& name, Batc
   return paths;
 }
 
+// "8" of the file of figure 8.
+std::string number_of_figure(const fs::path& file) {
+  const json document = read_json_file(file);
+  if (const auto number = document.find("figure"); number != document.end() && number->is_string()) return *number;
+  throw std::runtime_error("'" + file.string() + "' describes no figure; name files of figures in \"figures\"");
+}
+
 void check(const BatchFile& plan, const fs::path& path, BatchItemKind kind) {
   std::error_code ignored;
-  if (kind == BatchItemKind::session ? is_session(path) : fs::is_regular_file(path, ignored)) return;
+  if (kind == BatchItemKind::session ? is_session(path) : fs::is_regular_file(path, ignored)) {
+    if (kind == BatchItemKind::figure) number_of_figure(path);
+    return;
+  }
   throw std::runtime_error(plan.source + ": '" + path.string() + "' is no " + name_of(kind) +
                            (kind == BatchItemKind::session ? "'s folder" : " file") + "; check the name in \"" +
                            name_of(kind) + "s\"");
@@ -110,8 +120,11 @@ std::vector<BatchItem> read_items(const fs::path& file) {
   std::vector<BatchItem> items;
   for (ObjectReader& one : reader.objects("items")) {
     BatchItem item{.number = one.integer("number", 0, 1 << 30)};
-    const std::string kind = one.choice("kind", {"session", "thread", "scene", "spool"});
-    item.kind = *std::ranges::find_if(kBatchItemKinds, [&](BatchItemKind other) { return kind == name_of(other); });
+    const std::string kind = one.text("kind");
+    const auto known =
+        std::ranges::find_if(kBatchItemKinds, [&](BatchItemKind other) { return kind == name_of(other); });
+    if (known == std::end(kBatchItemKinds)) one.refuse("kind", "found \"" + kind + "\", which is no kind of item");
+    item.kind = *known;
     item.name = one.text("name"), item.path = one.text("path"), item.planned = one.flag("planned");
     one.finish();
     items.push_back(item);
@@ -148,7 +161,7 @@ void add_inputs(std::vector<fs::path>& files, const BatchTask& task) {
     files.push_back(thread_of(task));
   } else if (command == "render") {
     for (const fs::path& file : files_of_scene(at)) files.push_back(file);
-  } else if (command == "validate") {
+  } else if (command == "validate" || command == "reproduce") {
     files.push_back(at);
   } else {
     files.push_back(at / "session.json");
@@ -185,8 +198,8 @@ BatchWork planned_batch(const fs::path& plan, const fs::path& folder) {
   for (const BatchStep& step : work.plan.steps)
     if (std::ranges::none_of(wanted, [&](const BatchItem& item) { return is_for(step, item.kind); }))
       throw std::runtime_error(work.plan.source + ": the step \"" + step.name +
-                               "\" has nothing that it could be done " +
-                               "with; give it sessions, threads, scenes or spools, or take it out");
+                               "\" has nothing that it could be done with; give it " + kKindsOfItems +
+                               ", or take it out");
   return work;
 }
 
@@ -248,7 +261,7 @@ fs::path result_of(const BatchWork& work, const BatchTask& task) {
   const fs::path place = work.folder / "results" / task.step->name / task.item->name;
   const std::string& command = task.step->command;
   if (command == "render") return place.string() + ".exr";
-  return command == "cloth" || command == "export" || command == "validate" ? place : fs::path();
+  return is_for(*task.step, BatchItemKind::session) && command != "cloth" && command != "export" ? fs::path() : place;
 }
 
 std::vector<std::string> arguments_of(const BatchWork& work, const BatchTask& task) {
@@ -257,6 +270,8 @@ std::vector<std::string> arguments_of(const BatchWork& work, const BatchTask& ta
   if (step.command == "export") words.emplace_back("thread");
   if (step.command == "validate")
     words.insert(words.end(), {"--spool", task.item->path.string()});
+  else if (step.command == "reproduce")
+    words.push_back(number_of_figure(task.item->path));
   else
     words.push_back(step.command == "cloth" || step.command == "export" ? thread_of(task).string()
                                                                         : task.item->path.string());

@@ -43,8 +43,8 @@ void run(BatchArguments& arguments) {
 void add_batch_command(CLI::App& app) {
   auto arguments = std::make_shared<BatchArguments>();
   DoBatchRequest& request = arguments->request;
-  CLI::App* command =
-      app.add_subcommand("batch", "many sessions, threads or scenes: develop, fit, weave, report, here or by Slurm");
+  CLI::App* command = app.add_subcommand(
+      "batch", "many sessions, threads, scenes or figures: develop, fit, weave, report, here or by Slurm");
   command->add_option("plan", request.plan, "file of the steps and what they are done with");
   command->add_option("--out", request.folder, "folder of the batch; the same again goes on with it");
   command->add_option("--on", request.on, "where the tasks run: this computer, or a cluster's Slurm")

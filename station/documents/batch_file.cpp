@@ -19,7 +19,7 @@ using enum BatchItemKind;
 const std::map<std::string, std::vector<BatchItemKind>>& commands() {
   static const std::map<std::string, std::vector<BatchItemKind>> all{
       {"develop", {session}},        {"invert", {session}}, {"report", {session}}, {"cloth", {session, thread}},
-      {"export", {session, thread}}, {"render", {scene}},   {"validate", {spool}}};
+      {"export", {session, thread}}, {"render", {scene}},   {"validate", {spool}}, {"reproduce", {figure}}};
   return all;
 }
 
@@ -62,7 +62,8 @@ std::vector<std::string> needs_of(ObjectReader& reader, const BatchStep& step, c
 
 BatchStep read_step(ObjectReader& reader, const std::vector<BatchStep>& earlier) {
   BatchStep step;
-  step.command = reader.choice("do", {"develop", "invert", "report", "cloth", "export", "render", "validate"});
+  step.command =
+      reader.choice("do", {"develop", "invert", "report", "cloth", "export", "render", "validate", "reproduce"});
   step.name = reader.has("name") ? reader.text("name") : step.command;
   if (const auto problem = problem_with_name(step.name)) reader.refuse("name", *problem);
   if (std::ranges::find(earlier, step.name, &BatchStep::name) != earlier.end())
@@ -91,9 +92,11 @@ const char* name_of(BatchItemKind kind) {
     case scene:
       return "scene";
     case spool:
+      return "spool";
+    case figure:
       break;
   }
-  return "spool";
+  return "figure";
 }
 
 bool is_for(const BatchStep& step, BatchItemKind kind) {
@@ -117,7 +120,7 @@ BatchFile parse_batch(const json& document, const std::string& source, const fs:
     batch.names[static_cast<std::size_t>(kind)] = texts(reader, key);
     any = any || !batch.names_of(kind).empty();
   }
-  if (!any) reader.refuse("sessions", "found nothing to work on; give sessions, threads, scenes or spools");
+  if (!any) reader.refuse("sessions", std::string("found nothing to work on; give ") + kKindsOfItems);
   for (ObjectReader& step : reader.objects("steps")) batch.steps.push_back(read_step(step, batch.steps));
   if (batch.steps.empty()) reader.refuse("steps", "found none; give at least one, such as {\"do\": \"invert\"}");
   if (reader.has("at_once")) batch.at_once = reader.integer("at_once", 1, 100000);

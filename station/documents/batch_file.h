@@ -1,8 +1,9 @@
-// The plan of a batch (kind "batch"): which steps are to be done with which sessions, threads, scenes and spools. Its
-// keys are documented in station/data/batches/README.md.
+// The plan of a batch (kind "batch"): which steps are to be done with which sessions, threads, scenes, spools and
+// figures. Its keys are documented in station/data/batches/README.md.
 #pragma once
 
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -10,14 +11,15 @@
 namespace station {
 
 // What a step is done with. Steps of a session come before those that need its thread.
-enum class BatchItemKind { session, thread, scene, spool };
+enum class BatchItemKind { session, thread, scene, spool, figure };
 inline constexpr BatchItemKind kBatchItemKinds[] = {BatchItemKind::session, BatchItemKind::thread, BatchItemKind::scene,
-                                                    BatchItemKind::spool};
+                                                    BatchItemKind::spool, BatchItemKind::figure};
 const char* name_of(BatchItemKind kind);  // "session"
+inline constexpr const char* kKindsOfItems = "sessions, threads, scenes, spools or figures";
 
 struct BatchStep {
   std::string name;     // safe as the name of a folder
-  std::string command;  // develop, invert, report, cloth, export, render or validate
+  std::string command;  // develop, invert, report, cloth, export, render, validate or reproduce
   std::string model = "thread";
   std::vector<std::string> options;  // of the command, as on its command line
   std::vector<std::string> needs;    // names of earlier steps, of the same item
@@ -29,13 +31,13 @@ struct BatchStep {
 bool is_for(const BatchStep& step, BatchItemKind kind);
 
 struct BatchFile {
-  std::string source;                      // the file
-  std::filesystem::path folder;            // absolute: relative names in it are of here
-  std::vector<std::string> names[4];       // by BatchItemKind; with wildcards
-  std::vector<BatchStep> steps;            // at least one
-  int at_once = 0;                         // most tasks of a step at a time; 0: no limit
-  std::vector<std::string> slurm_options;  // of sbatch, such as --partition=long
-  nlohmann::json document;                 // all of it, with `folder`
+  std::string source;                                          // the file
+  std::filesystem::path folder;                                // absolute: relative names in it are of here
+  std::vector<std::string> names[std::size(kBatchItemKinds)];  // by BatchItemKind; with wildcards
+  std::vector<BatchStep> steps;                                // at least one
+  int at_once = 0;                                             // most tasks of a step at a time; 0: no limit
+  std::vector<std::string> slurm_options;                      // of sbatch, such as --partition=long
+  nlohmann::json document;                                     // all of it, with `folder`
 
   const std::vector<std::string>& names_of(BatchItemKind kind) const { return names[static_cast<std::size_t>(kind)]; }
   const BatchStep* step(const std::string& name) const;  // null when there is none

@@ -12,7 +12,7 @@
 #include "station/documents/reader.h"
 #include "tests/places.h"
 #include "tests/station/batch/small_sessions.h"
-#include "tests/station/commands/program.h"
+#include "tests/station/commands/own_figures.h"
 
 namespace station_test {
 namespace {
@@ -58,6 +58,37 @@ class BatchTest : public ::testing::Test {
   }
   TemporaryFolder folder_;
 };
+
+// One of several computers makes a figure of the paper.
+TEST_F(BatchTest, EachFigureIsATask) {
+  const OwnFigures figures;
+  for (const std::string draft : {"plain", "twill_2_2"})
+    figures.write(draft + ".json", {{"format", "threadstation/figure"},
+                                    {"version", 1},
+                                    {"figure", draft == "plain" ? "8" : "9"},
+                                    {"title", draft},
+                                    {"paper", "shows it"},
+                                    {"different", "nothing"},
+                                    {"steps", {{{"run", "weave --draft " + draft + " --out p.json --view p.png"}}}},
+                                    {"pictures", {{{"pictures", {{{"file", "p.png"}, {"caption", draft}}}}}}}});
+  json plan = station::read_json_file(DATA_DIR "/batches/figures.json");
+  plan["figures"] = json::array({(figures.folder() / "*.json").string()});
+  station::write_json_file(folder_ / "plan.json", plan);
+  const ProgramResult made = batch();
+  ASSERT_EQ(made.status, 0) << made.error;
+  EXPECT_EQ(count(made, "reproduce", "done"), 2);
+  const fs::path of_twill = folder_.path() / "batch/results/reproduce/twill_2_2";
+  EXPECT_TRUE(fs::exists(of_twill / "index.html"));
+  EXPECT_TRUE(fs::exists(of_twill / "figure-9/p.json"));
+  fs::remove(of_twill / "index.html");
+  ASSERT_EQ(batch().status, 0);
+  EXPECT_TRUE(fs::exists(of_twill / "index.html")) << "what is not as the record says is made again";
+
+  station::write_json_file(figures.folder() / "thread.json", {{"diameter_mm", 1}});
+  const ProgramResult refused = batch();
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_NE(refused.error.find("thread.json' describes no figure"), std::string::npos) << refused.error;
+}
 
 TEST_F(BatchTest, DoesEveryStepOfEachSessionOnceAndThenOnlyWhatChanged) {
   make_sessions(folder_.path(), 3);

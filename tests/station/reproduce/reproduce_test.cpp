@@ -2,15 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "station/documents/reader.h"
 #include "station/reproduce/figure_file.h"
-#include "tests/places.h"
-#include "tests/station/commands/program.h"
+#include "tests/station/commands/own_figures.h"
 
 namespace station {
 namespace {
@@ -34,11 +32,6 @@ json drafts(const std::vector<std::string>& names) {
 
 struct Reproduce : testing::Test {
   Reproduce() {
-    fs::create_directories(data / "figures");
-    for (const auto& entry : fs::directory_iterator(DATA_DIR))
-      if (entry.path().filename() != "figures")
-        fs::create_symlink(entry.path(), data / entry.path().filename().string());
-    setenv("THREADSTATION_DATA", data.path().c_str(), 1);
     weave = {{"format", "threadstation/figure"},
              {"version", 1},
              {"figure", "8"},
@@ -66,9 +59,8 @@ struct Reproduce : testing::Test {
                {{"name", "mean radius"}, {"file", "plain.json"}, {"at", "/yarns/*/radius_mm"}, {"digits", 3}},
                {{"name", "what is not there"}, {"file", "plain.json"}, {"at", "/nothing"}}}}};
   }
-  ~Reproduce() override { unsetenv("THREADSTATION_DATA"); }
 
-  void write(const std::string& name, const json& figure) { write_json_file(data / "figures/" / name, figure); }
+  void write(const std::string& name, const json& figure) { figures.write(name, figure); }
   station_test::ProgramResult make(std::vector<std::string> words) {
     words.insert(words.begin(), "reproduce");
     words.insert(words.end(), {"--out", out()});
@@ -77,7 +69,8 @@ struct Reproduce : testing::Test {
   std::string out() const { return folder / "figures"; }
   fs::path in_figure(const std::string& name) const { return fs::path(out()) / "figure-8" / name; }
 
-  station_test::TemporaryFolder folder, data;
+  station_test::TemporaryFolder folder;
+  station_test::OwnFigures figures;
   json weave;
 };
 
