@@ -122,6 +122,13 @@ renderer::MeshShape parse_backdrop(ObjectReader& reader) {
   }
 }
 
+renderer::MeshShape parse_form(ObjectReader& reader) {
+  renderer::FormShape s;
+  read_length(reader, "radius_mm", kLeastSize, s.radius_mm);
+  read_length(reader, "height_mm", kLeastSize, s.height_mm);
+  return {.mesh = std::make_shared<renderer::UvMesh>(renderer::form_mesh(s)), .name = "the dress form"};
+}
+
 SceneShape parse_shape(ObjectReader& reader, std::initializer_list<const char*> kinds,
                        const std::filesystem::path& folder) {
   const std::string kind = reader.choice("kind", kinds);
@@ -134,6 +141,7 @@ SceneShape parse_shape(ObjectReader& reader, std::initializer_list<const char*> 
     return renderer::SwatchShape{width_mm, reader.number("height_mm", kLeastSize, kMostSize)};
   }
   if (kind == "backdrop") return parse_backdrop(reader);
+  if (kind == "form") return parse_form(reader);
   if (kind != "mesh") {
     const renderer::GarmentShape garment = parse_garment(reader, kind);
     return SceneGarment{garment, turn_rad(reader)};
@@ -260,7 +268,7 @@ Vector3d at_least_zero(ObjectReader& reader, const std::string& key, double most
 
 SceneBody parse_object(ObjectReader reader, const std::filesystem::path& folder) {
   SceneBody body;
-  body.shape = parse_shape(reader, {"plane", "cylinder", "mesh", "backdrop"}, folder);
+  body.shape = parse_shape(reader, {"plane", "cylinder", "mesh", "backdrop", "form"}, folder);
   body.world_from_object = pose(reader, "world_from_object");
   const Vector3d albedo = at_least_zero(reader, "albedo", 1);
   for (int c = 0; c < 3; ++c) body.albedo[c] = static_cast<float>(albedo[c]);

@@ -197,5 +197,27 @@ TEST(BackdropTest, ShowsItsBrightSideInsideWithoutAnEdge) {
   EXPECT_THROW(backdrop_mesh({.radius_mm = 100, .height_mm = 500, .bend_mm = 200}), std::runtime_error);
 }
 
+// No light comes down past it, and the cloth hangs free of it.
+TEST(FormTest, ClosesTheWaistOfAReadySkirt) {
+  const UvMesh form = form_mesh({}), &skirt = ready_mesh(SkirtShape{});
+  double top = 0, waist = 0, least_waist = 1e9;
+  for (const Vector3d& at : form.vertices) {
+    top = std::max(top, at.z());
+    EXPECT_LE(at.head<2>().norm(), FormShape{}.radius_mm + 1e-9);
+  }
+  for (const Vector3d& at : skirt.vertices) waist = std::max(waist, at.z());
+  for (const Vector3d& at : skirt.vertices) {
+    if (at.z() > waist - 1) least_waist = std::min(least_waist, at.head<2>().norm());
+    if (at.z() < top) EXPECT_GT(at.head<2>().norm(), FormShape{}.radius_mm + 5);
+  }
+  std::printf("the form ends %.1f mm below the waist, which is %.1f mm wide at least\n", waist - top, 2 * least_waist);
+  EXPECT_GT(waist, top);
+  EXPECT_LT(waist, top + 40);
+  for (const auto& t : form.triangles) {
+    const Vector3d &a = form.vertices[t[0]], &b = form.vertices[t[1]], &c = form.vertices[t[2]];
+    ASSERT_GT((b - a).cross(c - a).dot(a - Vector3d(0, 0, 200)), 0) << "its face is outside";
+  }
+}
+
 }  // namespace
 }  // namespace renderer

@@ -146,12 +146,15 @@ TEST(SceneFile, ANumberIsTheRadianceOfAWhiteLight) {
 TEST(SceneFile, AStudioHasABackdropAndIsExposedByAWhiteCard) {
   json document = plain_scene();
   document["objects"] = {{{"kind", "backdrop"}, {"radius_mm", 900}, {"bend_mm", 300}, {"albedo", {0.5, 0.5, 0.5}}}};
+  document["objects"].push_back({{"kind", "form"}, {"height_mm", 700}, {"albedo", {0.1, 0.1, 0.1}}});
   document["white_card"] = {{"position_mm", {1, 2, 3}}, {"normal", {0, 0, 4}}};
   const SceneFile scene = parse_scene(document, "scene", kScenes);
   const renderer::UvMesh& backdrop = *std::get<renderer::MeshShape>(scene.objects.at(0).shape).mesh;
   double most = 0;
   for (const Eigen::Vector3d& place : backdrop.vertices) most = std::max(most, place.head<2>().norm());
   EXPECT_NEAR(most, 900, 1e-9);
+  const renderer::UvMesh& form = *std::get<renderer::MeshShape>(scene.objects.at(1).shape).mesh;
+  EXPECT_EQ(form.vertices.front(), Eigen::Vector3d(0, 0, 700));
   ASSERT_TRUE(scene.white_card);
   EXPECT_EQ(scene.white_card->position_mm, Eigen::Vector3d(1, 2, 3));
   EXPECT_FALSE(scene.brightness);
