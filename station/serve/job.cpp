@@ -198,7 +198,7 @@ class Job::Process {
       const bool ended = reaped(status);  // before the last look
       const bool said = look();
       if (ended) next(WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), stop);
-      if (said || ended) changed_();
+      if ((said && request_.watched) || ended) changed_();
       if (!running()) std::filesystem::remove(process_file_);
       if (!running()) return;
       std::this_thread::sleep_for(kBetweenLooks);

@@ -26,13 +26,14 @@ struct JobRequest {
   std::string title;
   std::vector<JobStep> steps;  // at least one; each begins when the one before has ended well
   std::filesystem::path said;  // said.out and said.progress are written; said.process while it runs
+  bool watched = true;         // whether what it says is a change, or only the end of each step
   std::filesystem::path program = kThisProgram;
 };
 
 class Job {
  public:
-  // Starts it. `changed` is called from another thread after each change. Errors: std::runtime_error when the first
-  // process or its files cannot be made.
+  // Starts it. `changed` is called from another thread after each change (JobRequest::watched). Errors:
+  // std::runtime_error when the first process or its files cannot be made.
   Job(const JobRequest& request, std::function<void()> changed);
   ~Job();  // leaves the process alone, and begins no further step; a question of its is then declined
   Job(const Job&) = delete;

@@ -54,15 +54,17 @@ void ThreadPictures::make(int number, const std::string& sha256) {
   making_ = sha256;
   given_up_ = false;
   fs::create_directories(cloth().parent_path());
-  // Said by nobody: whoever follows the station hears of the picture when it is there.
+  // Whoever follows the station hears of the picture when it is there.
   const std::vector<std::string> arguments{"cloth",   workspace_.thread_in_library(number).string(),
                                            "--out",   cloth().string(),
                                            "--draft", ready_draft(kDraft).string(),
                                            "--shape", kShape,
                                            "--size",  std::to_string(kSize_px),
-                                           "--quick", "--quiet"};
+                                           "--quick"};
   job_ = std::make_unique<Job>(
-      JobRequest{.title = "picture", .steps = {{"cloth", arguments}}, .said = cloth(), .program = program_}, changed_);
+      JobRequest{
+          .title = "picture", .steps = {{"cloth", arguments}}, .said = cloth(), .watched = false, .program = program_},
+      changed_);
 }
 
 // The picture alone; what was given up is gone on with some other time.

@@ -195,7 +195,10 @@ TEST_F(TechnicianPage, AThreadThatCameWithoutASessionIsWovenToBeSeen) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "bench/pictures"));
   EXPECT_EQ(asked("/picture", {{"of", "thread"}, {"number", "2"}}).status, 404);
   EXPECT_EQ(post("/api/stop", {}).status, 200);
+  ASSERT_TRUE(eventually([&] { return job().at("running") == false; }));
+  const int before = changes_;
   ASSERT_TRUE(eventually([&] { return pictured(1); }));
+  EXPECT_LE(changes_ - before, 2) << "nobody is told of each step of the picture";
   EXPECT_EQ(asked("/picture", {{"of", "thread"}, {"number", "2"}}).body.substr(1, 3), "PNG");
   const std::filesystem::directory_iterator kept(folder_ / "bench/pictures");
   EXPECT_EQ(std::distance(begin(kept), end(kept)), 1) << "nothing but the picture";
