@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "renderer/picture/image_file.h"
-#include "renderer/scene/backdrop.h"
 #include "renderer/scene/mesh_file.h"
 #include "renderer/scene/patch_curves.h"
+#include "renderer/scene/studio.h"
 #include "station/documents/bundle_file.h"
 #include "station/documents/degree.h"
 #include "station/documents/draft_file.h"

@@ -10,7 +10,7 @@
 #include <span>
 #include <string>
 
-#include "renderer/scene/backdrop.h"
+#include "renderer/scene/studio.h"
 #include "renderer/trace/cloth_shell.h"
 
 namespace renderer {

@@ -1,5 +1,6 @@
-#include "renderer/scene/backdrop.h"
+#include "renderer/scene/studio.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
