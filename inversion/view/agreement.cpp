@@ -53,7 +53,12 @@ double overall_relative_rmse(const std::vector<ViewAgreement>& views) {
 
 cv::Mat3f fitted_view(const WrappedSpool& spool, const View& view, const renderer::ScatteringModel& thread,
                       int samples_per_pixel, std::uint64_t seed, const std::function<bool(double)>& progress) {
-  const renderer::PathTracer tracer(view_scene(spool, thread, view.light));
+  return fitted_view(spool, view, std::vector{aligned_threads(spool, thread)}, samples_per_pixel, seed, progress);
+}
+
+cv::Mat3f fitted_view(const WrappedSpool& spool, const View& view, std::vector<renderer::CurveSet> threads,
+                      int samples_per_pixel, std::uint64_t seed, const std::function<bool(double)>& progress) {
+  const renderer::PathTracer tracer(view_scene(spool, std::move(threads), view.light));
   renderer::RenderOptions options{.samples_per_pixel = samples_per_pixel, .seed = seed};
   options.only = view.mask;
   options.progress = progress;

@@ -39,4 +39,8 @@ double overall_relative_rmse(const std::vector<ViewAgreement>& views);
 cv::Mat3f fitted_view(const WrappedSpool& spool, const View& view, const renderer::ScatteringModel& thread,
                       int samples_per_pixel, std::uint64_t seed, const std::function<bool(double)>& progress = {});
 
+// The same of these threads (shaded_threads()) in place of even ones.
+cv::Mat3f fitted_view(const WrappedSpool& spool, const View& view, std::vector<renderer::CurveSet> threads,
+                      int samples_per_pixel, std::uint64_t seed, const std::function<bool(double)>& progress = {});
+
 }  // namespace inversion

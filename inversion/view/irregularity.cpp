@@ -6,6 +6,7 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <random>
 
 namespace inversion {
 namespace {
@@ -21,11 +22,15 @@ constexpr double kResolved_px = 3;        // to a turn: its pattern is seen
 constexpr int kWindowTurns = 3;           // whose phase is told
 constexpr std::size_t kParts = 8;         // of the sheet, left out in turn for the errors
 constexpr double kLeastDarkening = 0.02;  // of the most absorbing channel: less tells nothing of absorption
+// Shades of turns that are drawn to see how much is told of them: of any thread the same, in no more than this range.
+constexpr std::uint64_t kShadesSeed = 20261201;
+constexpr double kLeastShade = 0.1, kMostShade = 0.5;
+constexpr double kLeastTold = 0.1;  // of them: less tells nothing
 
 // What is told by both halves of the views, each by itself, at a place of the thread.
 struct Told {
   double along_mm;  // from the first turn's middle, along the thread
-  int turn;
+  int turn, cell;
   std::array<double, 2> halves;
 };
 
@@ -81,22 +86,50 @@ std::array<std::vector<double>, 2> halves_of(const std::vector<std::vector<doubl
   return halves;
 }
 
-// The square root of the covariance of the halves over a factor, and its error by leaving out parts of the sheet in
-// turn (jackknife); nothing where too few places are told.
-std::optional<Deviation> deviation_of(const std::vector<Told>& told, double over) {
+// A random wave along a thread: variance 1, correlation exp(-(d / length)^2) at the distance d.
+class Wave {
+ public:
+  Wave(double length_mm, std::mt19937_64& random) {
+    std::normal_distribution<double> frequency(0, std::numbers::sqrt2 / length_mm);
+    std::uniform_real_distribution<double> phase(0, 2 * std::numbers::pi);
+    for (Cosine& one : cosines_) one = {frequency(random), phase(random)};
+  }
+  double at(double along_mm) const {
+    double sum = 0;
+    for (const Cosine& one : cosines_) sum += std::cos(one.frequency * along_mm + one.phase);
+    return sum * std::sqrt(2.0 / static_cast<double>(cosines_.size()));
+  }
+
+ private:
+  struct Cosine {
+    double frequency, phase;
+  };
+  std::array<Cosine, 60> cosines_;
+};
+
+// What cells of a sheet keep of a thread's variance, and by how much the root of that differs from thread to thread, as
+// a share.
+struct Kept {
+  double share = 1, spread = 0;
+};
+
+// The square root of the covariance of the halves over what is kept, and its error: by leaving out parts of the sheet
+// in turn (jackknife), but no less than threads differ; nothing where too few places are told.
+std::optional<Deviation> deviation_of(const std::vector<Told>& told, const Kept& kept) {
   if (told.size() < 2 * kParts) return std::nullopt;
   const auto covariance = [&](std::size_t left_out) {
     double sum = 0, count = 0;
     for (std::size_t i = 0; i < told.size(); ++i)
       if (i * kParts / told.size() != left_out) sum += told[i].halves[0] * told[i].halves[1], ++count;
-    return sum / count / over;
+    return sum / count / kept.share;
   };
   const double all = covariance(kParts);
   double squares = 0;
   for (std::size_t part = 0; part < kParts; ++part) squares += std::pow(covariance(part) - all, 2);
   const double sigma = std::sqrt(squares * (kParts - 1) / kParts), value = std::sqrt(std::max(0.0, all));
   // Of the root: linear where it is well above 0, and that of the covariance's own root elsewhere.
-  return Deviation{.value = value, .sigma = std::min(sigma / (2 * std::max(value, 1e-9)), std::sqrt(sigma))};
+  const double of_root = std::min(sigma / (2 * std::max(value, 1e-9)), std::sqrt(sigma));
+  return Deviation{.value = value, .sigma = std::max(of_root, kept.spread * value)};
 }
 
 // The length at which v exp(-(d / length)^2) is nearest to the covariance at all distances d along the thread.
@@ -129,7 +162,9 @@ double correlation_length(const std::vector<Told>& told, double turn_mm) {
 
 class Sheet {
  public:
-  Sheet(const WrappedSpool& spool, const std::vector<const View*>& views) : spool_(spool), views_(views) {
+  Sheet(const WrappedSpool& spool, const std::vector<View>& views, const std::vector<std::size_t>& seen)
+      : spool_(spool) {
+    for (const std::size_t i : seen) views_.push_back(&views[i]);
     double least_px = std::numeric_limits<double>::max();
     for (const View* view : views_) least_px = std::min(least_px, spool.thread_diameter_mm * px_per_mm(*view));
     turn_px_ = least_px;
@@ -143,8 +178,9 @@ class Sheet {
 
   bool turns_are_seen() const { return turn_px_ >= kResolved_px; }
 
-  // The logarithm of each cell's brightness over its twin's in a view, R, G and B, flattened.
-  std::array<std::vector<double>, 3> brightness(const View& view, const cv::Mat3f& fitted) const {
+  // The logarithm of each cell's brightness in a picture of this view over its even twin's, R, G and B, flattened.
+  std::array<std::vector<double>, 3> brightness(const View& view, const cv::Mat3f& picture,
+                                                const cv::Mat3f& even_twin) const {
     const auto cells = static_cast<std::size_t>(grid_.cells());
     std::vector<Array3d> photographed(cells, Array3d::Zero()), even = photographed;
     std::vector<int> counts(cells, 0);
@@ -154,7 +190,7 @@ class Sheet {
         const auto place = on_sheet(view, spool_, column, row);
         const int cell = place ? grid_.at(place->x(), place->y()) : -1;
         if (cell < 0) continue;
-        const cv::Vec3f &a = view.image(row, column), &b = fitted(row, column);
+        const cv::Vec3f &a = picture(row, column), &b = even_twin(row, column);
         photographed[static_cast<std::size_t>(cell)] += Array3d(a[0], a[1], a[2]);
         even[static_cast<std::size_t>(cell)] += Array3d(b[0], b[1], b[2]);
         ++counts[static_cast<std::size_t>(cell)];
@@ -177,17 +213,40 @@ class Sheet {
       const auto i = static_cast<std::size_t>(cell);
       if (!std::isfinite(halves[0][i]) || !std::isfinite(halves[1][i])) continue;
       const int turn = cell / grid_.along * grid_.turns_per_cell;
-      all.push_back({turn * turn_length_mm(spool_) + grid_.y(cell), turn, {halves[0][i], halves[1][i]}});
+      all.push_back({turn * turn_length_mm(spool_) + grid_.y(cell), turn, cell, {halves[0][i], halves[1][i]}});
     }
     return all;
   }
 
-  // The share of the thread's variance that the mean of a cell's turns keeps.
-  double cell_share(double length_mm) const {
-    double sum = 0;
-    for (int a = 0; a < grid_.turns_per_cell; ++a)
-      for (int b = 0; b < grid_.turns_per_cell; ++b) sum += correlation(a - b, length_mm);
-    return sum / (grid_.turns_per_cell * grid_.turns_per_cell);
+  // What these cells show of a value of each place of the thread, flattened; no numbers elsewhere. `at`: by turn and mm
+  // along it.
+  template <class At>
+  std::vector<double> shown(const std::vector<Told>& told, const At& at) const {
+    std::vector<double> cells(static_cast<std::size_t>(grid_.cells()), std::numeric_limits<double>::quiet_NaN());
+    for (const Told& one : told) {
+      double sum = 0;
+      for (int turn = one.turn; turn < one.turn + grid_.turns_per_cell; ++turn) sum += at(turn, grid_.y(one.cell));
+      cells[static_cast<std::size_t>(one.cell)] = sum / grid_.turns_per_cell;
+    }
+    flatten(cells, grid_);
+    return cells;
+  }
+
+  // Of threads that stay alike over this length, by random ones.
+  Kept kept(const std::vector<Told>& told, double length_mm) const {
+    constexpr int kThreads = 64;
+    std::mt19937_64 random(kShadesSeed);
+    double sum = 0, roots = 0;
+    for (int i = 0; i < kThreads; ++i) {
+      const Wave wave(length_mm, random);
+      const std::vector<double> cells =
+          shown(told, [&](int turn, double y) { return wave.at(turn * turn_length_mm(spool_) + y); });
+      double squares = 0;
+      for (const Told& one : told) squares += std::pow(cells[static_cast<std::size_t>(one.cell)], 2);
+      squares /= static_cast<double>(told.size());
+      sum += squares / kThreads, roots += std::sqrt(squares) / kThreads;
+    }
+    return {.share = sum, .spread = std::sqrt(std::max(0.0, sum / (roots * roots) - 1))};
   }
 
   // By how much the turns of each window are shifted from even places in a view, in diameters; flattened. No numbers
@@ -254,10 +313,10 @@ class Sheet {
     std::vector<Told> told;
     for (std::size_t i = 0; i < halves[0].size(); ++i)
       if (std::isfinite(halves[0][i]) && std::isfinite(halves[1][i]))
-        told.push_back({0, 0, {halves[0][i], halves[1][i]}});
+        told.push_back({0, 0, 0, {halves[0][i], halves[1][i]}});
     // A straight line has been taken from the stretches.
     const auto all = static_cast<double>(told.size());
-    return deviation_of(told, stretch_share(length_mm) * (all - 2) / all);
+    return deviation_of(told, {.share = stretch_share(length_mm) * (all - 2) / all});
   }
 
  private:
@@ -272,38 +331,81 @@ class Sheet {
   double turn_px_ = 0;
 };
 
+// The logarithm of each cell's absorption, by how R, G and B are darker.
+std::vector<double> shades_of(const std::array<std::vector<double>, 3>& ratios, const Array3d& darkening) {
+  std::vector<double> shades;
+  for (std::size_t cell = 0; cell < ratios[0].size(); ++cell)
+    shades.push_back(-(Array3d(ratios[0][cell], ratios[1][cell], ratios[2][cell]) * darkening).sum() /
+                     darkening.square().sum());
+  return shades;
+}
+
+// The mean of R, G and B of each cell.
+std::vector<double> mean_of(const std::array<std::vector<double>, 3>& ratios) {
+  std::vector<double> means;
+  for (std::size_t cell = 0; cell < ratios[0].size(); ++cell)
+    means.push_back((ratios[0][cell] + ratios[1][cell] + ratios[2][cell]) / 3);
+  return means;
+}
+
+// Shades of the turns of a thread whose shade deviates by about this much.
+std::vector<double> known_shades(const WrappedSpool& spool, double deviation, double length_mm) {
+  std::mt19937_64 random(kShadesSeed);
+  const Wave wave(length_mm, random);
+  std::vector<double> shades;
+  for (int turn = 0; turn < spool.turns; ++turn)
+    shades.push_back(std::clamp(deviation, kLeastShade, kMostShade) * wave.at(turn * turn_length_mm(spool)));
+  return shades;
+}
+
+// How much is told of shades by what is told of known ones, by their covariance.
+double share_told(const std::vector<Told>& told, const std::vector<double>& known) {
+  double both = 0, squares = 0;
+  for (const Told& one : told) {
+    const double shade = known[static_cast<std::size_t>(one.cell)];
+    both += shade * (one.halves[0] + one.halves[1]) / 2, squares += shade * shade;
+  }
+  return both / squares;
+}
+
 }  // namespace
 
 double turn_length_mm(const WrappedSpool& spool) {
   return 2 * (spool.frame_width_mm + spool.frame_depth_mm);
 }
 
-Irregularity measure_irregularity(const WrappedSpool& spool, const std::vector<View>& views,
-                                  const std::vector<cv::Mat3f>& fitted, const Array3d& darkening) {
-  std::vector<const View*> seen;
-  std::vector<const cv::Mat3f*> twins;
+Irregularity measure_irregularity(const WrappedSpool& spool, const std::vector<View>& views, const FittedTwins& twins) {
+  std::vector<std::size_t> seen;
   for (std::size_t i = 0; i < views.size(); ++i)
-    if (!views[i].transmission && !views[i].image.empty()) seen.push_back(&views[i]), twins.push_back(&fitted.at(i));
+    if (!views[i].transmission && !views[i].image.empty()) seen.push_back(i);
   Irregularity found;
   if (seen.size() < kFewestViews || spool.turns < 2 * kWindowTurns) return found;
-  const Sheet sheet(spool, seen);
-  std::vector<std::vector<double>> brightness, shade;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const std::array<std::vector<double>, 3> ratios = sheet.brightness(*seen[i], *twins[i]);
-    std::vector<double>& bright = brightness.emplace_back();
-    std::vector<double>& dark = shade.emplace_back();
-    for (std::size_t cell = 0; cell < ratios[0].size(); ++cell) {
-      const Array3d of_cell(ratios[0][cell], ratios[1][cell], ratios[2][cell]);
-      bright.push_back(of_cell.mean());
-      dark.push_back(-(of_cell * darkening).sum() / darkening.square().sum());
-    }
-  }
-  const std::vector<Told> told = sheet.told(brightness);
+  const Sheet sheet(spool, views, seen);
+  // What cells tell of pictures in these views' places; value_of: of their brightness over the even twin's.
+  const auto tell = [&](const auto& picture_of, const auto& value_of) {
+    std::vector<std::vector<double>> of_views;
+    for (const std::size_t i : seen)
+      of_views.push_back(value_of(sheet.brightness(views[i], picture_of(i), twins.even.at(i))));
+    return sheet.told(of_views);
+  };
+  const auto photograph = [&](std::size_t i) { return views[i].image; };
+  const auto shade_of = [&](const auto& ratios) { return shades_of(ratios, twins.darkening); };
+  const std::vector<Told> told = tell(photograph, mean_of);
   if (told.size() < kFewestCells) return found;
   found.length_mm = correlation_length(told, turn_length_mm(spool));
-  const double share = sheet.cell_share(found.length_mm);
-  found.brightness = deviation_of(told, share);
-  if (darkening.maxCoeff() > kLeastDarkening) found.shade = deviation_of(sheet.told(shade), share);
+  const Kept kept = sheet.kept(told, found.length_mm);
+  found.brightness = deviation_of(told, kept);
+  if (twins.darkening.maxCoeff() > kLeastDarkening) found.shade = deviation_of(tell(photograph, shade_of), kept);
+  if (found.shade) {
+    const std::vector<double> known = known_shades(spool, found.shade->value, found.length_mm);
+    const double share =
+        share_told(tell([&](std::size_t i) { return twins.shaded(i, known); }, shade_of),
+                   sheet.shown(told, [&](int turn, double) { return known[static_cast<std::size_t>(turn)]; }));
+    if (share < kLeastTold)
+      found.shade.reset();
+    else
+      found.shade = {found.shade->value / share, found.shade->sigma / share};
+  }
   if (sheet.turns_are_seen()) found.diameter = sheet.diameter(found.length_mm);
   return found;
 }

@@ -7,11 +7,13 @@
 // of thread later, so that cells in and across turns tell over what length the thread stays alike. Thickness shows in
 // where turns lie: the phase of their pattern in a window moves as the thread before it is thicker or thinner.
 //
-// Brightness is told as it is seen. Of the shades behind it less is told than there is, because what one turn scatters
-// lights its neighbours too: of 0.41 in silk, whose turns lie close, 0.25 (tests/station/bench/spool_fibers_test.cpp).
+// Cells mix turns, and slow changes are taken away: how much is left of a thread's variance is counted on random ones.
+// Of the shades behind its brightness, what views tell of known ones is measured on pictures of the fitted thread.
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -30,12 +32,18 @@ struct Irregularity {
   double length_mm = 0;                 // of thread, over which the correlation of its brightness falls to 1 / e
 };
 
-// `fitted`: pictures of the even thread, one for each view, in its radiance unit. `darkening`: by how much the
-// logarithm of the brightness of R, G and B falls for each unit of the absorption's logarithm. Views by transmission
-// are left out, for they show what is behind as well; nothing is told where fewer than four are left or the sheet is
-// too small.
-Irregularity measure_irregularity(const WrappedSpool& spool, const std::vector<View>& views,
-                                  const std::vector<cv::Mat3f>& fitted, const Eigen::Array3d& darkening);
+// Pictures of the fitted thread, in the views' places and radiance units.
+struct FittedTwins {
+  std::vector<cv::Mat3f> even;  // one for each view
+  // By how much the logarithm of the brightness of R, G and B falls for each unit of the absorption's logarithm.
+  Eigen::Array3d darkening = Eigen::Array3d::Zero();
+  // The picture of the view of this index, each turn, from bottom to top, with exp(shade) times the absorption.
+  std::function<cv::Mat3f(std::size_t view, const std::vector<double>& shades)> shaded;
+};
+
+// Views by transmission are left out, for they show what is behind as well; nothing is told where fewer than four are
+// left or the sheet is too small.
+Irregularity measure_irregularity(const WrappedSpool& spool, const std::vector<View>& views, const FittedTwins& twins);
 
 // One turn of the thread round the holder, mm.
 double turn_length_mm(const WrappedSpool& spool);

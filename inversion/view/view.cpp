@@ -35,8 +35,12 @@ renderer::SphereLight sphere_light(const NearLight& light) {
 
 renderer::Scene view_scene(const WrappedSpool& spool, const renderer::ScatteringModel& scattering,
                            const NearLight& light) {
+  return view_scene(spool, std::vector{aligned_threads(spool, scattering)}, light);
+}
+
+renderer::Scene view_scene(const WrappedSpool& spool, std::vector<renderer::CurveSet> threads, const NearLight& light) {
   renderer::Scene scene;
-  scene.curves.push_back(aligned_threads(spool, scattering));
+  scene.curves = std::move(threads);
   scene.meshes.push_back(holder_frame(spool, kFrameAlbedo));
   scene.lights.push_back(sphere_light(light));
   return scene;

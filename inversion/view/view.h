@@ -43,6 +43,9 @@ renderer::SphereLight sphere_light(const NearLight& light);
 renderer::Scene view_scene(const WrappedSpool& spool, const renderer::ScatteringModel& scattering,
                            const NearLight& light);
 
+// The same with these threads in place of even ones.
+renderer::Scene view_scene(const WrappedSpool& spool, std::vector<renderer::CurveSet> threads, const NearLight& light);
+
 // The mask of the threads, 255 inside: the non-zero region of a rendering of the threads from this view before anything
 // is fitted [Xia 2025, section 4], less a border of two pixels where photographs mix threads with what is beside them.
 // `samples_per_pixel` rays per pixel decide. Pictures wider than 1024 pixels are rendered, and lose their border, in

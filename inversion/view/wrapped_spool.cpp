@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace inversion {
 namespace {
@@ -67,6 +68,23 @@ renderer::CurveSet aligned_threads(const WrappedSpool& spool, const renderer::Sc
   for (const Segment3& line : thread_lines(spool))
     add_straight_curve(curves, line, spool.thread_diameter_mm / 2, pieces_per_thread(spool));
   return curves;
+}
+
+std::vector<renderer::CurveSet> shaded_threads(const WrappedSpool& spool, const renderer::ThreadParameters& thread,
+                                               const std::vector<double>& shades) {
+  if (shades.size() != static_cast<std::size_t>(spool.turns))
+    throw std::invalid_argument("shaded_threads: one shade for each turn");
+  std::vector<renderer::CurveSet> turns(shades.size());
+  for (std::size_t turn = 0; turn < turns.size(); ++turn) {
+    renderer::ThreadParameters shaded = thread;
+    shaded.sigma_a *= std::exp(shades[turn]);
+    turns[turn].scattering = shaded;
+  }
+  std::size_t line_number = 0;
+  for (const Segment3& line : thread_lines(spool))
+    add_straight_curve(turns[line_number++ % turns.size()], line, spool.thread_diameter_mm / 2,
+                       pieces_per_thread(spool));
+  return turns;
 }
 
 renderer::TriangleMesh holder_frame(const WrappedSpool& spool, double albedo) {

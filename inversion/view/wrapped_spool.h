@@ -34,6 +34,11 @@ void add_straight_curve(renderer::CurveSet& curves, const Segment3& line, double
 // The threads as curves, one each, all with the same scattering.
 renderer::CurveSet aligned_threads(const WrappedSpool& spool, const renderer::ScatteringModel& scattering);
 
+// The same of a thread that is uneven along itself, a set for each turn from bottom to top: its absorption is
+// exp(shades[turn]) times that of `thread`. std::invalid_argument unless there is a shade for each turn.
+std::vector<renderer::CurveSet> shaded_threads(const WrappedSpool& spool, const renderer::ThreadParameters& thread,
+                                               const std::vector<double>& shades);
+
 // The frame without threads: four bars round the window, Lambertian.
 renderer::TriangleMesh holder_frame(const WrappedSpool& spool, double albedo);
 

@@ -11,6 +11,7 @@
 #include "renderer/scattering/degree.h"
 #include "renderer/scene/grid_triangles.h"
 #include "renderer/scene/hanging_sheet.h"
+#include "renderer/scene/hem.h"
 
 namespace renderer {
 namespace {
@@ -139,17 +140,24 @@ std::vector<Vector3d> places_of(const std::vector<std::vector<Vector2d>>& rows, 
   return places;
 }
 
-// The mesh of rows of points from the upper edge down, so that triangles turn towards the face. A closed sheet's first
-// column is repeated as its last, which has another place in the pattern.
+// The mesh of rows of cloth with its hem, so that triangles turn towards the face. A closed sheet's first column is
+// repeated as its last, which has another place in the pattern. uv(column, row): the place in the pattern, whose rows
+// are `row_mm` apart.
 template <class Uv>
-UvMesh mesh_of(const std::vector<Vector3d>& places, int columns, int rows, bool closed, const Uv& uv) {
-  const int across = closed ? columns : columns - 1;
-  UvMesh mesh{.triangles = grid_triangles(across, rows - 1)};
-  for (int row = rows - 1; row >= 0; --row)
+UvMesh mesh_of(const HungRows& cloth, double row_mm, double hem_mm, const Uv& uv) {
+  const int across = cloth.closed ? cloth.columns : cloth.columns - 1;
+  const Hem hem = hem_of(cloth, hem_mm);
+  const auto turned_up = static_cast<int>(hem.below_mm.size());
+  UvMesh mesh{.triangles = grid_triangles(across, cloth.rows + turned_up - 1)};
+  const auto add_row = [&](const std::vector<Vector3d>& places, int row, double of_pattern) {
     for (int column = 0; column <= across; ++column) {
-      mesh.vertices.push_back(places[static_cast<std::size_t>(row * columns + column % columns)]);
-      mesh.uv.push_back(uv(column, row));
+      mesh.vertices.push_back(places[static_cast<std::size_t>(row * cloth.columns + column % cloth.columns)]);
+      mesh.uv.push_back(uv(column, of_pattern));
     }
+  };
+  for (int row = turned_up - 1; row >= 0; --row)
+    add_row(hem.places, row, cloth.rows - 1 + hem.below_mm[static_cast<std::size_t>(row)] / row_mm);
+  for (int row = cloth.rows - 1; row >= 0; --row) add_row(cloth.places, row, row);
   return lifted(std::move(mesh));
 }
 
@@ -191,14 +199,14 @@ struct Maker {
     };
     HangingSheet cloth({kAcross, kDown + 1, true}, kSoft, pattern, places_of(rings, step_mm, kAcross));
     cloth.pin_row(0);
+    cloth.meet_itself(pattern);
     // Hips are narrower than the cloth round them.
     const Hips hips{.waist_mm = s.waist_radius_mm - 2 * kClearance_mm,
                     .wider = std::min(0.3, 0.5 * sector_rad / (2 * std::numbers::pi)),
                     .down_mm = 0.3 * s.length_mm};
     cloth.settle(kSteps, kSweeps, hips, [&](int step) { go_on(static_cast<double>(step) / kSteps); });
-    return mesh_of(cloth.refined(kFiner), kAcross * kFiner, kDown * kFiner + 1, true, [&](int column, int row) {
-      return pattern(static_cast<double>(column) / kFiner, static_cast<double>(row) / kFiner);
-    });
+    return mesh_of({cloth.refined(kFiner), kAcross * kFiner, kDown * kFiner + 1, true}, step_mm / kFiner, s.hem_mm,
+                   [&](int column, double row) { return pattern(static_cast<double>(column) / kFiner, row / kFiner); });
   }
 
   UvMesh operator()(const PleatedShape& s) const {
@@ -222,10 +230,10 @@ struct Maker {
     };
     HangingSheet cloth({kAcross + 1, kDown + 1}, kSoft, pattern, places_of(rows, step_mm, kAcross + 1));
     cloth.pin_row(0);
+    cloth.meet_itself(pattern);
     cloth.settle(kSteps, kSweeps, Air{}, [&](int step) { go_on(static_cast<double>(step) / kSteps); });
-    return mesh_of(cloth.refined(kFiner), kAcross * kFiner + 1, kDown * kFiner + 1, false, [&](int column, int row) {
-      return pattern(static_cast<double>(column) / kFiner, static_cast<double>(row) / kFiner);
-    });
+    return mesh_of({cloth.refined(kFiner), kAcross * kFiner + 1, kDown * kFiner + 1}, step_mm / kFiner, s.hem_mm,
+                   [&](int column, double row) { return pattern(static_cast<double>(column) / kFiner, row / kFiner); });
   }
 
   UvMesh operator()(const SariShape& s) const {
@@ -271,10 +279,9 @@ struct Maker {
     cloth.keep_order(shoulder.along);
     cloth.settle(kSariSteps, kSariSweeps, shoulder, [&](int step) { go_on(static_cast<double>(step) / kSariSteps); });
     cloth.smooth(kSariSmoother);
-    return mesh_of(cloth.refined(kSariFiner), kAcross * kSariFiner + 1, kDown * kSariFiner + 1, false,
-                   [&](int column, int row) {
-                     return pattern(static_cast<double>(column) / kSariFiner, static_cast<double>(row) / kSariFiner);
-                   });
+    return mesh_of(
+        {cloth.refined(kSariFiner), kAcross * kSariFiner + 1, kDown * kSariFiner + 1}, step_mm / kSariFiner, s.hem_mm,
+        [&](int column, double row) { return pattern(static_cast<double>(column) / kSariFiner, row / kSariFiner); });
   }
 
   UvMesh operator()(const DrapeShape& s) const;
@@ -303,9 +310,9 @@ UvMesh Maker::operator()(const DrapeShape& s) const {
     const auto& [steps, cost] = kGrids[i];
     if (i > 0) places = between(places, side), side *= 2;
     const double cell_mm = s.side_mm / side;
-    HangingSheet cloth(
-        {side + 1, side + 1}, kStiff, [&](int column, int row) { return Vector2d(cell_mm * column, cell_mm * row); },
-        std::move(places));
+    const auto pattern = [&](double column, double row) { return Vector2d(cell_mm * column, cell_mm * row); };
+    HangingSheet cloth({side + 1, side + 1}, kStiff, pattern, std::move(places));
+    cloth.meet_itself(pattern);
     cloth.settle(steps, kDrapeSweeps, Ball{s.ball_radius_mm}, [&](int step) { go_on((done + step * cost) / all); });
     places = cloth.places();
     done += steps * cost;

@@ -3,7 +3,7 @@
 //
 // A hanging cloth hardly stretches: rings and rows keep the length that they have in the pattern, and fold where there
 // is less room for them. Folds are laid regularly and then fall into what gravity makes of them, by position-based
-// dynamics (renderer/scene/hanging_sheet.h); cloth does not meet itself there.
+// dynamics (renderer/scene/hanging_sheet.h), without passing through themselves.
 #pragma once
 
 #include <functional>
@@ -20,6 +20,7 @@ struct SkirtShape {
   double waist_radius_mm = 110, length_mm = 600;
   double flare_deg = 300;  // angle of the sector; 360 is a full circle skirt
   int folds = 11;
+  double hem_mm = 25;  // turned up behind the lower edge
 };
 
 // A rectangle hung by its upper edge in pleats that open towards the hem: the falling end of a sari. It lies about the
@@ -28,6 +29,7 @@ struct PleatedShape {
   double width_mm = 900, height_mm = 1100;
   int pleats = 9;
   double gathered = 0.55;  // width as hung over width, at the upper edge
+  double hem_mm = 25;      // turned up behind the lower edge
 };
 
 // A square that hangs over a ball, a little off its middle; its lowest corner is at z = 0.
@@ -44,6 +46,7 @@ struct SariShape {
   int pleats = 10;
   double gathered = 0.6;  // width over the shoulder over width
   double shoulder_radius_mm = 100, slope_deg = 3;
+  double hem_mm = 8;  // turned up behind the end in front
 };
 
 using GarmentShape = std::variant<SkirtShape, PleatedShape, DrapeShape, SariShape>;

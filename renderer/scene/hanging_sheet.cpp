@@ -1,6 +1,7 @@
 #include "renderer/scene/hanging_sheet.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "renderer/weave/periodic_spline.h"
@@ -104,6 +105,75 @@ void HangingSheet::part_folds() {
       places_[i] -= short_mm / 2 * *order_;
       places_[i + 1] += short_mm / 2 * *order_;
     }
+}
+
+void HangingSheet::meet_itself(const Pattern& pattern) {
+  constexpr double kOfCell = 0.36;
+  meets_itself_ = true;
+  pattern_ = pattern;
+  apart_mm_.clear();
+  for (int row = 0; row < size_.rows; ++row) {
+    const int other = row + 1 < size_.rows ? row + 1 : row - 1;
+    const double across_mm = (pattern(1, row) - pattern(0, row)).norm(),
+                 along_mm = (pattern(0, other) - pattern(0, row)).norm();
+    apart_mm_.resize(apart_mm_.size() + static_cast<std::size_t>(size_.columns),
+                     kOfCell * std::max(across_mm, along_mm));
+  }
+}
+
+bool HangingSheet::are_neighbours(std::uint32_t a, std::uint32_t b, double within_mm) const {
+  const int columns = size_.columns, a_row = static_cast<int>(a) / columns, b_row = static_cast<int>(b) / columns;
+  int right = static_cast<int>(b) % columns - static_cast<int>(a) % columns;
+  if (size_.closed) right = (right + columns + columns / 2) % columns - columns / 2;
+  if (std::abs(right) <= 1 && std::abs(b_row - a_row) <= 1) return true;
+  return (pattern_(right, b_row) - pattern_(0, a_row)).norm() < within_mm;
+}
+
+void HangingSheet::find_near_points() {
+  constexpr double kFurther = 1.5;  // than they may be, so that they are found before they meet
+  constexpr double kNeighbours = 2;
+  const double cell_mm = 2 * kFurther * *std::ranges::max_element(apart_mm_);
+  const auto count = static_cast<std::uint32_t>(places_.size());
+  const auto cell_of = [&](const Vector3d& at) { return Eigen::Vector3i((at / cell_mm).array().floor().cast<int>()); };
+  const auto slot_of = [&](const Eigen::Vector3i& cell) {
+    const auto hash = static_cast<std::uint32_t>(cell.x()) * 73856093U ^
+                      static_cast<std::uint32_t>(cell.y()) * 19349663U ^
+                      static_cast<std::uint32_t>(cell.z()) * 83492791U;
+    return hash % count;
+  };
+  // The points of each slot, one slot after the other.
+  std::vector<std::uint32_t> begins(count + 1, 0), points(count);
+  for (const Vector3d& at : places_) ++begins[slot_of(cell_of(at)) + 1];
+  for (std::uint32_t slot = 0; slot < count; ++slot) begins[slot + 1] += begins[slot];
+  std::vector<std::uint32_t> next(begins.begin(), begins.end() - 1);
+  for (std::uint32_t i = 0; i < count; ++i) points[next[slot_of(cell_of(places_[i]))]++] = i;
+
+  near_.clear();
+  for (std::uint32_t a = 0; a < count; ++a) {
+    const Eigen::Vector3i cell = cell_of(places_[a]);
+    for (int around = 0; around < 27; ++around) {
+      const Eigen::Vector3i other = cell + Eigen::Vector3i(around % 3 - 1, around / 3 % 3 - 1, around / 9 - 1);
+      const std::uint32_t slot = slot_of(other);
+      for (std::uint32_t k = begins[slot]; k < begins[slot + 1]; ++k) {
+        const std::uint32_t b = points[k];
+        const double least_mm = apart_mm_[a] + apart_mm_[b];
+        if (b <= a || (places_[a] - places_[b]).squaredNorm() > kFurther * kFurther * least_mm * least_mm) continue;
+        if (cell_of(places_[b]) == other && !are_neighbours(a, b, kNeighbours * least_mm))
+          near_.push_back({a, b, least_mm});
+      }
+    }
+  }
+}
+
+void HangingSheet::part_near_points() {
+  for (const NearPoints& pair : near_) {
+    const Vector3d between = places_[pair.b] - places_[pair.a];
+    const double distance = between.norm();
+    if (distance >= pair.least_mm || distance < 1e-9) continue;
+    const Vector3d half = (pair.least_mm - distance) / (2 * distance) * between;
+    places_[pair.a] -= half;
+    places_[pair.b] += half;
+  }
 }
 
 void HangingSheet::pull_links() {

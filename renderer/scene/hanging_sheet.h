@@ -1,5 +1,4 @@
-// Cloth on its way to rest, by position-based dynamics [Macklin 2016, doi 10.1145/2994258.2994272]; z is up. Cloth does
-// not meet itself there.
+// Cloth on its way to rest, by position-based dynamics [Macklin 2016, doi 10.1145/2994258.2994272]; z is up.
 #pragma once
 
 #include <Eigen/Core>
@@ -37,6 +36,10 @@ class HangingSheet {
   // cloth does to cloth where rows are pleated across it.
   void keep_order(const Eigen::Vector3d& along) { order_ = along; }
 
+  // Cloth does not pass through itself: points that are no neighbours in the pattern stay about half a cell apart from
+  // each other, found by spatial hashing [Teschner 2003, Vision, Modeling, Visualization].
+  void meet_itself(const Pattern& pattern);
+
   // `body.outside(place)`: the nearest place outside of what the cloth lies on.
   template <class Body>
   void settle(int steps, int sweeps, const Body& body, const std::function<void(int steps_done)>& go_on) {
@@ -47,8 +50,10 @@ class HangingSheet {
       const std::vector<Eigen::Vector3d> before = places_;
       for (std::size_t i = 0; i < places_.size(); ++i)
         places_[i] += kStep_s * (kKept * speeds[i] + Eigen::Vector3d(0, 0, kGravity * kStep_s));
+      if (meets_itself_) find_near_points();
       for (int sweep = 0; sweep < sweeps; ++sweep) {
         pull_links();
+        part_near_points();
         if (order_) part_folds();
         for (std::size_t i = 0; i < places_.size(); ++i) keep_outside(body, before[i], places_[i]);
         for (const std::uint32_t i : pinned_) places_[i] = before[i];
@@ -77,11 +82,19 @@ class HangingSheet {
     double most_mm;
   };
 
+  struct NearPoints {
+    std::uint32_t a, b;
+    double least_mm;
+  };
+
   std::uint32_t index(int column, int row) const { return static_cast<std::uint32_t>(row * size_.columns + column); }
   Eigen::Vector3d control(int column, int row) const;
   void add_links(const Pattern& pattern, const Bending& bending);
   void pull_links();
   void part_folds();
+  bool are_neighbours(std::uint32_t a, std::uint32_t b, double within_mm) const;
+  void find_near_points();
+  void part_near_points();
 
   template <class Body>
   static void keep_outside(const Body& body, const Eigen::Vector3d& before, Eigen::Vector3d& at) {
@@ -97,6 +110,10 @@ class HangingSheet {
   std::vector<Link> links_{};
   std::vector<Leash> leashes_{};
   std::optional<Eigen::Vector3d> order_{};
+  bool meets_itself_ = false;
+  Pattern pattern_{};               // where it meets itself
+  std::vector<double> apart_mm_{};  // of each point: half of what others stay away
+  std::vector<NearPoints> near_{};  // of this step
 };
 
 }  // namespace renderer

@@ -76,13 +76,17 @@ renderer::MeshShape parse_mesh(ObjectReader& reader, const std::filesystem::path
 }
 
 renderer::GarmentShape parse_garment(ObjectReader& reader, const std::string& kind) {
-  constexpr double kLeastGarment = 10;
+  constexpr double kLeastGarment = 10, kMostHem = 300;
+  const auto read_hem = [&](double& hem_mm) {
+    if (reader.has("hem_mm")) hem_mm = reader.number("hem_mm", 0, kMostHem);
+  };
   if (kind == "skirt") {
     renderer::SkirtShape s;
     read_length(reader, "waist_radius_mm", kLeastGarment, s.waist_radius_mm);
     read_length(reader, "length_mm", kLeastGarment, s.length_mm);
     if (reader.has("flare_deg")) s.flare_deg = reader.number("flare_deg", 60, 360);
     if (reader.has("folds")) s.folds = reader.integer("folds", 3, 40);
+    read_hem(s.hem_mm);
     return s;
   }
   if (kind == "pleats") {
@@ -91,6 +95,7 @@ renderer::GarmentShape parse_garment(ObjectReader& reader, const std::string& ki
     read_length(reader, "height_mm", kLeastGarment, s.height_mm);
     if (reader.has("pleats")) s.pleats = reader.integer("pleats", 2, 40);
     if (reader.has("gathered")) s.gathered = reader.number("gathered", 0.3, 0.9);
+    read_hem(s.hem_mm);
     return s;
   }
   if (kind == "sari") {
@@ -102,6 +107,7 @@ renderer::GarmentShape parse_garment(ObjectReader& reader, const std::string& ki
     if (reader.has("pleats")) s.pleats = reader.integer("pleats", 2, 20);
     if (reader.has("gathered")) s.gathered = reader.number("gathered", 0.4, 0.9);
     if (reader.has("slope_deg")) s.slope_deg = reader.number("slope_deg", 0, 30);
+    read_hem(s.hem_mm);
     return s;
   }
   renderer::DrapeShape s;

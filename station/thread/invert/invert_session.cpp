@@ -23,8 +23,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::uint64_t kViewSeed = 424242;  // of the fitted views: paths that the fit has not seen
-constexpr double kFitShare = 0.6;            // of the progress bar; the fitted views take the rest
+constexpr std::uint64_t kViewSeed = 424242;    // of the fitted views: paths that the fit has not seen
+constexpr std::uint64_t kShadedSeed = 515151;  // of the same with uneven shades
+constexpr double kFitShare = 0.6;              // of the progress bar; the fitted views take the rest
 
 json provenance_json(const std::filesystem::path& session, const SessionFile& asked) {
   const std::filesystem::path folder = std::filesystem::absolute(session).lexically_normal();
@@ -115,8 +116,15 @@ json irregularity_json(const InvertRequest& request, const inversion::WrappedSpo
                        const renderer::ThreadParameters& thread) {
   const auto reflected = std::ranges::find(views, false, &inversion::View::transmission);
   if (reflected == views.end()) return nullptr;
+  const int samples = std::max(1, request.samples_per_pixel / 4);
   const inversion::Irregularity found = inversion::measure_irregularity(
-      spool, views, fitted, darkening_of(spool, *reflected, thread, std::max(1, request.samples_per_pixel / 4)));
+      spool, views,
+      {.even = fitted,
+       .darkening = darkening_of(spool, *reflected, thread, samples),
+       .shaded = [&](std::size_t view, const std::vector<double>& shades) {
+         return inversion::fitted_view(spool, views[view], inversion::shaded_threads(spool, thread, shades), samples,
+                                       kShadedSeed + view, [](double) { return !interrupted(); });
+       }});
   if (!found.brightness) return nullptr;
   return {{"brightness", to_json(found.brightness)},
           {"shade", to_json(found.shade)},

@@ -10,8 +10,10 @@
 #include <span>
 #include <string>
 
+#include "renderer/scene/hem.h"
 #include "renderer/scene/studio.h"
 #include "renderer/trace/cloth_shell.h"
+#include "tests/renderer/scene/self_crossings.h"
 
 namespace renderer {
 namespace {
@@ -87,8 +89,45 @@ TEST(GarmentTest, AnyOneIsASurfaceForCloth) {
       const ClothSurface surface = cloth_surface(mesh, {.uv_mm = 1}, Eigen::Isometry3d::Identity(), "garment");
       EXPECT_NO_THROW(make_shell(surface, {-0.5, 0.5})) << which;
       EXPECT_LT(stretch_of(mesh).first, 0.08) << which;
+      EXPECT_EQ(self_crossings(mesh), 0) << which;
     }
   }
+}
+
+TEST(GarmentTest, NoClothPassesThroughItself) {
+  // Two sheets of two triangles each that pass through one another: what the count is worth.
+  const UvMesh crossed{
+      .vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {2, 2, 0}, {0.3, 1.2, -1}, {1.7, 1.1, -1}, {0.9, 1.3, 1}},
+      .triangles = {{0, 1, 2}, {1, 3, 2}, {4, 5, 6}}};
+  EXPECT_GT(self_crossings(crossed), 0);
+  for (const GarmentShape& shape : kReady) EXPECT_EQ(self_crossings(ready_mesh(shape)), 0) << shape.index();
+}
+
+// Cloth turned up behind the lower edge, as much longer in the pattern, that leaves room for what is in front of it.
+TEST(GarmentTest, AHemIsTurnedUpBehindTheEdge) {
+  for (const double hem_mm : {10.0, 40.0}) {
+    const PleatedShape shape{.hem_mm = hem_mm};
+    PleatedShape cut = shape;
+    cut.hem_mm = 0;
+    const UvMesh mesh = garment_mesh(shape), without = garment_mesh(cut);
+    const std::size_t more = mesh.vertices.size() - without.vertices.size();
+    double lowest_uv = 0, least_mm = 1e9, highest_mm = 0;
+    for (std::size_t i = 0; i < more; ++i) {
+      lowest_uv = std::min(lowest_uv, mesh.uv[i].y());
+      highest_mm = std::max(highest_mm, mesh.vertices[i].z());
+    }
+    EXPECT_NEAR(-lowest_uv, hem_mm + std::numbers::pi * kHemFold_mm, 0.1 * hem_mm + 5);
+    EXPECT_GT(highest_mm, 0.8 * hem_mm);
+    // Its first row, furthest up, from all cloth in front.
+    const std::size_t across = 601;
+    for (std::size_t i = 0; i < across; ++i)
+      for (std::size_t k = more; k < mesh.vertices.size(); ++k)
+        if (std::abs(mesh.vertices[k].z() - mesh.vertices[i].z()) < 10)
+          least_mm = std::min(least_mm, (mesh.vertices[i] - mesh.vertices[k]).norm());
+    EXPECT_GT(least_mm, 1.9 * kHemFold_mm);
+    EXPECT_LT(least_mm, 2.1 * kHemFold_mm);
+  }
+  EXPECT_TRUE(hem_of({{{0, 0, 0}, {1, 0, 0}, {0, 0, -1}, {1, 0, -1}}, 2, 2}, 0).places.empty());
 }
 
 TEST(GarmentTest, ASkirtShowsItsFaceOutside) {
@@ -132,11 +171,13 @@ TEST(GarmentTest, ASariHangsOnBothSidesOfTheShoulderInOrderlyPleats) {
   // An arc of the shoulder is not below it.
   EXPECT_NEAR(top - lowest[0], shape.front_mm, 0.06 * shape.front_mm);
   EXPECT_NEAR(top - lowest[1], shape.length_mm - shape.front_mm, 0.06 * shape.front_mm);
-  // In front the face is seen: no pleat lies with its back outwards.
+  // In front the face is seen: no pleat lies with its back outwards, but for the hem behind its end.
   int turned = 0, all = 0;
   for (const auto& t : mesh.triangles) {
     const Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-    if (mesh.uv[t[0]].y() > shape.front_mm || a.z() > top - 3 * shape.shoulder_radius_mm) continue;
+    if (mesh.uv[t[0]].y() > shape.front_mm || mesh.uv[t[0]].y() < 0 || mesh.uv[t[2]].y() < 0 ||
+        a.z() > top - 3 * shape.shoulder_radius_mm)
+      continue;
     ++all, turned += (b - a).cross(c - a).y() > 0 ? 1 : 0;
   }
   EXPECT_GT(all, 100000);
