@@ -32,7 +32,7 @@ json wrong_rig(const std::string& turntable) {
   rig["operator"] = "console";
   rig["focal_length_guess_px"] = 9000;
   rig["camera_by_tape"] = {{"position_mm", {900, 0, 200}}, {"aim_mm", {0, 0, 0}}};
-  rig["simulation"]["target_samples_per_pixel"] = 4;
+  rig["simulation"]["target_samples_per_pixel"] = 3;
   return rig;
 }
 

@@ -38,7 +38,7 @@ void expect_one_line(const ProgramResult& result, const std::string& must_name) 
 void make_calibrated_bench(const fs::path& made) {
   json rig = station::read_json_file(std::string(DATA_DIR) + "/rigs/simulated.json");
   rig["simulation"]["samples_per_pixel"] = 1;
-  rig["simulation"]["target_samples_per_pixel"] = 4;
+  rig["simulation"]["target_samples_per_pixel"] = 3;
   station::write_json_file(made / "rig.json", rig);
   expect_success(
       run_threadstation({"calibrate", "--rig", made / "rig.json", "--out", made / "calibration", "--quiet"}));

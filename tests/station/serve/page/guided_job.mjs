@@ -26,7 +26,7 @@ function writeRig() {
   if (byHand) rig.turntable = "manual";
   rig.operator = "console";
   rig.simulation.samples_per_pixel = 2;
-  rig.simulation.target_samples_per_pixel = 4;
+  rig.simulation.target_samples_per_pixel = 3;
   const file = path.join(folder, "rig.json");
   writeFileSync(file, JSON.stringify(rig));
   return file;
