@@ -381,25 +381,28 @@ Irregularity measure_irregularity(const WrappedSpool& spool, const std::vector<V
   Irregularity found;
   if (seen.size() < kFewestViews || spool.turns < 2 * kWindowTurns) return found;
   const Sheet sheet(spool, views, seen);
-  // What cells tell of pictures in these views' places; value_of: of their brightness over the even twin's.
-  const auto tell = [&](const auto& picture_of, const auto& value_of) {
+  const auto brightness_of = [&](const auto& picture_of) {
+    std::vector<std::array<std::vector<double>, 3>> of_views;
+    for (const std::size_t i : seen) of_views.push_back(sheet.brightness(views[i], picture_of(i), twins.even.at(i)));
+    return of_views;
+  };
+  const auto tell = [&](const auto& ratios, const auto& value_of) {
     std::vector<std::vector<double>> of_views;
-    for (const std::size_t i : seen)
-      of_views.push_back(value_of(sheet.brightness(views[i], picture_of(i), twins.even.at(i))));
+    for (const auto& one : ratios) of_views.push_back(value_of(one));
     return sheet.told(of_views);
   };
-  const auto photograph = [&](std::size_t i) { return views[i].image; };
   const auto shade_of = [&](const auto& ratios) { return shades_of(ratios, twins.darkening); };
-  const std::vector<Told> told = tell(photograph, mean_of);
+  const auto photographed = brightness_of([&](std::size_t i) { return views[i].image; });
+  const std::vector<Told> told = tell(photographed, mean_of);
   if (told.size() < kFewestCells) return found;
   found.length_mm = correlation_length(told, turn_length_mm(spool));
   const Kept kept = sheet.kept(told, found.length_mm);
   found.brightness = deviation_of(told, kept);
-  if (twins.darkening.maxCoeff() > kLeastDarkening) found.shade = deviation_of(tell(photograph, shade_of), kept);
+  if (twins.darkening.maxCoeff() > kLeastDarkening) found.shade = deviation_of(tell(photographed, shade_of), kept);
   if (found.shade) {
     const std::vector<double> known = known_shades(spool, found.shade->value, found.length_mm);
     const double share =
-        share_told(tell([&](std::size_t i) { return twins.shaded(i, known); }, shade_of),
+        share_told(tell(brightness_of([&](std::size_t i) { return twins.shaded(i, known); }), shade_of),
                    sheet.shown(told, [&](int turn, double) { return known[static_cast<std::size_t>(turn)]; }));
     if (share < kLeastTold)
       found.shade.reset();

@@ -109,7 +109,6 @@ void HangingSheet::part_folds() {
 
 void HangingSheet::meet_itself(const Pattern& pattern) {
   constexpr double kOfCell = 0.36;
-  meets_itself_ = true;
   pattern_ = pattern;
   apart_mm_.clear();
   for (int row = 0; row < size_.rows; ++row) {
@@ -141,25 +140,25 @@ void HangingSheet::find_near_points() {
                       static_cast<std::uint32_t>(cell.z()) * 83492791U;
     return hash % count;
   };
+  std::vector<Eigen::Vector3i> cells;
+  for (const Vector3d& at : places_) cells.push_back(cell_of(at));
   // The points of each slot, one slot after the other.
   std::vector<std::uint32_t> begins(count + 1, 0), points(count);
-  for (const Vector3d& at : places_) ++begins[slot_of(cell_of(at)) + 1];
+  for (const Eigen::Vector3i& cell : cells) ++begins[slot_of(cell) + 1];
   for (std::uint32_t slot = 0; slot < count; ++slot) begins[slot + 1] += begins[slot];
   std::vector<std::uint32_t> next(begins.begin(), begins.end() - 1);
-  for (std::uint32_t i = 0; i < count; ++i) points[next[slot_of(cell_of(places_[i]))]++] = i;
+  for (std::uint32_t i = 0; i < count; ++i) points[next[slot_of(cells[i])]++] = i;
 
   near_.clear();
   for (std::uint32_t a = 0; a < count; ++a) {
-    const Eigen::Vector3i cell = cell_of(places_[a]);
     for (int around = 0; around < 27; ++around) {
-      const Eigen::Vector3i other = cell + Eigen::Vector3i(around % 3 - 1, around / 3 % 3 - 1, around / 9 - 1);
+      const Eigen::Vector3i other = cells[a] + Eigen::Vector3i(around % 3 - 1, around / 3 % 3 - 1, around / 9 - 1);
       const std::uint32_t slot = slot_of(other);
       for (std::uint32_t k = begins[slot]; k < begins[slot + 1]; ++k) {
         const std::uint32_t b = points[k];
         const double least_mm = apart_mm_[a] + apart_mm_[b];
         if (b <= a || (places_[a] - places_[b]).squaredNorm() > kFurther * kFurther * least_mm * least_mm) continue;
-        if (cell_of(places_[b]) == other && !are_neighbours(a, b, kNeighbours * least_mm))
-          near_.push_back({a, b, least_mm});
+        if (cells[b] == other && !are_neighbours(a, b, kNeighbours * least_mm)) near_.push_back({a, b, least_mm});
       }
     }
   }

@@ -36,7 +36,7 @@ class HangingSheet {
   // cloth does to cloth where rows are pleated across it.
   void keep_order(const Eigen::Vector3d& along) { order_ = along; }
 
-  // Cloth does not pass through itself: points that are no neighbours in the pattern stay about half a cell apart from
+  // Cloth does not pass through itself: points that are no neighbours in the pattern stay .7 of a cell apart from
   // each other, found by spatial hashing [Teschner 2003, Vision, Modeling, Visualization].
   void meet_itself(const Pattern& pattern);
 
@@ -50,7 +50,7 @@ class HangingSheet {
       const std::vector<Eigen::Vector3d> before = places_;
       for (std::size_t i = 0; i < places_.size(); ++i)
         places_[i] += kStep_s * (kKept * speeds[i] + Eigen::Vector3d(0, 0, kGravity * kStep_s));
-      if (meets_itself_) find_near_points();
+      if (pattern_) find_near_points();
       for (int sweep = 0; sweep < sweeps; ++sweep) {
         pull_links();
         part_near_points();
@@ -110,7 +110,6 @@ class HangingSheet {
   std::vector<Link> links_{};
   std::vector<Leash> leashes_{};
   std::optional<Eigen::Vector3d> order_{};
-  bool meets_itself_ = false;
   Pattern pattern_{};               // where it meets itself
   std::vector<double> apart_mm_{};  // of each point: half of what others stay away
   std::vector<NearPoints> near_{};  // of this step

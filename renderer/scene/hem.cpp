@@ -1,6 +1,7 @@
 #include "renderer/scene/hem.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
